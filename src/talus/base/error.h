@@ -1,0 +1,59 @@
+#pragma once
+// The errors that end a run, each with the exit code that the command returns for it.
+// What went wrong with numbers during a step is a result, not an exception, until run/ decides to stop.
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Exit codes of the `talus` command.
+enum ExitCode : int {
+  kExitOk = 0,
+  kExitInternal = 1,      // our own mistake
+  kExitUsage = 2,         // wrong command line
+  kExitInput = 3,         // the model file
+  kExitFile = 4,          // a file or disk
+  kExitNumerical = 5,     // no convergence, non-finite numbers, an inverted block
+  kExitInterrupted = 130  // Ctrl-C; results up to then are valid
+};
+
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
+  ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+/// The model cannot be used. what() holds every finding, ready to print.
+class InputError : public Error {
+ public:
+  explicit InputError(const std::string& text) : Error(kExitInput, text) {}
+};
+
+/// A file could not be read or written.
+class FileError : public Error {
+ public:
+  explicit FileError(const std::string& text) : Error(kExitFile, text) {}
+};
+
+/// A step could not be taken; the text carries time, step, block and contact ids and what was tried.
+class NumericalError : public Error {
+ public:
+  explicit NumericalError(const std::string& text) : Error(kExitNumerical, text) {}
+};
+
+/// Reports a broken invariant of talus itself.
+[[noreturn]] void fail_assertion(const char* condition, const char* file, int line);
+
+}  // namespace talus
+
+#if defined(NDEBUG) && !defined(TALUS_ASSERTIONS)
+#define TALUS_ASSERT(condition) static_cast<void>(0)
+#else
+#define TALUS_ASSERT(condition) \
+  ((condition) ? static_cast<void>(0) : ::talus::fail_assertion(#condition, __FILE__, __LINE__))
+#endif

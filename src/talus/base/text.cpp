@@ -1,0 +1,75 @@
+#include "talus/base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace talus {
+
+namespace {
+
+// Edits between two words, a swap of neighbours counting once (optimal string alignment).
+int edit_distance(std::string_view a, std::string_view b) {
+  const size_t n = a.size(), m = b.size();
+  std::vector<std::vector<int>> d(n + 1, std::vector<int>(m + 1));
+  for (size_t i = 0; i <= n; ++i) d[i][0] = static_cast<int>(i);
+  for (size_t j = 0; j <= m; ++j) d[0][j] = static_cast<int>(j);
+  for (size_t i = 1; i <= n; ++i) {
+    for (size_t j = 1; j <= m; ++j) {
+      const int replace = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replace});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[n][m];
+}
+
+}  // namespace
+
+std::string closest_name(std::string_view word, const std::vector<std::string>& known) {
+  std::string best;
+  int best_distance = 1 + static_cast<int>(std::max<size_t>(word.size(), 3)) / 3;
+  for (const std::string& name : known) {
+    const int distance = edit_distance(word, name);
+    const bool begins = word.size() >= 3 && name.rfind(word, 0) == 0;  // "dens" for "density"
+    if (distance <= best_distance || (begins && best.empty())) {
+      if (best.empty() || distance < best_distance) best = name;
+      best_distance = std::min(best_distance, distance);
+    }
+  }
+  return best;
+}
+
+std::string join_or(const std::vector<std::string>& words) {
+  std::string out;
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out += i + 1 == words.size() ? " or " : ", ";
+    out += words[i];
+  }
+  return out;
+}
+
+std::string readable_bytes(double bytes) {
+  const char* unit[] = {"B", "kB", "MB", "GB", "TB"};
+  int i = 0;
+  while (bytes >= 999.5 && i < 4) bytes /= 1000, ++i;
+  return i == 0 ? fmt::format("{:.0f} B", bytes) : fmt::format("{:.3g} {}", bytes, unit[i]);
+}
+
+std::string readable_seconds(double seconds) {
+  if (seconds < 0.9995) return fmt::format("{:.3g} ms", 1e3 * seconds);
+  if (seconds < 119.5) return fmt::format("{:.3g} s", seconds);
+  const int64_t s = static_cast<int64_t>(seconds + 0.5);
+  if (s < 7200) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+}
+
+std::string text_hash(std::string_view text) {
+  uint64_t h = 14695981039346656037ull;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  return fmt::format("{:016x}", h);
+}
+
+}  // namespace talus

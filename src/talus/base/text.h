@@ -1,0 +1,26 @@
+#pragma once
+// Small text helpers used by messages: closest name, lists, readable sizes and times.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace talus {
+
+/// The entry of `known` nearest to `word` in edits (insert, delete, replace, swap), or "" when none is near
+/// enough to be worth suggesting.
+std::string closest_name(std::string_view word, const std::vector<std::string>& known);
+
+/// "a, b or c"
+std::string join_or(const std::vector<std::string>& words);
+
+/// "950 B", "12.3 kB", "4.5 MB"
+std::string readable_bytes(double bytes);
+
+/// "850 ms", "12.3 s", "4 min 05 s", "2 h 03 min"
+std::string readable_seconds(double seconds);
+
+/// FNV-1a 64-bit hash as 16 hexadecimal digits; identifies a model text, protects nothing.
+std::string text_hash(std::string_view text);
+
+}  // namespace talus

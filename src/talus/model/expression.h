@@ -1,0 +1,16 @@
+#pragma once
+// Formulas of time in model files, evaluated by muParser.
+
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Values of a formula in `t` at the given times [s].
+/// @param trouble  set to what is wrong with the formula, with its position, or to the first time at which
+/// its
+///                 value is not finite; the result is then empty
+std::vector<double> evaluate_expression(const std::string& formula, const std::vector<double>& times,
+                                        std::string& trouble);
+
+}  // namespace talus

@@ -1,0 +1,67 @@
+#include "talus/model/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "talus/base/error.h"
+
+namespace talus {
+
+Findings::Findings(std::string file, std::string_view text) : file_(std::move(file)) {
+  size_t begin = 0;
+  while (begin <= text.size()) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    std::string line(text.substr(begin, end - begin));
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    std::replace(line.begin(), line.end(), '\t', ' ');
+    lines_.push_back(std::move(line));
+    begin = end + 1;
+  }
+}
+
+void Findings::error(const Where& where, std::string key, std::string text, std::string hint) {
+  list_.push_back({Severity::kError, where, std::move(key), std::move(text), std::move(hint)});
+}
+
+void Findings::warning(const Where& where, std::string key, std::string text, std::string hint) {
+  list_.push_back({Severity::kWarning, where, std::move(key), std::move(text), std::move(hint)});
+}
+
+int Findings::error_count() const {
+  return static_cast<int>(std::count_if(list_.begin(), list_.end(),
+                                        [](const Finding& f) { return f.severity == Severity::kError; }));
+}
+
+std::string Findings::render() const {
+  std::vector<Finding> sorted = list_;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Finding& a, const Finding& b) { return a.where.line < b.where.line; });
+  constexpr size_t kMost = 20;  // a file with more has one cause; the count is told
+  std::string out;
+  for (size_t i = 0; i < std::min(sorted.size(), kMost); ++i) {
+    const Finding& f = sorted[i];
+    const char* level = f.severity == Severity::kError ? "error" : "warning";
+    std::string place = file_;
+    if (f.where.line > 0) place += fmt::format(":{}:{}", f.where.line, f.where.column);
+    out += fmt::format("{}: {}: {}{}{}\n", place, level, f.key, f.key.empty() ? "" : ": ", f.text);
+    if (!f.where.override_text.empty()) out += fmt::format("   from {}\n", f.where.override_text);
+    const size_t line = static_cast<size_t>(f.where.line);
+    if (line > 0 && line <= lines_.size()) {
+      const int column = std::max(f.where.column, 1);
+      out += fmt::format("{:>5} | {}\n", f.where.line, lines_[line - 1]);
+      out += fmt::format("      | {:>{}}\n", "^", column);
+    }
+    if (!f.hint.empty()) out += fmt::format("      = {}\n", f.hint);
+  }
+  if (sorted.size() > kMost) out += fmt::format("... and {} more\n", sorted.size() - kMost);
+  return out;
+}
+
+void Findings::throw_if_errors() const {
+  if (!has_errors()) return;
+  const int n = error_count();
+  throw InputError(render() + fmt::format("{}: {} error{}; nothing was run", file_, n, n == 1 ? "" : "s"));
+}
+
+}  // namespace talus

@@ -1,0 +1,156 @@
+#pragma once
+// What the user asked for: plain data in SI units, names resolved to indices. Nothing here moves.
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "talus/geometry/polygon.h"
+#include "talus/model/findings.h"
+
+namespace talus {
+
+enum class BlockKind { kDeformable, kRigid, kFixed, kDriven };
+enum class Plane { kStrain, kStress };
+enum class Inertia { kConsistent, kLumped };
+
+struct Material {
+  std::string name;
+  double density = 0;                                         // [kg/m3]
+  double young = std::numeric_limits<double>::quiet_NaN();    // [Pa], NaN when not given
+  double poisson = std::numeric_limits<double>::quiet_NaN();  // [-]
+};
+
+struct JointProperty {
+  std::string name;
+  bool bonded = false;          // never opens or slides
+  double friction_angle = 0;    // [rad]
+  double cohesion = 0;          // [Pa]
+  double tensile_strength = 0;  // [Pa]
+};
+
+/// A quantity over time: linear between points, held outside.
+struct History {
+  std::string name;
+  std::vector<double> time;      // [s] strictly rising
+  std::vector<double> value;     // SI
+  std::vector<double> integral;  // of value, from time[0] to time[i]
+
+  double value_at(double t) const;
+  /// Exact integral of the curve from 0 to t.
+  double integral_at(double t) const;
+};
+
+/// Motion along one axis (or of rotation): free, held, or following a history.
+struct Motion {
+  enum Kind { kFree, kFixed, kVelocity, kDisplacement };
+  Kind kind = kFixed;
+  int history = -1;
+
+  /// Displacement prescribed at time t [m] or [rad]; 0 when held. @pre kind is not kFree
+  double displacement_at(double t, const std::vector<History>& histories) const;
+};
+
+struct BlockInput {
+  std::string name;
+  Polygon polygon;
+  int material = -1;
+  BlockKind kind = BlockKind::kDeformable;
+  Vec2 velocity;
+  double spin = 0;
+  Motion motion_x, motion_y, motion_rotation;
+  Where where;
+};
+
+enum class GridPattern { kRectangles, kCrossedTriangles };
+
+struct GridInput {
+  std::string name;
+  Vec2 min, max;
+  int columns = 1, rows = 1;
+  GridPattern pattern = GridPattern::kRectangles;
+  int material = -1;
+  int joint = -1;
+  BlockKind kind = BlockKind::kDeformable;
+  Vec2 velocity;
+  Where where;
+};
+
+struct ContactPairInput {
+  std::string name_a, name_b;  // blocks or grids
+  int joint = -1;
+  Where where;
+};
+
+struct SupportInput {
+  std::string name;
+  bool is_edge = false;
+  Vec2 from, to;      // the segment; the point when is_edge is false
+  std::string block;  // "" = any
+  Motion x, y;
+  Where where;
+};
+
+enum class JacobianKind { kAnalytic, kDifference };
+
+struct SolverInput {
+  JacobianKind jacobian = JacobianKind::kAnalytic;
+  double tolerance = 1e-10;  // share of the smallest block's size
+  int max_iterations = 60;
+  bool stop_on_failure = true;
+};
+
+enum class StageKind { kStatic, kDynamic };
+
+struct StageInput {
+  std::string name;
+  StageKind kind = StageKind::kDynamic;
+  double duration = 0;                                          // [s]
+  double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
+  double safety = 0.8;
+  bool moment_clamp = false;
+  double damping_mass = 0;   // [1/s]
+  double damping_local = 0;  // [-]
+  double unbalanced = 1e-5;
+  Where where, where_step;
+};
+
+enum class MonitorKind { kPoint, kBlock, kSupport, kContact };
+
+struct MonitorInput {
+  std::string name;
+  MonitorKind kind = MonitorKind::kPoint;
+  Vec2 point;
+  std::string target_a, target_b;  // names of block, support, or the two contact partners
+  double window = 0;               // [s]
+  Where where;
+};
+
+struct OutputInput {
+  double history_interval = 0, steps_interval = 0,
+         field_interval = 0;  // [s] 0 = every step; fields: stage ends
+};
+
+struct Model {
+  std::string file, title, hash;
+  std::string text;  // the file as read, byte for byte, with the overrides as closing comments
+  double thickness = 1;
+  Plane plane = Plane::kStrain;
+  Inertia inertia = Inertia::kConsistent;
+  Vec2 gravity;
+
+  std::vector<Material> materials;
+  std::vector<JointProperty> joints;
+  std::vector<History> histories;
+  std::vector<BlockInput> blocks;
+  std::vector<GridInput> grids;
+  int default_joint = -1;  // -1: hard and frictionless
+  std::vector<ContactPairInput> contact_pairs;
+  std::vector<SupportInput> supports;
+  SolverInput solver;
+  std::vector<StageInput> stages;
+  std::vector<MonitorInput> monitors;
+  OutputInput output;
+};
+
+}  // namespace talus

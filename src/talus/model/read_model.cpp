@@ -1,0 +1,515 @@
+#include "talus/model/read_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "talus/base/text.h"
+#include "talus/base/version.h"
+#include "talus/model/expression.h"
+#include "talus/model/read_section.h"
+
+namespace talus {
+
+namespace {
+
+class ModelReader {
+ public:
+  ModelReader(const TomlSource& source, Model& model, Findings& findings)
+      : source_(source), model_(model), findings_(findings) {}
+
+  void read() {
+    check_section_names();
+    if (!read_top()) return;
+    read_general();
+    read_materials();
+    read_joints();
+    read_histories();
+    read_blocks();
+    read_grids();
+    read_contact();
+    read_supports();
+    read_solver();
+    read_stages();
+    read_monitors();
+    read_output();
+    for (const BlockInput& b : model_.blocks)
+      check_material_of(b.kind, b.material, b.where, "block." + b.name);
+    for (const GridInput& g : model_.grids) check_material_of(g.kind, g.material, g.where, "grid." + g.name);
+  }
+
+ private:
+  // --- sections ---
+
+  void check_section_names() {
+    std::vector<std::string> sections;
+    for (const SectionSpec& s : model_schema())
+      if (s.shape != SectionShape::kTop) sections.emplace_back(s.name);
+    std::vector<std::string> known = sections;
+    known.insert(known.end(), {"talus", "title"});
+    for (const auto& [key, node] : source_.root) {
+      const std::string name(key.str());
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        const std::string near = closest_name(name, known);
+        findings_.error(where_of(key.source()), name,
+                        node.is_table() || node.is_array_of_tables() ? "unknown section" : "unknown key",
+                        near.empty() ? fmt::format("sections are {}", join_or(sections))
+                                     : fmt::format("did you mean \"{}\"?", near));
+      }
+    }
+  }
+
+  // The table of a [section]; empty when the file has none.
+  toml::table table_of(const std::string& name, const std::string& form) {
+    const toml::node* node = source_.root.get(name);
+    if (!node) return {};
+    if (const toml::table* t = node->as_table()) return *t;
+    findings_.error(where_of(node->source()), name, fmt::format("is written {}", form));
+    return {};
+  }
+
+  Fields read_table(const std::string& name) {
+    const toml::table t = table_of(name, "[" + name + "]");
+    return read_section(section_spec(name), t, name, where_of(t.source()), source_, findings_);
+  }
+
+  // Calls `use(name, fields)` for every [section.NAME].
+  template <class Use>
+  void for_named(const std::string& section, Use use) {
+    const toml::table all = table_of(section, fmt::format("[{}.NAME]", section));
+    for (const auto& [key, node] : all) {
+      const std::string path = section + "." + std::string(key.str());
+      const toml::table* t = node.as_table();
+      if (!t) {
+        findings_.error(where_of(key.source()), path, "is not a section",
+                        fmt::format("write [{}.NAME] with a name of your own, then its keys", section));
+        continue;
+      }
+      use(std::string(key.str()),
+          read_section(section_spec(section), *t, path, where_of(key.source()), source_, findings_));
+    }
+  }
+
+  // Calls `use(fields)` for every [[section]].
+  template <class Use>
+  void for_list(const std::string& section, Use use) {
+    const toml::node* node = source_.root.get(section);
+    if (!node) return;
+    const toml::array* list = node->as_array();
+    if (!list || !node->is_array_of_tables()) {
+      findings_.error(where_of(node->source()), section,
+                      fmt::format("is a list: write [[{}]] with double brackets", section));
+      return;
+    }
+    int index = 0;
+    for (const toml::node& entry : *list) {
+      const toml::table& t = *entry.as_table();
+      const std::string name = t["name"].value_or(std::to_string(index++));
+      use(read_section(section_spec(section), t, section + "." + name, where_of(t.source()), source_,
+                       findings_));
+    }
+  }
+
+  // --- names ---
+
+  template <class List>
+  static int index_of(const List& list, const std::string& name) {
+    for (size_t i = 0; i < list.size(); ++i)
+      if (list[i].name == name) return static_cast<int>(i);
+    return -1;
+  }
+
+  template <class List>
+  int refer(const Fields& f, std::string_view key, const List& list, const std::string& what) {
+    if (!f.has(key)) return -1;
+    return refer_name(f.get<std::string>(key), f.where(key), f.path_of(key), list, what);
+  }
+
+  template <class List>
+  int refer_name(const std::string& name, const Where& where, const std::string& path, const List& list,
+                 const std::string& what) {
+    const int i = index_of(list, name);
+    if (i < 0) {
+      std::vector<std::string> names;
+      for (const auto& item : list) names.push_back(item.name);
+      const std::string near = closest_name(name, names);
+      findings_.error(where, path, fmt::format("there is no {} called \"{}\"", what, name),
+                      !near.empty()   ? fmt::format("did you mean \"{}\"?", near)
+                      : names.empty() ? fmt::format("the file defines no {}", what)
+                                      : fmt::format("there is {}", join_or(names)));
+    }
+    return i;
+  }
+
+  void refer_block_or_grid(const std::string& name, const Where& where, const std::string& path) {
+    struct Named {
+      std::string name;
+    };
+    std::vector<Named> all;
+    for (const auto& b : model_.blocks) all.push_back({b.name});
+    for (const auto& g : model_.grids) all.push_back({g.name});
+    refer_name(name, where, path, all, "block or grid");
+  }
+
+  void claim_name(const Fields& f, std::set<std::string>& used, const std::string& what) {
+    if (!f.has("name")) return;
+    const std::string name = f.get<std::string>("name");
+    if (name.empty() || name.find_first_of(".,\"\n[]") != std::string::npos)
+      findings_.error(f.where("name"), f.path_of("name"), fmt::format("\"{}\" is no name", name),
+                      "names are not empty and hold no dot, comma, quote or bracket");
+    if (!used.insert(name).second)
+      findings_.error(f.where("name"), f.path_of("name"),
+                      fmt::format("a second {} is called \"{}\"", what, name));
+  }
+
+  Motion motion(const Fields& f, std::string_view key) {
+    const MotionText m = f.get<MotionText>(key);
+    Motion out;
+    out.kind = static_cast<Motion::Kind>(m.kind);
+    if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
+      out.history = refer_name(m.history, f.where(key), f.path_of(key), model_.histories, "history");
+    return out;
+  }
+
+  static BlockKind block_kind(const std::string& s) {
+    return s == "rigid"    ? BlockKind::kRigid
+           : s == "fixed"  ? BlockKind::kFixed
+           : s == "driven" ? BlockKind::kDriven
+                           : BlockKind::kDeformable;
+  }
+
+  // --- content ---
+
+  bool read_top() {
+    const Fields f = read_section(section_spec("top"), source_.root, "", {1, 1, ""}, source_, findings_);
+    model_.title = f.get<std::string>("title");
+    const auto format = f.get<int64_t>("talus", kModelFormat);
+    if (format > kModelFormat) {
+      findings_.error(
+          f.where("talus"), "talus",
+          fmt::format("the file is in format {}, newer than this program (talus {}), which reads format {}",
+                      format, kVersion, kModelFormat),
+          "use a newer talus; nothing of the file was interpreted");
+      return false;
+    }
+    return true;
+  }
+
+  void read_general() {
+    const Fields f = read_table("model");
+    model_.thickness = f.get("thickness", 1.0);
+    model_.plane = f.get<std::string>("plane") == "stress" ? Plane::kStress : Plane::kStrain;
+    model_.inertia = f.get<std::string>("inertia") == "lumped" ? Inertia::kLumped : Inertia::kConsistent;
+    model_.gravity = f.get<Vec2>("gravity");
+  }
+
+  void read_materials() {
+    for_named("material", [this](const std::string& name, const Fields& f) {
+      Material m;
+      m.name = name;
+      m.density = f.get("density", 1.0);
+      m.young = f.get("young", m.young);
+      m.poisson = f.get("poisson", m.poisson);
+      model_.materials.push_back(m);
+    });
+  }
+
+  void check_material_of(BlockKind kind, int material, const Where& where, const std::string& path) {
+    if (kind != BlockKind::kDeformable || material < 0) return;
+    const Material& m = model_.materials[static_cast<size_t>(material)];
+    // one message per material, at its first user
+    if (!(std::isnan(m.young) || std::isnan(m.poisson)) || !incomplete_.insert(m.name).second) return;
+    findings_.error(where, path,
+                    fmt::format("is deformable, but material \"{}\" has no {}", m.name,
+                                std::isnan(m.young) ? "young" : "poisson"),
+                    fmt::format("give it in [material.{}], or make the block kind = \"rigid\"", m.name));
+  }
+
+  void read_joints() {
+    for_named("joint", [this](const std::string& name, const Fields& f) {
+      JointProperty j;
+      j.name = name;
+      j.bonded = f.get<std::string>("kind") == "bonded";
+      j.friction_angle = f.get("friction_angle", 0.0);
+      j.cohesion = f.get("cohesion", 0.0);
+      j.tensile_strength = f.get("tensile_strength", 0.0);
+      for (const char* key : {"friction_angle", "cohesion", "tensile_strength"}) {
+        if (j.bonded && f.given(key))
+          findings_.error(f.where(key), f.path_of(key),
+                          "has no meaning for a bonded joint, which never breaks",
+                          "leave it out, or make the joint kind = \"frictional\"");
+      }
+      model_.joints.push_back(j);
+    });
+  }
+
+  void read_histories() {
+    for_named("history", [this](const std::string& name, const Fields& f) {
+      History h;
+      h.name = name;
+      const bool table = f.given("time") || f.given("value"), formula = f.given("expression");
+      if (table == formula) {
+        findings_.error(f.where(), f.path(), table ? "has both a table and an expression" : "is empty",
+                        "give time and value, or expression and duration");
+      } else if (formula) {
+        sample_expression(f, h);
+      } else {
+        h.time = f.get<std::vector<double>>("time");
+        h.value = f.get<std::vector<double>>("value");
+        check_table(f, h);
+      }
+      if (h.time.size() != h.value.size() || h.time.empty()) h.time = {0, 1}, h.value = {0, 0};
+      h.integral.assign(h.time.size(), 0);
+      for (size_t i = 1; i < h.time.size(); ++i)
+        h.integral[i] = h.integral[i - 1] + 0.5 * (h.time[i] - h.time[i - 1]) * (h.value[i] + h.value[i - 1]);
+      model_.histories.push_back(std::move(h));
+    });
+  }
+
+  void check_table(const Fields& f, const History& h) {
+    if (h.time.size() != h.value.size()) {
+      findings_.error(f.where("value"), f.path(),
+                      fmt::format("has {} times and {} values", h.time.size(), h.value.size()));
+    } else if (h.time.size() < 2) {
+      findings_.error(f.where("time"), f.path_of("time"), "needs at least two points");
+    }
+    for (size_t i = 1; i < h.time.size(); ++i) {
+      if (h.time[i] > h.time[i - 1]) continue;
+      findings_.error(f.where("time"), f.path_of("time"),
+                      fmt::format("does not rise: {:g} s is followed by {:g} s", h.time[i - 1], h.time[i]));
+      break;
+    }
+  }
+
+  void sample_expression(const Fields& f, History& h) {
+    if (!f.has("duration")) {
+      findings_.error(f.where("expression"), f.path_of("duration"), "is missing",
+                      "an expression is sampled from t = 0 to duration");
+      return;
+    }
+    const double duration = f.get<double>("duration");
+    const auto n = f.get<int64_t>("samples", 10000);
+    std::string trouble;
+    for (int64_t i = 0; i <= n; ++i)
+      h.time.push_back(duration * static_cast<double>(i) / static_cast<double>(n));
+    h.value = evaluate_expression(f.get<std::string>("expression"), h.time, trouble);
+    if (!trouble.empty()) findings_.error(f.where("expression"), f.path_of("expression"), trouble);
+  }
+
+  void read_blocks() {
+    for_list("block", [this](const Fields& f) {
+      claim_name(f, block_names_, "block or grid");
+      BlockInput b;
+      b.name = f.get<std::string>("name");
+      b.polygon = f.get<std::vector<Vec2>>("polygon");
+      b.where = f.given("polygon") ? f.where("polygon") : f.where();
+      b.material = refer(f, "material", model_.materials, "material");
+      b.kind = block_kind(f.get<std::string>("kind"));
+      b.velocity = f.get<Vec2>("velocity");
+      b.spin = f.get("spin", 0.0);
+      b.motion_x = motion(f, "motion_x");
+      b.motion_y = motion(f, "motion_y");
+      b.motion_rotation = motion(f, "motion_rotation");
+      for (const char* key : {"motion_x", "motion_y", "motion_rotation"}) {
+        if (f.given(key) && b.kind != BlockKind::kDriven)
+          findings_.error(f.where(key), f.path_of(key), "is only for a block of kind = \"driven\"",
+                          "use a [[support]] to move points of other blocks");
+        if (f.get<MotionText>(key).kind == MotionText::kFree)
+          findings_.error(f.where(key), f.path_of(key), "a driven block has no free axis",
+                          "make the block \"rigid\" and drive it by a [[support]]");
+      }
+      if (b.kind == BlockKind::kFixed || b.kind == BlockKind::kDriven) {
+        for (const char* key : {"velocity", "spin"}) {
+          if (f.given(key))
+            findings_.error(
+                f.where(key), f.path_of(key),
+                fmt::format("has no meaning for a {} block", f.get<std::string>("kind")),
+                "leave it out, or use kind = \"driven\" with motion_x, motion_y, motion_rotation");
+        }
+      }
+      model_.blocks.push_back(std::move(b));
+    });
+  }
+
+  void read_grids() {
+    for_list("grid", [this](const Fields& f) {
+      claim_name(f, block_names_, "block or grid");
+      GridInput g;
+      g.name = f.get<std::string>("name");
+      g.min = f.get<Vec2>("min");
+      g.max = f.get<Vec2>("max", {1, 1});
+      const auto cells = f.get<std::array<int, 2>>("cells", {1, 1});
+      g.columns = cells[0], g.rows = cells[1];
+      g.pattern = f.get<std::string>("pattern") == "crossed_triangles" ? GridPattern::kCrossedTriangles
+                                                                       : GridPattern::kRectangles;
+      g.material = refer(f, "material", model_.materials, "material");
+      g.joint = refer(f, "joint", model_.joints, "joint");
+      g.kind = block_kind(f.get<std::string>("kind"));
+      g.velocity = f.get<Vec2>("velocity");
+      g.where = f.where();
+      if (f.has("min") && f.has("max") && !(g.min.x < g.max.x && g.min.y < g.max.y))
+        findings_.error(f.where("max"), f.path_of("max"), "must lie above and to the right of min");
+      if (static_cast<double>(g.columns) * g.rows > 1e7)
+        findings_.error(f.where("cells"), f.path_of("cells"), "makes more than ten million cells");
+      model_.grids.push_back(g);
+    });
+  }
+
+  void read_contact() {
+    const Fields f = read_table("contact");
+    model_.default_joint = refer(f, "joint", model_.joints, "joint");
+    for_list("contact_pair", [this](const Fields& p) {
+      ContactPairInput c;
+      const auto names = p.get<std::vector<std::string>>("between");
+      if (names.size() == 2) c.name_a = names[0], c.name_b = names[1];
+      for (const std::string& n : names) refer_block_or_grid(n, p.where("between"), p.path_of("between"));
+      c.joint = refer(p, "joint", model_.joints, "joint");
+      c.where = p.where();
+      model_.contact_pairs.push_back(c);
+    });
+  }
+
+  void read_supports() {
+    std::set<std::string> used;
+    for_list("support", [this, &used](const Fields& f) {
+      claim_name(f, used, "support");
+      SupportInput s;
+      s.name = f.get<std::string>("name");
+      s.where = f.where();
+      if (f.given("point") == f.given("edge")) {
+        findings_.error(f.where(), f.path(),
+                        f.given("point") ? "has both point and edge" : "has neither point nor edge",
+                        "give point = [x, y] or edge = [[x0, y0], [x1, y1]]");
+      }
+      s.from = s.to = f.get<Vec2>("point");
+      if (f.has("edge")) {
+        const auto points = f.get<std::vector<Vec2>>("edge");
+        s.is_edge = true;
+        if (points.size() != 2 || points[0] == points[1])
+          findings_.error(f.where("edge"), f.path_of("edge"), "must be a segment: two different points");
+        else
+          s.from = points[0], s.to = points[1];
+      }
+      if (f.has("block")) {
+        s.block = f.get<std::string>("block");
+        refer_block_or_grid(s.block, f.where("block"), f.path_of("block"));
+      }
+      s.x = motion(f, "x");
+      s.y = motion(f, "y");
+      if (s.x.kind == Motion::kFree && s.y.kind == Motion::kFree)
+        findings_.error(f.where(), f.path(), "is free along x and y: it supports nothing");
+      model_.supports.push_back(s);
+    });
+  }
+
+  void read_solver() {
+    const Fields f = read_table("solver");
+    model_.solver.jacobian =
+        f.get<std::string>("jacobian") == "difference" ? JacobianKind::kDifference : JacobianKind::kAnalytic;
+    model_.solver.tolerance = f.get("tolerance", 1e-10);
+    model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
+    model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";
+  }
+
+  void read_stages() {
+    std::set<std::string> used;
+    for_list("stage", [this, &used](const Fields& f) {
+      claim_name(f, used, "stage");
+      StageInput s;
+      s.name = f.get<std::string>("name");
+      s.kind = f.get<std::string>("kind") == "static" ? StageKind::kStatic : StageKind::kDynamic;
+      s.duration = f.get("duration", 1.0);
+      s.time_step = f.get("time_step", s.time_step);
+      s.safety = f.get("safety", s.safety);
+      s.moment_clamp = f.get("moment_clamp", false);
+      s.damping_mass = f.get("damping_mass", 0.0);
+      s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);
+      s.unbalanced = f.get("unbalanced", s.unbalanced);
+      s.where = f.where();
+      s.where_step = f.where("time_step");
+      if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
+        findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
+      if (s.moment_clamp && std::isnan(s.time_step))
+        findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"), "needs a time_step to clamp for",
+                        "give time_step = \"... s\"");
+      if (!std::isnan(s.time_step) && f.given("safety"))
+        findings_.error(f.where("safety"), f.path_of("safety"),
+                        "belongs to time_step = \"auto\"; the stage gives its own time_step");
+      if (!std::isnan(s.time_step) && s.time_step > s.duration)
+        findings_.error(f.where("time_step"), f.path_of("time_step"), "is longer than the stage");
+      model_.stages.push_back(s);
+    });
+    if (model_.stages.empty())
+      findings_.error({1, 1, ""}, "stage", "the file has no [[stage]]: nothing would be run",
+                      "add [[stage]] with name, kind = \"dynamic\" and duration");
+  }
+
+  void read_monitors() {
+    std::set<std::string> used;
+    for_list("monitor", [this, &used](const Fields& f) {
+      claim_name(f, used, "monitor");
+      MonitorInput m;
+      m.name = f.get<std::string>("name");
+      m.window = f.get("window", 0.0);
+      m.where = f.where();
+      const int kinds = f.given("point") + f.given("block") + f.given("support") + f.given("contact");
+      if (kinds != 1) {
+        findings_.error(f.where(), f.path(),
+                        kinds == 0 ? "does not say what to record" : "records more than one thing",
+                        "give one of point, block, support, contact");
+        return;
+      }
+      if (f.given("window") && !f.given("contact"))
+        findings_.error(f.where("window"), f.path_of("window"), "is only for contact monitors");
+      if (f.given("point")) {
+        m.point = f.get<Vec2>("point");
+        m.where = f.where("point");
+      } else if (f.given("block")) {
+        m.kind = MonitorKind::kBlock;
+        m.target_a = f.get<std::string>("block");
+        m.where = f.where("block");
+      } else if (f.given("support")) {
+        m.kind = MonitorKind::kSupport;
+        m.target_a = f.get<std::string>("support");
+        refer(f, "support", model_.supports, "support");
+      } else {
+        m.kind = MonitorKind::kContact;
+        const auto names = f.get<std::vector<std::string>>("contact");
+        if (names.size() == 2) m.target_a = names[0], m.target_b = names[1];
+        for (const std::string& n : names) refer_block_or_grid(n, f.where("contact"), f.path_of("contact"));
+      }
+      model_.monitors.push_back(m);
+    });
+  }
+
+  void read_output() {
+    const Fields f = read_table("output");
+    model_.output.history_interval = f.get("history_interval", 0.0);
+    model_.output.steps_interval = f.get("steps_interval", 0.0);
+    model_.output.field_interval = f.get("field_interval", 0.0);
+  }
+
+  const TomlSource& source_;
+  Model& model_;
+  Findings& findings_;
+  std::set<std::string> block_names_, incomplete_;
+};
+
+}  // namespace
+
+Model read_model(const std::string& file, const std::string& text, const std::vector<std::string>& overrides,
+                 Findings& findings) {
+  Model model;
+  model.file = file;
+  model.text = text;
+  for (const std::string& item : overrides) model.text += "\n# --set " + item;
+  model.hash = text_hash(model.text);
+  const TomlSource source = parse_toml(text, overrides, findings);
+  if (findings.has_errors()) return model;  // after a syntax error every further message would mislead
+  ModelReader(source, model, findings).read();
+  return model;
+}
+
+}  // namespace talus

@@ -1,0 +1,150 @@
+#include "talus/model/toml_source.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "talus/base/error.h"
+#include "talus/base/text.h"
+
+namespace talus {
+
+namespace {
+
+constexpr size_t kLargestFile = 64 << 20;  // [bytes] a model text beyond this is a mistake
+
+// Line of the first byte that no TOML text may hold (control character, broken UTF-8), or 0.
+int first_bad_line(const std::string& text) {
+  int line = 1;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c == '\n') ++line;
+    if (c < 0x20 && c != '\n' && c != '\r' && c != '\t') return line;
+    if (c < 0x80) continue;
+    const int more = c >= 0xf0 && c < 0xf5 ? 3 : c >= 0xe0 ? 2 : c >= 0xc2 ? 1 : -1;
+    if (more < 0 || c >= 0xf5) return line;
+    for (int k = 1; k <= more; ++k) {
+      const size_t at = i + static_cast<size_t>(k);
+      if (at >= text.size() || (static_cast<unsigned char>(text[at]) & 0xc0) != 0x80) return line;
+    }
+    i += static_cast<size_t>(more);
+  }
+  return 0;
+}
+
+std::vector<std::string> split(const std::string& s, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : s) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+// The entry of a list of tables called `name` (or numbered so); null when there is none.
+toml::table* find_entry(toml::array& list, const std::string& name) {
+  for (toml::node& entry : list) {
+    toml::table* t = entry.as_table();
+    if (t && (*t)["name"].value_or(std::string()) == name) return t;
+  }
+  size_t index = 0;
+  const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), index);
+  if (status == std::errc{} && end == name.data() + name.size() && index < list.size())
+    return list[index].as_table();
+  return nullptr;
+}
+
+std::string names_in(const toml::array& list) {
+  std::vector<std::string> names;
+  for (const toml::node& entry : list)
+    if (const toml::table* t = entry.as_table())
+      names.push_back((*t)["name"].value_or(std::string("(unnamed)")));
+  return join_or(names);
+}
+
+void apply_override(const std::string& item, TomlSource& source, Findings& findings) {
+  const Where where{0, 0, "--set " + item};
+  const size_t equal = item.find('=');
+  if (equal == std::string::npos || equal == 0) {
+    findings.error(where, "",
+                   "an override is written path=value, for example --set material.rock.young=\"5 GPa\"");
+    return;
+  }
+  const std::string path = item.substr(0, equal), value = item.substr(equal + 1);
+  const std::vector<std::string> parts = split(path, '.');
+  toml::table* table = &source.root;
+  for (size_t i = 0; i + 1 < parts.size(); ++i) {
+    toml::node* next = table->get(parts[i]);
+    if (!next) {
+      table->insert(parts[i], toml::table{});
+      next = table->get(parts[i]);
+    }
+    if (toml::array* list = next->as_array(); list && i + 2 < parts.size()) {
+      next = find_entry(*list, parts[++i]);
+      if (!next) {
+        findings.error(where, path, fmt::format("no {} is called \"{}\"", parts[i - 1], parts[i]),
+                       fmt::format("there is {}", names_in(*list)));
+        return;
+      }
+    }
+    table = next->as_table();
+    if (!table) {
+      findings.error(where, path, fmt::format("\"{}\" holds no further keys", parts[i]));
+      return;
+    }
+  }
+  try {
+    const toml::table parsed = toml::parse("v = " + value + "\n");
+    if (parsed.size() != 1) throw std::invalid_argument("more than one value");
+    table->insert_or_assign(parts.back(), *parsed.get("v"));
+  } catch (const std::exception&) {
+    table->insert_or_assign(parts.back(), value);  // no TOML value: a bare text such as 5 GPa
+  }
+  source.overridden[path] = where.override_text;
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::error_code ec;
+  if (std::filesystem::is_directory(path, ec))
+    throw FileError(fmt::format("{}: is a folder, not a file", path.string()));
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (in.bad()) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+  return text;
+}
+
+TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides,
+                      Findings& findings) {
+  TomlSource source;
+  if (text.size() > kLargestFile) {
+    findings.error({}, "", fmt::format("the file is larger than {}", readable_bytes(kLargestFile)));
+    return source;
+  }
+  if (const int line = first_bad_line(text); line > 0) {
+    findings.error({line, 1, ""}, "", "the line holds bytes that are not UTF-8 text",
+                   "save the file as UTF-8");
+    return source;
+  }
+  try {
+    source.root = toml::parse(text + "\n");
+  } catch (const toml::parse_error& e) {
+    const auto at = e.source().begin;
+    findings.error({static_cast<int>(at.line), static_cast<int>(at.column), ""}, "",
+                   fmt::format("syntax: {}", e.description()));
+    return source;
+  }
+  for (const std::string& item : overrides) apply_override(item, source, findings);
+  return source;
+}
+
+}  // namespace talus

@@ -1,0 +1,28 @@
+#pragma once
+// The model file as text and as a TOML tree, with the overrides of the command line merged in.
+
+#include <toml++/toml.h>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "talus/model/findings.h"
+
+namespace talus {
+
+/// Reads a whole text file. Throws FileError naming the path and the cause.
+std::string read_text_file(const std::filesystem::path& path);
+
+struct TomlSource {
+  toml::table root;
+  std::map<std::string, std::string> overridden;  // dotted path -> "--set path=value"
+};
+
+/// Parses `text`; syntax errors and broken encoding become findings.
+/// @param overrides  "a.b=c" each; c is TOML, or taken as text. Entries of lists are named by their `name`,
+/// or by
+///                   their number from 0: "block.striker.kind=rigid", "contact_pair.0.joint=glue".
+TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings);
+
+}  // namespace talus

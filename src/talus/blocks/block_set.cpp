@@ -1,0 +1,127 @@
+#include "talus/blocks/block_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "talus/base/error.h"
+
+namespace talus {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Eigenvalues s1 >= s2 of a symmetric matrix and the direction of s1.
+struct Eigen2 {
+  double s1, s2;
+  Vec2 direction1;
+};
+
+Eigen2 eigen_symmetric(const Mat2& m) {
+  const double mean = 0.5 * (m.xx + m.yy), half = 0.5 * (m.xx - m.yy);
+  const double radius = std::hypot(half, m.xy);
+  const double angle = 0.5 * std::atan2(m.xy, half);
+  const double s1 = mean + radius;
+  return {s1, std::max(det(m) / s1, 0.0), {std::cos(angle), std::sin(angle)}};
+}
+
+// Largest squared angular frequency of a free block with principal moments s1, s2 (theory 2.4): the
+// stretching modes couple through c12; the shear mode has c33 (1/s1 + 1/s2).
+double largest_frequency2(const PlaneModuli& c, double volume, double s1, double s2) {
+  const double a = c.c11 / s1, b = c.c11 / s2, off2 = c.c12 * c.c12 / (s1 * s2);
+  const double stretch = 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + off2);
+  const double shear = c.c33 * (1 / s1 + 1 / s2);
+  return volume * std::max(stretch, shear);
+}
+
+}  // namespace
+
+PlaneModuli plane_moduli(double young, double poisson, Plane plane) {
+  const double c33 = young / (2 * (1 + poisson));
+  if (plane == Plane::kStress) {
+    const double c11 = young / (1 - poisson * poisson);
+    return {c11, poisson * c11, c33};
+  }
+  const double lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  return {lambda + 2 * c33, lambda, c33};
+}
+
+BlockSet build_blocks(const Model& model, const Layout& layout) {
+  BlockSet set;
+  set.thickness = model.thickness;
+  set.vertex_begin.push_back(0);
+  for (const BlockShape& shape : layout.blocks) {
+    const Material& material = model.materials[static_cast<size_t>(shape.material)];
+    const PolygonMoments m = polygon_moments(shape.polygon);
+    const double lump = model.inertia == Inertia::kLumped && shape.kind == BlockKind::kDeformable ? 3 : 1;
+    const Mat2 inertia = (lump * material.density * model.thickness) * m.second;
+
+    ++set.count;
+    set.name.push_back(shape.name);
+    set.group.push_back(shape.group);
+    set.kind.push_back(shape.kind);
+    set.material.push_back(shape.material);
+    set.centroid.push_back(m.centroid);
+    set.volume.push_back(m.area * model.thickness);
+    set.mass.push_back(material.density * m.area * model.thickness);
+    set.inertia.push_back(inertia);
+    set.inertia_inverse.push_back(inverse(inertia));
+    set.polar_inertia.push_back(trace(inertia));
+    set.moduli.push_back(shape.kind == BlockKind::kDeformable
+                             ? plane_moduli(material.young, material.poisson, model.plane)
+                             : PlaneModuli{});
+    set.size.push_back(std::sqrt(m.area));
+    for (const Vec2 p : shape.polygon) set.arm.push_back(p - m.centroid);
+    set.vertex_begin.push_back(static_cast<int>(set.arm.size()));
+  }
+  return set;
+}
+
+double stable_step_of(const BlockSet& blocks, int i) {
+  const auto k = static_cast<size_t>(i);
+  if (blocks.kind[k] != BlockKind::kDeformable) return kInfinity;
+  const Eigen2 e = eigen_symmetric(blocks.inertia[k]);
+  return 2 / std::sqrt(largest_frequency2(blocks.moduli[k], blocks.volume[k], e.s1, e.s2));
+}
+
+StableStep stable_step(const BlockSet& blocks) {
+  StableStep least{kInfinity, -1};
+  for (int i = 0; i < blocks.count; ++i) {
+    const double dt = stable_step_of(blocks, i);
+    if (dt < least.dt) least = {dt, i};
+  }
+  return least;
+}
+
+void clamp_moments(BlockSet& blocks, double dt) {
+  const double allowed = 4 / (dt * dt);
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (stable_step_of(blocks, i) >= dt) continue;
+    const Eigen2 e = eigen_symmetric(blocks.inertia[k]);
+    const PlaneModuli& c = blocks.moduli[k];
+    const auto fits = [&](double s1, double s2) {
+      return largest_frequency2(c, blocks.volume[k], s1, s2) <= allowed;
+    };
+
+    // bisect on s2, raised up to s1; a block too small in both directions is raised as a whole
+    double s1 = e.s1, s2 = e.s2;
+    if (!fits(s1, s1)) s1 = s2 = s1 * largest_frequency2(c, blocks.volume[k], s1, s1) / allowed * (1 + 1e-12);
+    double low = e.s2, high = s1;
+    for (int n = 0; n < 200 && high - low > 1e-13 * high; ++n) {
+      const double middle = 0.5 * (low + high);
+      (fits(s1, middle) ? high : low) = middle;
+    }
+    s2 = high;
+
+    const Vec2 d1 = e.direction1, d2 = turn_left(d1);
+    blocks.inertia[k] = s1 * outer(d1, d1) + s2 * outer(d2, d2);
+    blocks.inertia_inverse[k] = inverse(blocks.inertia[k]);
+    blocks.polar_inertia[k] = s1 + s2;
+    ++blocks.clamped;
+    blocks.largest_clamp = std::max(blocks.largest_clamp, s2 / e.s2);
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,74 @@
+#pragma once
+// The blocks of a stage: everything about them that a step does not change, in flat arrays.
+// A block is an affine body in reference form, x = c + F X. Theory: docs/theory.md section 1.
+
+#include <string>
+#include <vector>
+
+#include "talus/base/vec2.h"
+#include "talus/cut/layout.h"
+
+namespace talus {
+
+/// Plane elastic moduli [Pa] of a deformable block: normal stress = c11 e_xx + c12 e_yy, shear = c33 g_xy.
+struct PlaneModuli {
+  double c11 = 0, c12 = 0, c33 = 0;
+};
+
+PlaneModuli plane_moduli(double young, double poisson, Plane plane);
+
+struct BlockSet {
+  int count = 0;
+  double thickness = 1;  // [m]
+
+  std::vector<std::string> name;  // [count]
+  std::vector<int> group;         // [count]
+  std::vector<BlockKind> kind;    // [count]
+  std::vector<int> material;      // [count]
+  std::vector<Vec2> centroid;     // [count] reference centroid c0 [m]
+  std::vector<double> volume;     // [count] area x thickness [m3]
+  std::vector<double> mass;       // [count] [kg]
+  std::vector<Mat2> inertia;  // [count] S0 = density x integral X X^T dV [kg m2], as used (lumped, clamped)
+  std::vector<Mat2> inertia_inverse;  // [count] deformable: S0^-1; otherwise unused
+  std::vector<double> polar_inertia;  // [count] trace of S0: moment of inertia of a rigid block [kg m2]
+  std::vector<PlaneModuli> moduli;    // [count]
+  std::vector<double> size;           // [count] square root of the area [m]
+
+  std::vector<int> vertex_begin;  // [count + 1]
+  std::vector<Vec2> arm;          // [n_vertices] reference arms X from the centroid, counter-clockwise [m]
+
+  int clamped = 0;           // blocks whose inertia was raised (moment clamp)
+  double largest_clamp = 1;  // largest factor by which an eigenvalue of S0 was raised
+
+  bool moves_freely(int i) const {
+    return kind[static_cast<size_t>(i)] == BlockKind::kDeformable ||
+           kind[static_cast<size_t>(i)] == BlockKind::kRigid;
+  }
+  int vertex_count(int i) const {
+    return vertex_begin[static_cast<size_t>(i) + 1] - vertex_begin[static_cast<size_t>(i)];
+  }
+  /// Reference arm of corner k of block i.
+  Vec2 corner(int i, int k) const {
+    return arm[static_cast<size_t>(vertex_begin[static_cast<size_t>(i)] + k)];
+  }
+};
+
+/// Blocks of a layout, with exact mass properties.
+BlockSet build_blocks(const Model& model, const Layout& layout);
+
+/// Largest stable step [s] of central differences for block i on its own (theory 2.4); infinite for blocks
+/// that do not deform. Ties and contacts between blocks never lower it.
+double stable_step_of(const BlockSet& blocks, int i);
+
+struct StableStep {
+  double dt = 0;   // [s] smallest over all blocks; infinite when no block deforms
+  int block = -1;  // the block that sets it
+};
+
+StableStep stable_step(const BlockSet& blocks);
+
+/// Raises the smaller eigenvalue of S0 of every block whose stable step lies below `dt` until it allows `dt`.
+/// Mass is untouched; the inertia of the thin direction (and of rotation) grows. Counts in `clamped`.
+void clamp_moments(BlockSet& blocks, double dt);
+
+}  // namespace talus

@@ -1,0 +1,67 @@
+#include "talus/blocks/state.h"
+
+namespace talus {
+
+namespace {
+
+// Rotated-frame strain U - I of F = I + H with F = R U, and the rotation (cos, sin) of R. Everything is
+// formed from H, so that strains far below round-off of 1 keep their digits.
+struct Polar {
+  double c, s;           // rotation
+  double exx, eyy, exy;  // U - I
+};
+
+Polar polar_strain(const Mat2& H) {
+  const double a = 2 + H.xx + H.yy, b = H.yx - H.xy;
+  const double r = std::hypot(a, b);
+  const double c = a / r, s = b / r;
+  const double c1 = -b * b / (r * (r + a));  // c - 1
+  return {c, s, c1 + c * H.xx + s * H.yx, c1 + c * H.yy - s * H.xy,
+          0.5 * (c * (H.xy + H.yx) + s * (H.yy - H.xx))};
+}
+
+}  // namespace
+
+State initial_state(const BlockSet& blocks, const Layout& layout) {
+  State s;
+  const auto n = static_cast<size_t>(blocks.count);
+  s.displacement.resize(n);
+  s.strain_part.resize(n);
+  s.angle.resize(n);
+  s.rate.resize(n);
+  s.contact_force.resize(n);
+  for (size_t i = 0; i < n; ++i) {
+    if (!blocks.moves_freely(static_cast<int>(i))) continue;
+    s.rate[i] = {layout.blocks[i].velocity, spin_matrix(layout.blocks[i].spin)};
+  }
+  return s;
+}
+
+Mat2 piola_stress(const PlaneModuli& k, const Mat2& H) {
+  const Polar p = polar_strain(H);
+  const double txx = k.c11 * p.exx + k.c12 * p.eyy, tyy = k.c12 * p.exx + k.c11 * p.eyy,
+               txy = 2 * k.c33 * p.exy;
+  // P = R T; T is coaxial with U for an isotropic law, so this is the derivative of the energy and P F^T is
+  // symmetric: no torque comes from the stress
+  return {p.c * txx - p.s * txy, p.c * txy - p.s * tyy, p.s * txx + p.c * txy, p.s * txy + p.c * tyy};
+}
+
+double strain_energy_density(const PlaneModuli& k, const Mat2& H) {
+  const Polar p = polar_strain(H);
+  return 0.5 *
+         (k.c11 * (p.exx * p.exx + p.eyy * p.eyy) + 2 * k.c12 * p.exx * p.eyy + 4 * k.c33 * p.exy * p.exy);
+}
+
+Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
+  const auto k = static_cast<size_t>(i);
+  if (blocks.kind[k] != BlockKind::kDeformable) return {};
+  const Mat2 F = kIdentity + state.strain_part[k];
+  return (1 / det(F)) * (piola_stress(blocks.moduli[k], state.strain_part[k]) * transpose(F));
+}
+
+Mat2 rotation_minus_identity(double angle) {
+  const double h = std::sin(0.5 * angle), s = std::sin(angle), c1 = -2 * h * h;
+  return {c1, -s, s, c1};
+}
+
+}  // namespace talus

@@ -1,0 +1,125 @@
+#pragma once
+// Everything that a step changes. Copying a State is a checkpoint.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "talus/base/vec2.h"
+#include "talus/blocks/block_set.h"
+
+namespace talus {
+
+/// Rate of motion of a block: velocity of the centroid a [m/s] and of the deformation gradient G [1/s].
+/// For blocks that do not deform, G is the spin matrix and acts on the arm as it lies now.
+struct BlockRate {
+  Vec2 a;
+  Mat2 G;
+};
+
+/// Generalised force on a block: resultant f [N] and Q = sum of f X^T - V P [N m]. Conjugate to BlockRate.
+struct BlockForce {
+  Vec2 f;
+  Mat2 Q;
+
+  BlockForce& operator+=(const BlockForce& o) {
+    f += o.f;
+    Q += o.Q;
+    return *this;
+  }
+};
+
+inline BlockForce operator*(double s, const BlockForce& p) { return {s * p.f, s * p.Q}; }
+inline BlockForce operator+(BlockForce p, const BlockForce& q) { return p += q; }
+/// Power of a force, or energy of an impulse, at a rate.
+inline double work(const BlockForce& p, const BlockRate& v) { return dot(p.f, v.a) + contract(p.Q, v.G); }
+inline BlockRate mean(const BlockRate& u, const BlockRate& v) {
+  return {0.5 * (u.a + v.a), 0.5 * (u.G + v.G)};
+}
+
+/// A contact is recognised from step to step by the corner of `block_a` and the edge of `block_b` it lies on;
+/// edge k runs from corner k to corner k + 1.
+struct ContactKey {
+  int block_a = -1, vertex = -1, block_b = -1, edge = -1;
+
+  friend bool operator==(const ContactKey&, const ContactKey&) = default;
+  friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
+};
+
+/// What a contact carries to the next step.
+struct ContactMemory {
+  ContactKey key;
+  std::array<double, 2> force{};  // normal, tangential [N]
+  double anchor = 0;              // slip coordinate at which the contact sticks [m]
+};
+
+/// Condition of a face that was intact at the start and may break.
+struct FaceState {
+  bool broken = false;
+  std::array<double, 4> mean_force{};  // running mean of normal, tangential of point 0 and of point 1 [N]
+};
+
+/// Work done since the start [J], by cause; > 0: energy given to the blocks.
+struct WorkDone {
+  double loads = 0, supports = 0, bonds = 0, contact_closing = 0, friction = 0, damping = 0;
+
+  double total() const { return loads + supports + bonds + contact_closing + friction + damping; }
+};
+
+struct State {
+  double time = 0;       // [s]
+  int64_t step = 0;      // steps completed
+  double dt_before = 0;  // length of the step before [s]; 0 at the start, which makes the first half step
+
+  std::vector<Vec2> displacement;  // [count] c - c0 [m]
+  std::vector<Mat2> strain_part;   // [count] F - I
+  std::vector<double> angle;       // [count] rotation of blocks that do not deform [rad]
+  std::vector<BlockRate> rate;     // [count] at the middle of the step before; the initial rate at the start
+  std::vector<BlockForce> contact_force;  // [count] of all rows, at the step before [N], [N m]
+
+  std::vector<std::array<double, 2>> bond_force;     // [n_bond_points] normal, tangential [N]
+  std::vector<FaceState> face;                       // [n_bond_faces]
+  std::vector<std::array<double, 2>> support_force;  // [n_supported_points] x, y [N]
+  std::vector<ContactMemory> contacts;               // sorted by key
+
+  WorkDone work;               // through the middle of the step before
+  double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
+  double largest_kinetic = 0;  // since the start of the stage [J]
+};
+
+/// State at rest position with the initial velocities of the layout.
+State initial_state(const BlockSet& blocks, const Layout& layout);
+
+/// Where arm X of block i is now, relative to the block's reference centroid [m]: d + X + (F - I) X.
+inline Vec2 offset_now(const State& s, size_t i, Vec2 X) {
+  return s.displacement[i] + X + s.strain_part[i] * X;
+}
+
+/// Displacement of the material point at arm X of block i [m]; no digits are lost far from the origin.
+inline Vec2 displacement_at(const State& s, size_t i, Vec2 X) {
+  return s.displacement[i] + s.strain_part[i] * X;
+}
+
+/// The arm on which G acts: X of a deformable block, the turned arm of any other.
+inline Vec2 acting_arm(const BlockSet& b, const State& s, size_t i, Vec2 X) {
+  return b.kind[i] == BlockKind::kDeformable ? X : X + s.strain_part[i] * X;
+}
+
+/// Velocity at an acting arm.
+inline Vec2 velocity_at(const BlockRate& v, Vec2 acting) { return v.a + v.G * acting; }
+
+/// First Piola-Kirchhoff stress P of a deformable block: linear elastic in the rotated frame (theory 1.5)
+/// [Pa].
+/// @param H  F - I
+Mat2 piola_stress(const PlaneModuli& c, const Mat2& H);
+
+/// Strain energy of the same law per reference volume [J/m3].
+double strain_energy_density(const PlaneModuli& c, const Mat2& H);
+
+/// Cauchy stress P F^T / det F [Pa]; zero for blocks that do not deform.
+Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i);
+
+/// Rotation matrix minus identity, without cancellation for small angles.
+Mat2 rotation_minus_identity(double angle);
+
+}  // namespace talus

@@ -1,0 +1,228 @@
+#include "talus/cut/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "talus/base/error.h"
+#include "talus/base/text.h"
+#include "talus/geometry/polygon_check.h"
+
+namespace talus {
+
+namespace {
+
+// Overlap smaller than this share of the smaller block is round-off of the coordinates, not a mistake.
+constexpr double kOverlapShare = 1e-9;
+
+// Lengths below this share of the model's size are the same point.
+constexpr double kPointShare = 1e-9;
+
+void add_grid(const GridInput& g, int group, Layout& layout) {
+  // corners from one formula, so that neighbours share them to the last bit
+  const auto x = [&g](int i) {
+    return i == g.columns ? g.max.x : g.min.x + (g.max.x - g.min.x) * i / g.columns;
+  };
+  const auto y = [&g](int j) { return j == g.rows ? g.max.y : g.min.y + (g.max.y - g.min.y) * j / g.rows; };
+  const auto add = [&](std::string name, Polygon polygon) {
+    BlockShape b;
+    b.name = std::move(name);
+    b.group = group;
+    b.polygon = std::move(polygon);
+    b.material = g.material;
+    b.kind = g.kind;
+    b.velocity = g.velocity;
+    layout.blocks.push_back(std::move(b));
+  };
+  for (int j = 0; j < g.rows; ++j) {
+    for (int i = 0; i < g.columns; ++i) {
+      const Vec2 a{x(i), y(j)}, b{x(i + 1), y(j)}, c{x(i + 1), y(j + 1)}, d{x(i), y(j + 1)};
+      if (g.pattern == GridPattern::kRectangles) {
+        add(fmt::format("{}[{},{}]", g.name, i, j), {a, b, c, d});
+      } else {
+        const Vec2 middle = 0.5 * (a + c);
+        const Vec2 corner[4] = {a, b, c, d};
+        for (int k = 0; k < 4; ++k)
+          add(fmt::format("{}[{},{},{}]", g.name, i, j, k), {corner[k], corner[(k + 1) % 4], middle});
+      }
+    }
+  }
+}
+
+void check_overlaps(const Model& model, const Layout& layout, Findings& findings) {
+  std::vector<Box> boxes;
+  for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
+  const int own_blocks = static_cast<int>(model.blocks.size());
+  const auto where = [&](const BlockShape& b) {
+    return b.group < own_blocks ? model.blocks[static_cast<size_t>(b.group)].where
+                                : model.grids[static_cast<size_t>(b.group - own_blocks)].where;
+  };
+  for (const auto& [i, j] : close_pairs(boxes, 0)) {
+    const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
+    if (a.group == b.group) continue;  // cells of one grid share their corners exactly
+    const Overlap overlap = polygon_overlap(a.polygon, b.polygon);
+    const double smaller = std::min(signed_area(a.polygon), signed_area(b.polygon));
+    if (overlap.area <= kOverlapShare * smaller) continue;
+    findings.error(where(b), b.name,
+                   fmt::format("overlaps \"{}\" by {:.3g} m2 around ({:.6g}, {:.6g})", a.name, overlap.area,
+                               overlap.at.x, overlap.at.y),
+                   "blocks may touch but not share area; move or trim one of them");
+  }
+}
+
+double model_size(const Layout& layout) {
+  Box all = bounding_box(layout.blocks[0].polygon);
+  for (const BlockShape& b : layout.blocks) {
+    const Box box = bounding_box(b.polygon);
+    all.min = {std::min(all.min.x, box.min.x), std::min(all.min.y, box.min.y)};
+    all.max = {std::max(all.max.x, box.max.x), std::max(all.max.y, box.max.y)};
+  }
+  return norm(all.max - all.min);
+}
+
+void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
+  const double tolerance = kPointShare * model_size(layout);
+  for (const MonitorInput& m : model.monitors) {
+    const std::string path = "monitor." + m.name;
+    if (m.kind == MonitorKind::kPoint && blocks_at(layout, m.point, tolerance).empty()) {
+      double nearest = std::numeric_limits<double>::infinity();
+      std::string name;
+      for (const BlockShape& b : layout.blocks) {
+        for (size_t i = 0; i < b.polygon.size(); ++i) {
+          const double d = distance_to_segment(m.point, b.polygon[i], b.polygon[(i + 1) % b.polygon.size()]);
+          if (d < nearest) nearest = d, name = b.name;
+        }
+      }
+      findings.error(m.where, path,
+                     fmt::format("({:g}, {:g}) lies outside every block", m.point.x, m.point.y),
+                     fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
+    }
+    if (m.kind == MonitorKind::kBlock && layout.blocks_called(m.target_a).size() != 1) {
+      const bool grid = layout.find_group(m.target_a) >= 0;
+      std::vector<std::string> names;
+      for (const BlockShape& b : layout.blocks) names.push_back(b.name);
+      const std::string near = closest_name(m.target_a, names);
+      findings.error(
+          m.where, path,
+          grid ? fmt::format("\"{}\" is a grid, not one block", m.target_a)
+               : fmt::format("there is no block called \"{}\"", m.target_a),
+          grid           ? fmt::format("name one of its blocks, for example \"{}\"",
+                                       layout.blocks[static_cast<size_t>(layout.blocks_called(m.target_a)[0])].name)
+          : near.empty() ? ""
+                         : fmt::format("did you mean \"{}\"?", near));
+    }
+  }
+}
+
+}  // namespace
+
+int Layout::joint_between(int group_a, int group_b) const {
+  const auto it = pair_joint.find(std::minmax(group_a, group_b));
+  return it == pair_joint.end() ? default_joint : it->second;
+}
+
+int Layout::find_group(const std::string& name) const {
+  const auto it = std::find(groups.begin(), groups.end(), name);
+  return it == groups.end() ? -1 : static_cast<int>(it - groups.begin());
+}
+
+std::vector<int> Layout::blocks_called(const std::string& name) const {
+  const int group = find_group(name);
+  std::vector<int> list;
+  for (size_t i = 0; i < blocks.size(); ++i)
+    if (blocks[i].group == group || blocks[i].name == name) list.push_back(static_cast<int>(i));
+  return list;
+}
+
+Layout make_layout(const Model& model, Findings& findings) {
+  Layout layout;
+  layout.default_joint = model.default_joint;
+  bool sound = true;
+  for (const BlockInput& in : model.blocks) {
+    layout.groups.push_back(in.name);
+    const std::string defect = polygon_defect(in.polygon);
+    if (!defect.empty()) {
+      findings.error(in.where, "block." + in.name + ".polygon", defect);
+      sound = false;
+      continue;
+    }
+    BlockShape b{in.name,     static_cast<int>(layout.groups.size()) - 1,
+                 in.polygon,  in.material,
+                 in.kind,     in.velocity,
+                 in.spin,     in.motion_x,
+                 in.motion_y, in.motion_rotation};
+    if (signed_area(b.polygon) < 0) std::reverse(b.polygon.begin(), b.polygon.end());
+    layout.blocks.push_back(std::move(b));
+  }
+  for (const GridInput& g : model.grids) {
+    layout.groups.push_back(g.name);
+    const int group = static_cast<int>(layout.groups.size()) - 1;
+    add_grid(g, group, layout);
+    layout.pair_joint[{group, group}] = g.joint;
+  }
+  for (const ContactPairInput& p : model.contact_pairs) {
+    const int a = layout.find_group(p.name_a), b = layout.find_group(p.name_b);
+    if (a == b) findings.error(p.where, "contact_pair", "names the same block or grid twice");
+    layout.pair_joint[std::minmax(a, b)] = p.joint;
+  }
+  if (layout.blocks.empty() && sound)
+    findings.error({1, 1, ""}, "block", "the model has no block", "add a [[block]] or a [[grid]]");
+  if (layout.blocks.empty() || !sound) return layout;
+
+  check_overlaps(model, layout, findings);
+  check_monitors(model, layout, findings);
+  for (const SupportInput& s : model.supports) {
+    if (corners_of_support(layout, s).empty())
+      findings.error(
+          s.where, "support." + s.name,
+          s.is_edge ? "no block edge lies on the segment" : "the point lies on no block",
+          s.is_edge ? "give a segment along block edges, corners included" : "give a point of a block");
+  }
+  return layout;
+}
+
+std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {
+  std::vector<int> list;
+  for (size_t i = 0; i < layout.blocks.size(); ++i) {
+    const Box box = bounding_box(layout.blocks[i].polygon);
+    if (point.x < box.min.x - tolerance || point.x > box.max.x + tolerance ||
+        point.y < box.min.y - tolerance || point.y > box.max.y + tolerance)
+      continue;
+    if (contains(layout.blocks[i].polygon, point, tolerance)) list.push_back(static_cast<int>(i));
+  }
+  return list;
+}
+
+std::vector<SupportedCorner> corners_of_support(const Layout& layout, const SupportInput& support) {
+  const double tolerance = kPointShare * model_size(layout);
+  std::vector<int> candidates;
+  if (support.block.empty()) {
+    for (size_t i = 0; i < layout.blocks.size(); ++i) candidates.push_back(static_cast<int>(i));
+  } else {
+    candidates = layout.blocks_called(support.block);
+  }
+
+  std::vector<SupportedCorner> corners;
+  for (const int i : candidates) {
+    const Polygon& polygon = layout.blocks[static_cast<size_t>(i)].polygon;
+    const auto on_segment = [&](size_t k) {
+      return distance_to_segment(polygon[k % polygon.size()], support.from, support.to) <= tolerance;
+    };
+    for (size_t k = 0; k < polygon.size(); ++k) {
+      const bool edge_here = on_segment(k + 1) || on_segment(k + polygon.size() - 1);
+      if (on_segment(k) && (edge_here || !support.is_edge))
+        corners.push_back({i, static_cast<int>(k), polygon[k]});
+    }
+  }
+  if (corners.empty() && !support.is_edge) {
+    // no corner at the point: the first block around it
+    for (const int i : blocks_at(layout, support.from, tolerance)) {
+      if (std::find(candidates.begin(), candidates.end(), i) == candidates.end()) continue;
+      corners.push_back({i, -1, support.from});
+      break;
+    }
+  }
+  return corners;
+}
+
+}  // namespace talus

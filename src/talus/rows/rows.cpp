@@ -1,0 +1,54 @@
+#include "talus/rows/rows.h"
+
+namespace talus {
+
+Mat2 influence(const BlockSet& blocks, size_t i, Vec2 at, Vec2 from) {
+  switch (blocks.kind[i]) {
+    case BlockKind::kDeformable: {
+      const double w = 1 / blocks.mass[i] + dot(at, blocks.inertia_inverse[i] * from);
+      return {w, 0, 0, w};
+    }
+    case BlockKind::kRigid: {
+      const double m = 1 / blocks.mass[i];
+      return Mat2{m, 0, 0, m} + (1 / blocks.polar_inertia[i]) * outer(turn_left(at), turn_left(from));
+    }
+    default:
+      return {};
+  }
+}
+
+BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force) {
+  switch (blocks.kind[i]) {
+    case BlockKind::kDeformable:
+      return {force.f / blocks.mass[i], force.Q * blocks.inertia_inverse[i]};
+    case BlockKind::kRigid:
+      return {force.f / blocks.mass[i], spin_matrix((force.Q.yx - force.Q.xy) / blocks.polar_inertia[i])};
+    default:
+      return {};
+  }
+}
+
+BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate) {
+  switch (blocks.kind[i]) {
+    case BlockKind::kDeformable:
+      return {blocks.mass[i] * rate.a, rate.G * blocks.inertia[i]};
+    case BlockKind::kRigid:
+      return {blocks.mass[i] * rate.a, (0.5 * blocks.polar_inertia[i]) * rate.G};
+    default:
+      return {};
+  }
+}
+
+std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate) {
+  Vec2 v;
+  if (p.block_a >= 0) v += velocity_at(rate[static_cast<size_t>(p.block_a)], p.arm_a);
+  if (p.block_b >= 0) v -= velocity_at(rate[static_cast<size_t>(p.block_b)], p.arm_b);
+  return {dot(p.normal, v), dot(turn_right(p.normal), v)};
+}
+
+BlockForce impulse_on(const PointRows& p, const Impulse& impulse, double sign) {
+  const Vec2 f = sign * (impulse[0] * p.normal + impulse[1] * turn_right(p.normal));
+  return {f, outer(f, sign > 0 ? p.arm_a : p.arm_b)};
+}
+
+}  // namespace talus

@@ -1,0 +1,70 @@
+#pragma once
+// The plain rows that tie points of blocks together: all a solver sees. A row knows bounds, compliance and
+// bias; it knows no joint, support or bolt. Theory: docs/theory.md section 4.
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "talus/blocks/state.h"
+
+namespace talus {
+
+/// Residual of a row: e = u + bias + compliance p, with u the relative velocity along it at the end of the
+/// kick. Inside the bounds of p, e = 0; at the lower bound e >= 0; at the upper bound e <= 0.
+struct Row {
+  double lower = -std::numeric_limits<double>::infinity();  // of the impulse p [N s]
+  double upper = std::numeric_limits<double>::infinity();
+  double bias = 0;        // [m/s]
+  double compliance = 0;  // [1/kg]
+};
+
+/// Two rows, normal and tangential, at one pair of material points. The impulse on block a is
+/// p_n normal + p_t tangent, on block b the opposite; u = (velocity of a - velocity of b) along each.
+struct PointRows {
+  int block_a = -1, block_b = -1;  // -1: the ground, which stands still
+  Vec2 arm_a, arm_b;               // acting arms (see acting_arm)
+  Vec2 normal;                     // unit, from b into a; the tangent is the normal turned clockwise
+  Row row[2];                      // normal, tangential
+  bool cone = false;               // the tangential bounds are -+ max(0, cohesion + friction p_n) instead
+  double friction = 0;             // tan of the friction angle
+  double cohesion = 0;             // [N s]
+};
+
+using Impulse = std::array<double, 2>;  // normal, tangential [N s]
+
+struct RowSet {
+  std::vector<PointRows> points;
+  std::vector<Impulse> impulse;  // in: first guess; out: solution
+
+  void clear() { points.clear(), impulse.clear(); }
+  void add(const PointRows& p, const Impulse& guess) { points.push_back(p), impulse.push_back(guess); }
+};
+
+/// Bounds of row k of a point when its normal impulse is p_n.
+struct Bounds {
+  double lower, upper;
+};
+inline Bounds bounds_of(const PointRows& p, int k, double p_n) {
+  if (k == 0 || !p.cone) return {p.row[k].lower, p.row[k].upper};
+  const double limit = p.cohesion + p.friction * p_n;
+  return limit > 0 ? Bounds{-limit, limit} : Bounds{0, 0};
+}
+
+/// Velocity change of block i per unit impulse: at acting arm `at`, by an impulse at acting arm `from`
+/// [1/kg]. Deformable blocks: (1/m + at . S0^-1 from) I; rigid ones a full matrix; others zero (theory 1.4).
+Mat2 influence(const BlockSet& blocks, size_t i, Vec2 at, Vec2 from);
+
+/// M^-1 times a generalised force or impulse. Zero for blocks whose motion is prescribed.
+BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force);
+
+/// M times a rate.
+BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate);
+
+/// Relative velocity (normal, tangential) of a point pair when the blocks move at `rate`.
+std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate);
+
+/// Impulse of a point as generalised impulse on block a (`sign` = 1) or block b (-1).
+BlockForce impulse_on(const PointRows& p, const Impulse& impulse, double sign);
+
+}  // namespace talus

@@ -1,0 +1,138 @@
+#include "talus/solve/contact_problem.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace talus {
+
+namespace {
+
+// A point of the island seen from one of its blocks.
+struct Side {
+  int local;  // index in the island
+  double sign;
+  Vec2 arm;
+};
+
+RowState row_state(const ContactProblem& problem, size_t point, int k, double e, double p, double p_n) {
+  const PointRows& rows = problem.rows[point];
+  const Bounds b = bounds_of(rows, k, p_n);
+  const double trial = p - e / problem.diagonal[static_cast<Eigen::Index>(2 * point) + k];
+  if (trial > b.lower && trial < b.upper) return {};
+  const bool upper = trial >= b.upper;
+  const bool moves = k == 1 && rows.cone && b.upper > 0;
+  return {false, upper ? b.upper : b.lower, moves ? (upper ? rows.friction : -rows.friction) : 0};
+}
+
+std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::VectorXd& p,
+                                 const Eigen::VectorXd& e) {
+  std::vector<RowState> states(static_cast<size_t>(problem.size()));
+  for (size_t i = 0; i < problem.rows.size(); ++i) {
+    for (int k = 0; k < 2; ++k) {
+      const size_t r = 2 * i + static_cast<size_t>(k);
+      const auto row = static_cast<Eigen::Index>(r);
+      states[r] = row_state(problem, i, k, e[row], p[row], p[static_cast<Eigen::Index>(2 * i)]);
+    }
+  }
+  return states;
+}
+
+}  // namespace
+
+ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const std::vector<int>& points,
+                             const std::vector<BlockRate>& rate, double scale) {
+  ContactProblem problem;
+  problem.point = points;
+  std::vector<std::pair<int, Side>> sides;  // (block, side), sorted by block: a fixed order of sums
+  for (size_t i = 0; i < points.size(); ++i) {
+    const PointRows& p = set.points[static_cast<size_t>(points[i])];
+    problem.rows.push_back(p);
+    const int local = static_cast<int>(i);
+    if (p.block_a >= 0 && blocks.moves_freely(p.block_a)) sides.push_back({p.block_a, {local, 1, p.arm_a}});
+    if (p.block_b >= 0 && blocks.moves_freely(p.block_b)) sides.push_back({p.block_b, {local, -1, p.arm_b}});
+  }
+  std::stable_sort(sides.begin(), sides.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+
+  const int n = problem.size();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (size_t begin = 0; begin < sides.size();) {
+    size_t end = begin;
+    while (end < sides.size() && sides[end].first == sides[begin].first) ++end;
+    for (size_t i = begin; i < end; ++i) {
+      for (size_t j = begin; j < end; ++j) {
+        const Side &s = sides[i].second, &r = sides[j].second;
+        const Mat2 w =
+            (scale * s.sign * r.sign) * influence(blocks, static_cast<size_t>(sides[i].first), s.arm, r.arm);
+        const Vec2 ns = problem.rows[static_cast<size_t>(s.local)].normal,
+                   nr = problem.rows[static_cast<size_t>(r.local)].normal;
+        const Vec2 ds[2] = {ns, turn_right(ns)}, dr[2] = {nr, turn_right(nr)};
+        for (int k = 0; k < 2; ++k)
+          for (int l = 0; l < 2; ++l)
+            entries.emplace_back(2 * s.local + k, 2 * r.local + l, dot(ds[k], w * dr[l]));
+      }
+    }
+    begin = end;
+  }
+  problem.velocity_free.resize(n);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const PointRows& p = problem.rows[i];
+    const auto u = relative_velocity(p, rate);
+    for (int k = 0; k < 2; ++k) {
+      const int row = static_cast<int>(2 * i) + k;
+      problem.velocity_free[row] = u[static_cast<size_t>(k)] + p.row[k].bias;
+      entries.emplace_back(row, row, p.row[k].compliance);
+    }
+  }
+  problem.influence.resize(n, n);
+  problem.influence.setFromTriplets(entries.begin(), entries.end());
+  problem.diagonal = problem.influence.diagonal();
+  return problem;
+}
+
+Eigen::VectorXd residual(const ContactProblem& problem, const Eigen::VectorXd& p) {
+  const Eigen::VectorXd e = problem.influence * p + problem.velocity_free;
+  const std::vector<RowState> states = row_states(problem, p, e);
+  Eigen::VectorXd h(problem.size());
+  for (Eigen::Index r = 0; r < h.size(); ++r) {
+    const RowState& s = states[static_cast<size_t>(r)];
+    h[r] = s.free ? e[r] : problem.diagonal[r] * (p[r] - s.held_at);
+  }
+  return h;
+}
+
+std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::VectorXd& p) {
+  return row_states(problem, p, problem.influence * p + problem.velocity_free);
+}
+
+SparseMatrix jacobian(const ContactProblem& problem, const std::vector<RowState>& states) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<size_t>(problem.influence.nonZeros()));
+  for (int row = 0; row < problem.size(); ++row) {
+    const RowState& s = states[static_cast<size_t>(row)];
+    if (s.free) {
+      for (SparseMatrix::InnerIterator it(problem.influence, row); it; ++it)
+        entries.emplace_back(row, static_cast<int>(it.col()), it.value());
+    } else {
+      entries.emplace_back(row, row, problem.diagonal[row]);
+      if (s.slope != 0) entries.emplace_back(row, row - 1, -problem.diagonal[row] * s.slope);
+    }
+  }
+  SparseMatrix j(problem.size(), problem.size());
+  j.setFromTriplets(entries.begin(), entries.end());
+  return j;
+}
+
+Eigen::MatrixXd jacobian_by_differences(const ContactProblem& problem, const Eigen::VectorXd& p, double h) {
+  const Eigen::VectorXd at_p = residual(problem, p);
+  Eigen::MatrixXd j(problem.size(), problem.size());
+  Eigen::VectorXd shifted = p;
+  for (Eigen::Index k = 0; k < p.size(); ++k) {
+    shifted[k] = p[k] + h;
+    j.col(k) = (residual(problem, shifted) - at_p) / (shifted[k] - p[k]);
+    shifted[k] = p[k];
+  }
+  return j;
+}
+
+}  // namespace talus

@@ -1,0 +1,190 @@
+#include "talus/solve/newton.h"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <numeric>
+
+#include "talus/solve/contact_problem.h"
+
+namespace talus {
+
+namespace {
+
+// Redundant ties (a ring of tied triangles around a corner, two edges at four points) make W singular though
+// the equations stay consistent. A share of the diagonal makes the factor exist; each iteration then removes
+// all but this share of what is left, and the part of p that no motion feels is left where it was.
+constexpr double kRegularisation = 1e-9;
+
+// Solves jacobian d = -h, using that most rows are either free, where the Jacobian is the symmetric W, or
+// held.
+class Direction {
+ public:
+  explicit Direction(const ContactProblem& problem) : problem_(problem) {}
+
+  bool solve(const std::vector<RowState>& states, const Eigen::VectorXd& h, Eigen::VectorXd& d) const {
+    const bool slides =
+        std::any_of(states.begin(), states.end(), [](const RowState& s) { return s.slope != 0; });
+    return slides ? solve_general(states, h, d) : solve_symmetric(states, h, d);
+  }
+
+ private:
+  // Held rows know their change at once; the free ones are a symmetric system of W.
+  bool solve_symmetric(const std::vector<RowState>& states, const Eigen::VectorXd& h,
+                       Eigen::VectorXd& d) const {
+    const SparseMatrix& w = problem_.influence;
+    std::vector<int> free_index(states.size(), -1);
+    int n_free = 0;
+    d.resize(problem_.size());
+    for (int r = 0; r < problem_.size(); ++r) {
+      if (states[static_cast<size_t>(r)].free)
+        free_index[static_cast<size_t>(r)] = n_free++;
+      else
+        d[r] = -h[r] / problem_.diagonal[r];
+    }
+    if (n_free == 0) return true;
+
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::VectorXd rhs(n_free);
+    for (int r = 0; r < problem_.size(); ++r) {
+      const int row = free_index[static_cast<size_t>(r)];
+      if (row < 0) continue;
+      rhs[row] = -h[r];
+      for (SparseMatrix::InnerIterator it(w, r); it; ++it) {
+        const int column = free_index[static_cast<size_t>(it.col())];
+        if (column >= 0)
+          entries.emplace_back(row, column, it.value());
+        else
+          rhs[row] -= it.value() * d[it.col()];
+      }
+      entries.emplace_back(row, row, kRegularisation * problem_.diagonal[r]);
+    }
+    Eigen::SparseMatrix<double> a(n_free, n_free);
+    a.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(a);
+    if (factor.info() != Eigen::Success) return false;
+    const Eigen::VectorXd x = factor.solve(rhs);
+    if (!x.allFinite()) return false;
+    for (int r = 0; r < problem_.size(); ++r) {
+      const int row = free_index[static_cast<size_t>(r)];
+      if (row >= 0) d[r] = x[row];
+    }
+    return true;
+  }
+
+  // The bound of a sliding row follows its normal impulse: not symmetric.
+  bool solve_general(const std::vector<RowState>& states, const Eigen::VectorXd& h,
+                     Eigen::VectorXd& d) const {
+    Eigen::SparseMatrix<double> a = jacobian(problem_, states);
+    for (int r = 0; r < problem_.size(); ++r)
+      if (states[static_cast<size_t>(r)].free) a.coeffRef(r, r) += kRegularisation * problem_.diagonal[r];
+    a.makeCompressed();
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(a);
+    if (factor.info() != Eigen::Success) return false;
+    d = factor.solve(-h);
+    return d.allFinite();
+  }
+
+  const ContactProblem& problem_;
+};
+
+bool direction_by_differences(const ContactProblem& problem, const Eigen::VectorXd& p,
+                              const Eigen::VectorXd& h, Eigen::VectorXd& d) {
+  const double typical =
+      std::max(p.lpNorm<Eigen::Infinity>(), (h.cwiseQuotient(problem.diagonal)).lpNorm<Eigen::Infinity>());
+  const Eigen::MatrixXd j = jacobian_by_differences(problem, p, 1e-6 * typical);
+  // rank-revealing: redundant rows get the smallest change
+  d = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(j).solve(-h);
+  return d.allFinite();
+}
+
+// One island; returns the iterations used, negative when the residual stayed above the tolerance.
+int solve_island(const ContactProblem& problem, const SolverInput& options, double tolerance,
+                 Eigen::VectorXd& p) {
+  const Direction direction(problem);
+  Eigen::VectorXd h = residual(problem, p), d;
+  for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
+    if (h.lpNorm<Eigen::Infinity>() <= tolerance) return iteration;
+    const bool solved = options.jacobian == JacobianKind::kDifference
+                            ? direction_by_differences(problem, p, h, d)
+                            : direction.solve(row_states(problem, p), h, d);
+    if (!solved) return -iteration - 1;
+
+    // line search: halve until the residual falls. At a kink no step may fall; the full step then moves on to
+    // the next piece of the piecewise linear system, where the search starts afresh.
+    const double merit = h.squaredNorm();
+    Eigen::VectorXd full_p, full_h;
+    double share = 1;
+    for (int halvings = 0; halvings <= 8; ++halvings, share *= 0.5) {
+      const Eigen::VectorXd trial = p + share * d;
+      const Eigen::VectorXd h_trial = residual(problem, trial);
+      if (halvings == 0) full_p = trial, full_h = h_trial;
+      if (h_trial.squaredNorm() < (1 - 1e-4 * share) * merit) {
+        full_p = trial, full_h = h_trial;
+        break;
+      }
+    }
+    p = full_p, h = full_h;
+  }
+  return -options.max_iterations - 1;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet& set) {
+  std::vector<int> parent(static_cast<size_t>(blocks.count));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int i) {
+    while (parent[static_cast<size_t>(i)] != i) {
+      int& up = parent[static_cast<size_t>(i)];
+      up = parent[static_cast<size_t>(up)];
+      i = up;
+    }
+    return i;
+  };
+  const auto free_block = [&blocks](int i) { return i >= 0 && blocks.moves_freely(i); };
+  for (const PointRows& p : set.points) {
+    if (!free_block(p.block_a) || !free_block(p.block_b)) continue;
+    const int a = root(p.block_a), b = root(p.block_b);
+    parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  std::vector<std::vector<int>> islands;
+  std::vector<int> island_of(static_cast<size_t>(blocks.count), -1);
+  for (size_t i = 0; i < set.points.size(); ++i) {
+    const PointRows& p = set.points[i];
+    const int block = free_block(p.block_a) ? p.block_a : p.block_b;
+    int& island = island_of[static_cast<size_t>(root(block))];
+    if (island < 0) {
+      island = static_cast<int>(islands.size());
+      islands.emplace_back();
+    }
+    islands[static_cast<size_t>(island)].push_back(static_cast<int>(i));
+  }
+  return islands;
+}
+
+SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
+                         const SolverInput& options, double tolerance, RowSet& set) {
+  SolveReport report;
+  for (const std::vector<int>& points : find_islands(blocks, set)) {
+    const ContactProblem problem = build_problem(blocks, set, points, rate, scale);
+    Eigen::VectorXd p(problem.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      const Impulse& guess = set.impulse[static_cast<size_t>(points[i])];
+      p[static_cast<Eigen::Index>(2 * i)] = guess[0], p[static_cast<Eigen::Index>(2 * i) + 1] = guess[1];
+    }
+    const int iterations = solve_island(problem, options, tolerance, p);
+    if (iterations < 0) report.converged = false;
+    for (size_t i = 0; i < points.size(); ++i) {
+      const auto r = static_cast<Eigen::Index>(2 * i);
+      set.impulse[static_cast<size_t>(points[i])] = {p[r], p[r + 1]};
+    }
+    report.iterations = std::max(report.iterations, iterations < 0 ? -iterations - 1 : iterations);
+    report.largest_island = std::max(report.largest_island, static_cast<int>(points.size()));
+    ++report.islands;
+  }
+  return report;
+}
+
+}  // namespace talus

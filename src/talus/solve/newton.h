@@ -1,0 +1,28 @@
+#pragma once
+// Newton's method for the contact constraint equations, island by island.
+// Semismooth: the Jacobian of the exact law, with a line search. Theory: docs/theory.md section 5.
+
+#include "talus/model/model.h"
+#include "talus/rows/rows.h"
+
+namespace talus {
+
+struct SolveReport {
+  int iterations = 0;  // most over all islands
+  int islands = 0;
+  int largest_island = 0;  // points
+  bool converged = true;   // by the solver's own residual; the judge is contact_error()
+};
+
+/// Points that share a freely moving block, directly or through others. Each list rises; lists in order of
+/// their first point.
+std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet& set);
+
+/// Solves for the impulses of `set` (first guess in, solution out).
+/// @param rate       v*, rates without the rows
+/// @param scale      factor on M^-1
+/// @param tolerance  residual at which to stop [m/s]
+SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
+                         const SolverInput& options, double tolerance, RowSet& set);
+
+}  // namespace talus

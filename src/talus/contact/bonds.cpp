@@ -1,0 +1,161 @@
+#include "talus/contact/bonds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+
+// Faces of the reference shape further apart than this share of the smaller block are not in touch.
+constexpr double kTouching = 1e-6;
+
+// A face breaks when the running mean of its forces reaches this share of the limit: the mean of forces that
+// are cut off at the limit comes to the limit only in infinite time.
+constexpr double kAtLimit = 0.999;
+
+bool has_strength(const std::vector<JointProperty>& joints, int joint) {
+  if (joint < 0) return false;
+  const JointProperty& j = joints[static_cast<size_t>(joint)];
+  return j.bonded || j.cohesion > 0 || j.tensile_strength > 0;
+}
+
+// Overlaps of antiparallel edges of two blocks in contact, as faces.
+void add_faces(const BlockSet& blocks, int a, int b, std::vector<BondFace>& faces) {
+  const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
+  const double near = kTouching * std::min(blocks.size[ia], blocks.size[ib]);
+  const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
+  for (int eb = 0; eb < blocks.vertex_count(b); ++eb) {
+    const Vec2 b0 = blocks.corner(b, eb), b1 = blocks.corner(b, (eb + 1) % blocks.vertex_count(b));
+    const double length_b = norm(b1 - b0);
+    const Vec2 along = (b1 - b0) / length_b, n = turn_right(along);
+    for (int ea = 0; ea < blocks.vertex_count(a); ++ea) {
+      // ends of a's edge seen from b; antiparallel: a's second corner comes first along b
+      const Vec2 a0 = blocks.corner(a, ea), a1 = blocks.corner(a, (ea + 1) % blocks.vertex_count(a));
+      const Vec2 r0 = a0 + shift - b0, r1 = a1 + shift - b0;
+      if (std::abs(dot(n, r0)) > near || std::abs(dot(n, r1)) > near || dot(along, a1 - a0) >= 0) continue;
+      const double from = std::max(dot(along, r1), 0.0), to = std::min(dot(along, r0), length_b);
+      if (to - from <= near) continue;
+      BondFace face;
+      face.block_a = a, face.block_b = b, face.edge_b = eb;
+      face.length = to - from;
+      for (int end = 0; end < 2; ++end) {
+        const double s = end == 0 ? from : to;
+        face.arm_b[end] = b0 + s * along;
+        face.arm_a[end] = face.arm_b[end] - shift;
+      }
+      faces.push_back(face);
+    }
+  }
+}
+
+double transit_time(const Model& model, const BlockSet& blocks, int i) {
+  const auto k = static_cast<size_t>(i);
+  if (blocks.kind[k] != BlockKind::kDeformable) return 0;
+  const double density = model.materials[static_cast<size_t>(blocks.material[k])].density;
+  return blocks.size[k] / std::sqrt(blocks.moduli[k].c11 / density);
+}
+
+}  // namespace
+
+BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks) {
+  BondSet bonds;
+  std::vector<Box> boxes;
+  for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
+  double least = blocks.size[0];
+  for (const double s : blocks.size) least = std::min(least, s);
+  for (const auto& [a, b] : close_pairs(boxes, kTouching * least)) {
+    if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
+    const int joint =
+        layout.joint_between(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
+    if (!has_strength(model.joints, joint)) continue;
+    const size_t first = bonds.faces.size();
+    add_faces(blocks, a, b, bonds.faces);
+    for (size_t f = first; f < bonds.faces.size(); ++f) {
+      bonds.faces[f].joint = joint;
+      bonds.faces[f].unbreakable = model.joints[static_cast<size_t>(joint)].bonded;
+      bonds.faces[f].memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
+    }
+    // blocks of a bonded body that meet at a corner only: held by their neighbours
+    if (model.joints[static_cast<size_t>(joint)].bonded) bonds.tied.emplace_back(a, b);
+  }
+  return bonds;
+}
+
+bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
+  if (std::binary_search(bonds.tied.begin(), bonds.tied.end(), std::pair(a, b))) return true;
+  const auto before = [](const BondFace& f, const std::pair<int, int>& p) {
+    return std::pair(f.block_a, f.block_b) < p;
+  };
+  auto it = std::lower_bound(bonds.faces.begin(), bonds.faces.end(), std::pair(a, b), before);
+  for (; it != bonds.faces.end() && it->block_a == a && it->block_b == b; ++it)
+    if (!state.face[static_cast<size_t>(it - bonds.faces.begin())].broken) return true;
+  return false;
+}
+
+void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+                   const State& state, double dt, double dt_kick, RowSet& rows, std::vector<int>& owner) {
+  for (size_t f = 0; f < bonds.faces.size(); ++f) {
+    const BondFace& face = bonds.faces[f];
+    if (state.face[f].broken) continue;
+    const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
+    const int nb = blocks.vertex_count(face.block_b);
+    const Vec2 edge =
+        blocks.corner(face.block_b, (face.edge_b + 1) % nb) - blocks.corner(face.block_b, face.edge_b);
+    const Vec2 now = edge + state.strain_part[b] * edge;
+    const Vec2 normal = turn_right(now) / norm(now);
+    for (int end = 0; end < 2; ++end) {
+      PointRows p;
+      p.block_a = face.block_a, p.block_b = face.block_b;
+      p.arm_a = acting_arm(blocks, state, a, face.arm_a[end]);
+      p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
+      p.normal = normal;
+      const Vec2 apart =
+          displacement_at(state, a, face.arm_a[end]) - displacement_at(state, b, face.arm_b[end]);
+      p.row[0].bias = dot(normal, apart) / dt;
+      p.row[1].bias = dot(turn_right(normal), apart) / dt;
+      if (!face.unbreakable) {
+        const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
+        const double half_area = 0.5 * face.length * blocks.thickness;
+        p.row[0].lower = -joint.tensile_strength * half_area * dt_kick;
+        p.cone = true;
+        p.friction = std::tan(joint.friction_angle);
+        p.cohesion = joint.cohesion * half_area * dt_kick;
+      }
+      const auto& force = state.bond_force[2 * f + static_cast<size_t>(end)];
+      rows.add(p, {force[0] * dt_kick, force[1] * dt_kick});
+      owner.push_back(static_cast<int>(2 * f) + end);
+    }
+  }
+}
+
+int update_bonds(const BondSet& bonds, const std::vector<JointProperty>& joints, double thickness, double dt,
+                 State& state) {
+  int broken = 0;
+  for (size_t f = 0; f < bonds.faces.size(); ++f) {
+    const BondFace& face = bonds.faces[f];
+    FaceState& now = state.face[f];
+    if (face.unbreakable || now.broken) continue;
+    const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
+    const double half_area = 0.5 * face.length * thickness, mu = std::tan(joint.friction_angle);
+    const double share = dt / (face.memory + dt);
+    bool at_limit = true;
+    for (size_t end = 0; end < 2; ++end) {
+      const auto& force = state.bond_force[2 * f + end];
+      for (size_t k = 0; k < 2; ++k)
+        now.mean_force[2 * end + k] += share * (force[k] - now.mean_force[2 * end + k]);
+      const double normal = now.mean_force[2 * end], tangential = std::abs(now.mean_force[2 * end + 1]);
+      const bool pulled = normal < 0 && normal <= -kAtLimit * joint.tensile_strength * half_area;
+      const bool sheared =
+          tangential > 0 && tangential >= kAtLimit * std::max(0.0, joint.cohesion * half_area + mu * normal);
+      if (!pulled && !sheared) at_limit = false;
+    }
+    if (!at_limit) continue;
+    now.broken = true;
+    state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};
+    ++broken;
+  }
+  return broken;
+}
+
+}  // namespace talus

@@ -1,0 +1,44 @@
+#pragma once
+// Faces that are glued at the start: bonded joints, and frictional ones with cohesion or tensile strength
+// until they break. Each face is tied at its two ends, by material points. Theory: docs/theory.md
+// section 3.4.
+
+#include <vector>
+
+#include "talus/blocks/state.h"
+#include "talus/rows/rows.h"
+
+namespace talus {
+
+struct BondFace {
+  int block_a = -1, block_b = -1;
+  int edge_b = -1;          // its outward normal is the normal of the face
+  Vec2 arm_a[2], arm_b[2];  // reference arms of the two ends, on a and on b
+  double length = 0;        // [m]
+  int joint = -1;
+  bool unbreakable = false;
+  double memory = 0;  // [s] time over which forces are averaged before strength is judged: one block transit
+};
+
+struct BondSet {
+  std::vector<BondFace> faces;            // sorted by (block_a, block_b)
+  std::vector<std::pair<int, int>> tied;  // pairs of blocks whose contact is never looked for, sorted
+};
+
+/// Faces between all pairs of blocks whose joint is bonded or has strength, from the reference shape.
+BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks);
+
+/// Whether contact between two blocks is left to intact bonds.
+bool is_tied(const BondSet& bonds, const State& state, int a, int b);
+
+/// Rows of all intact faces (two points each), with the first guess from the last step.
+/// @param owner  gets 2 * face + end for each row added
+void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+                   const State& state, double dt, double dt_kick, RowSet& rows, std::vector<int>& owner);
+
+/// Follows the mean forces of breakable faces over a step of length dt and breaks those at their limit at
+/// both ends. Returns the number broken.
+int update_bonds(const BondSet& bonds, const std::vector<JointProperty>& joints, double thickness, double dt,
+                 State& state);
+
+}  // namespace talus

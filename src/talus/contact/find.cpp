@@ -1,0 +1,220 @@
+#include "talus/contact/find.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+
+// Two corners closer than this share of the smaller block are one place.
+constexpr double kSamePlace = 1e-6;
+
+// Edges within this angle of parallel (sine) form a face.
+constexpr double kParallel = 0.02;
+
+// How far below the tangent plane the corner's own edges may dip (sine): parallel faces must pass the
+// entrance condition in spite of round-off and of the strain of a step.
+constexpr double kEntrance = 0.02;
+
+Vec2 edge_vector(const BlockSet& blocks, const State& s, int block, int k) {
+  const int n = blocks.vertex_count(block);
+  const Vec2 e = blocks.corner(block, (k + 1) % n) - blocks.corner(block, k);
+  return e + s.strain_part[static_cast<size_t>(block)] * e;
+}
+
+bool is_convex(const BlockSet& blocks, const State& s, int block, int k) {
+  const int n = blocks.vertex_count(block);
+  return cross(edge_vector(blocks, s, block, (k + n - 1) % n), edge_vector(blocks, s, block, k)) > 0;
+}
+
+// Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards.
+bool may_enter(const BlockSet& blocks, const State& s, int block, int k, Vec2 n) {
+  const int m = blocks.vertex_count(block);
+  const Vec2 out = edge_vector(blocks, s, block, k), back = -edge_vector(blocks, s, block, (k + m - 1) % m);
+  return cross(-back, out) > 0 && dot(out, n) >= -kEntrance * norm(out) &&
+         dot(back, n) >= -kEntrance * norm(back);
+}
+
+struct Hit {
+  ContactPoint point;
+  int at_corner = -1;  // corner of b at the foot, -1 inside the edge
+};
+
+// All corner-edge pairs of corners of a over edges of b.
+void corners_over_edges(const BlockSet& blocks, const State& s, int a, int b, double margin, double same,
+                        std::vector<Hit>& hits) {
+  const int na = blocks.vertex_count(a), nb = blocks.vertex_count(b);
+  for (int v = 0; v < na; ++v) {
+    const size_t first = hits.size();
+    for (int e = 0; e < nb; ++e) {
+      const CornerEdge c = corner_over_edge(blocks, s, a, v, b, e);
+      if (std::abs(c.gap) > margin || c.along * c.length < -same || (c.along - 1) * c.length > same) continue;
+      if (!may_enter(blocks, s, a, v, c.normal)) continue;
+      Hit hit;
+      hit.point.key = {a, v, b, e};
+      hit.point.normal = c.normal;
+      hit.point.arm_a = blocks.corner(a, v);
+      const Vec2 b0 = blocks.corner(b, e), b1 = blocks.corner(b, (e + 1) % nb);
+      const double along = std::clamp(c.along, 0.0, 1.0);
+      hit.point.arm_b = b0 + along * (b1 - b0);
+      hit.point.gap = c.gap;
+      hit.point.slip = -c.along * c.length;
+      if (c.along * c.length < same) hit.at_corner = e;
+      if ((1 - c.along) * c.length < same) hit.at_corner = (e + 1) % nb;
+      hits.push_back(hit);
+    }
+    // around a convex corner of b the corner obeys the edge it is least behind
+    for (size_t i = first; i < hits.size(); ++i) {
+      for (size_t j = i + 1; j < hits.size();) {
+        const int ei = hits[i].point.key.edge, ej = hits[j].point.key.edge;
+        const bool follow = (ei + 1) % nb == ej, lead = (ej + 1) % nb == ei;
+        const int between = follow ? ej : ei;
+        if ((follow || lead) && is_convex(blocks, s, b, between)) {
+          if (hits[j].point.gap > hits[i].point.gap) std::swap(hits[i], hits[j]);
+          hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(j));
+        } else {
+          ++j;
+        }
+      }
+    }
+  }
+}
+
+// Where corner of a meets corner of b there may be hits both ways; one stays.
+void merge_corner_pairs(std::vector<Hit>& hits) {
+  const auto same_place = [](const Hit& x, const Hit& y) {
+    if (x.at_corner < 0 || y.at_corner < 0) return false;
+    const ContactKey &p = x.point.key, &q = y.point.key;
+    return (p.block_a == q.block_a && p.vertex == q.vertex && x.at_corner == y.at_corner) ||
+           (p.block_a == q.block_b && p.vertex == y.at_corner && q.vertex == x.at_corner);
+  };
+  for (size_t i = 0; i < hits.size(); ++i) {
+    for (size_t j = i + 1; j < hits.size();) {
+      if (!same_place(hits[i], hits[j])) {
+        ++j;
+        continue;
+      }
+      const double gi = hits[i].point.gap, gj = hits[j].point.gap;
+      // gaps that differ by round-off are equal: the key decides, so that the choice does not flicker
+      const double tie = 1e-12 * (std::abs(gi) + std::abs(gj)) + 1e-15;
+      const bool take_j = gj > gi + tie || (gj >= gi - tie && hits[j].point.key < hits[i].point.key);
+      if (take_j) hits[i] = hits[j];
+      hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  }
+}
+
+// Two points that end the overlap of the same two antiparallel edges share its length.
+void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits) {
+  struct Span {
+    int edge_lo, edge_hi;  // edges of the lower and the higher block id
+  };
+  // the edges of a's corner that may lie on b's edge
+  const auto faces_of = [&](const Hit& h) {
+    std::vector<Span> list;
+    const ContactKey& k = h.point.key;
+    const int na = blocks.vertex_count(k.block_a), nb = blocks.vertex_count(k.block_b);
+    std::vector<int> eb{k.edge};
+    if (h.at_corner >= 0) eb.push_back(h.at_corner == k.edge ? (k.edge + nb - 1) % nb : (k.edge + 1) % nb);
+    for (const int e : eb) {
+      const Vec2 db = edge_vector(blocks, s, k.block_b, e);
+      for (const int f : {k.vertex, (k.vertex + na - 1) % na}) {
+        const Vec2 da = edge_vector(blocks, s, k.block_a, f);
+        if (std::abs(cross(da, db)) > kParallel * norm(da) * norm(db) || dot(da, db) > 0) continue;
+        list.push_back(k.block_a < k.block_b ? Span{f, e} : Span{e, f});
+      }
+    }
+    return list;
+  };
+  std::vector<std::vector<Span>> faces;
+  for (const Hit& h : hits) faces.push_back(faces_of(h));
+  for (size_t i = 0; i < hits.size(); ++i) {
+    for (size_t j = i + 1; j < hits.size(); ++j) {
+      for (const Span& p : faces[i]) {
+        for (const Span& q : faces[j]) {
+          if (p.edge_lo != q.edge_lo || p.edge_hi != q.edge_hi) continue;
+          const auto place = [&](const Hit& h) {
+            return offset_now(s, static_cast<size_t>(h.point.key.block_a), h.point.arm_a) +
+                   blocks.centroid[static_cast<size_t>(h.point.key.block_a)];
+          };
+          const double length = norm(place(hits[i]) - place(hits[j]));
+          hits[i].point.length += 0.5 * length;
+          hits[j].point.length += 0.5 * length;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int a, int vertex, int b, int edge) {
+  const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
+  const Vec2 Xa = blocks.corner(a, vertex), Xb = blocks.corner(b, edge);
+  // the difference of reference places first, then the difference of displacements: both small
+  const Vec2 reference = (blocks.centroid[ia] - blocks.centroid[ib]) + (Xa - Xb);
+  const Vec2 r = reference + (displacement_at(state, ia, Xa) - displacement_at(state, ib, Xb));
+  const Vec2 e = edge_vector(blocks, state, b, edge);
+  const double length = norm(e);
+  const Vec2 n = turn_right(e) / length;
+  return {dot(n, r), dot(r, e) / (length * length), length, n};
+}
+
+void touch_blocks(const BlockSet& blocks, const State& state, int a, int b, double margin,
+                  std::vector<ContactPoint>& out) {
+  const double same =
+      kSamePlace * std::min(blocks.size[static_cast<size_t>(a)], blocks.size[static_cast<size_t>(b)]);
+  std::vector<Hit> hits;
+  corners_over_edges(blocks, state, a, b, margin, same, hits);
+  corners_over_edges(blocks, state, b, a, margin, same, hits);
+  merge_corner_pairs(hits);
+  share_faces(blocks, state, hits);
+  std::sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });
+  for (const Hit& h : hits) out.push_back(h.point);
+}
+
+bool CandidateFinder::still_valid(const BlockSet& blocks, const State& state, double margin) const {
+  if (margin_ != margin || displacement_.size() != static_cast<size_t>(blocks.count)) return false;
+  for (size_t i = 0; i < displacement_.size(); ++i) {
+    const Mat2 h = state.strain_part[i] - strain_part_[i];
+    const double moved =
+        norm(state.displacement[i] - displacement_[i]) + std::sqrt(contract(h, h)) * radius_[i];
+    if (!(moved < 0.5 * skin_)) return false;
+  }
+  return true;
+}
+
+const std::vector<std::pair<int, int>>& CandidateFinder::pairs(const BlockSet& blocks, const State& state,
+                                                               double margin) {
+  if (still_valid(blocks, state, margin)) return pairs_;
+  ++rebuilds_;
+  margin_ = margin;
+  displacement_ = state.displacement;
+  strain_part_ = state.strain_part;
+  radius_.assign(static_cast<size_t>(blocks.count), 0);
+
+  double least = blocks.size.empty() ? 0 : blocks.size[0];
+  for (const double s : blocks.size) least = std::min(least, s);
+  skin_ = 0.1 * least;
+  std::vector<Box> boxes;
+  std::vector<Vec2> corners;
+  const Vec2 origin = blocks.centroid[0];
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    corners.clear();
+    for (int v = 0; v < blocks.vertex_count(i); ++v) {
+      corners.push_back((blocks.centroid[k] - origin) + offset_now(state, k, blocks.corner(i, v)));
+      radius_[k] = std::max(radius_[k], norm(blocks.corner(i, v)));
+    }
+    boxes.push_back(bounding_box(corners));
+  }
+  pairs_ = close_pairs(boxes, margin + skin_);
+  const auto idle = [&blocks](const std::pair<int, int>& p) {
+    return !blocks.moves_freely(p.first) && !blocks.moves_freely(p.second);
+  };
+  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), idle), pairs_.end());
+  return pairs_;
+}
+
+}  // namespace talus

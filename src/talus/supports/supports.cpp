@@ -1,0 +1,55 @@
+#include "talus/supports/supports.h"
+
+namespace talus {
+
+std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
+                                             const BlockSet& blocks) {
+  std::vector<SupportedPoint> points;
+  for (size_t s = 0; s < model.supports.size(); ++s) {
+    for (const SupportedCorner& c : corners_of_support(layout, model.supports[s])) {
+      if (!blocks.moves_freely(c.block)) continue;
+      points.push_back(
+          {static_cast<int>(s), c.block, c.point - blocks.centroid[static_cast<size_t>(c.block)]});
+    }
+  }
+  return points;
+}
+
+void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
+                      const State& state, double dt, double dt_kick, RowSet& rows) {
+  const double end = state.time + dt;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
+    const auto block = static_cast<size_t>(points[i].block);
+    PointRows p;
+    p.block_a = points[i].block;
+    p.arm_a = acting_arm(blocks, state, block, points[i].arm);
+    p.normal = {1, 0};
+    const Vec2 now = displacement_at(state, block, points[i].arm);
+    const auto hold = [&](Row& row, const Motion& motion, double place, double sign) {
+      if (motion.kind == Motion::kFree)
+        row.lower = row.upper = 0;
+      else
+        row.bias = sign * (place - motion.displacement_at(end, model.histories)) / dt;
+    };
+    hold(p.row[0], support.x, now.x, 1);
+    hold(p.row[1], support.y, now.y, -1);
+    rows.add(p, {state.support_force[i][0] * dt_kick, -state.support_force[i][1] * dt_kick});
+  }
+}
+
+void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
+                  double dt, std::vector<BlockRate>& rate) {
+  const double end = state.time + dt;
+  for (size_t i = 0; i < rate.size(); ++i) {
+    if (blocks.kind[i] == BlockKind::kFixed) rate[i] = {};
+    if (blocks.kind[i] != BlockKind::kDriven) continue;
+    const BlockShape& shape = layout.blocks[i];
+    const Vec2 target{shape.motion_x.displacement_at(end, model.histories),
+                      shape.motion_y.displacement_at(end, model.histories)};
+    const double angle = shape.motion_rotation.displacement_at(end, model.histories);
+    rate[i] = {(target - state.displacement[i]) / dt, spin_matrix((angle - state.angle[i]) / dt)};
+  }
+}
+
+}  // namespace talus

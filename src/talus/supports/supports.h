@@ -1,0 +1,30 @@
+#pragma once
+// Points that are held or follow a history, and blocks that are driven.
+
+#include <vector>
+
+#include "talus/blocks/state.h"
+#include "talus/rows/rows.h"
+
+namespace talus {
+
+struct SupportedPoint {
+  int support = -1;  // index in the model
+  int block = -1;
+  Vec2 arm;  // reference arm [m]
+};
+
+/// All points of all supports, in the order of the model.
+std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
+                                             const BlockSet& blocks);
+
+/// Rows of the supports for a step from state.time to state.time + dt: along x, and along -y (the tangent of
+/// x).
+void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
+                      const State& state, double dt, double dt_kick, RowSet& rows);
+
+/// Rates that bring driven blocks to their prescribed place at state.time + dt; fixed blocks get none.
+void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
+                  double dt, std::vector<BlockRate>& rate);
+
+}  // namespace talus

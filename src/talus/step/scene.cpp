@@ -1,0 +1,27 @@
+#include "talus/step/scene.h"
+
+#include "talus/step/energy.h"
+
+namespace talus {
+
+Scene build_scene(Model model, Layout layout) {
+  Scene scene;
+  scene.model = std::move(model);
+  scene.layout = std::move(layout);
+  scene.blocks = build_blocks(scene.model, scene.layout);
+  scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
+  scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
+  return scene;
+}
+
+State start_state(const Scene& scene) {
+  State state = initial_state(scene.blocks, scene.layout);
+  state.bond_force.resize(2 * scene.bonds.faces.size());
+  state.face.resize(scene.bonds.faces.size());
+  state.support_force.resize(scene.supported.size());
+  const Energy start = energy_now(scene.blocks, scene.model.gravity, state, state.rate, state.rate);
+  state.energy_start = start.kinetic + start.strain - start.gravity;
+  return state;
+}
+
+}  // namespace talus

@@ -1,0 +1,64 @@
+#pragma once
+// One explicit step of central differences with the contact forces as unknowns, in two halves: kick() finds
+// the forces of this instant and the velocities after it, drift() moves the blocks. Theory: docs/theory.md
+// section 4.
+
+#include <string>
+
+#include "talus/contact/contact_rows.h"
+#include "talus/solve/contact_error.h"
+#include "talus/solve/newton.h"
+#include "talus/step/energy.h"
+#include "talus/step/scene.h"
+
+namespace talus {
+
+struct StepSettings {
+  double damping_mass = 0;   // [1/s]
+  double damping_local = 0;  // [-]
+  double tolerance = 0;      // largest contact error of a step [m]
+};
+
+/// Work that one kick does, half at the velocity before and half at the velocity after it: the second half
+/// belongs to the interval that follows.
+struct KickWork {
+  WorkDone before, after;
+};
+
+struct StepReport {
+  int contacts = 0;  // contact points found
+  int closed = 0;    // of them, with a force
+  SolveReport solve;
+  ContactError error;
+  std::string worst;      // name of the row with the worst error
+  bool failed = false;    // error above the tolerance
+  double unbalanced = 0;  // largest unbalanced force of a block / mean force on blocks
+  Energy energy;
+  int broken_faces = 0;  // in the drift that follows
+};
+
+/// Memory reused from step to step, and what the step found at this instant.
+struct StepWork {
+  CandidateFinder candidates;
+  std::vector<ContactPoint> contacts;
+  RowSet rows;                  // bonds, contacts, supports, in this order
+  std::vector<int> bond_owner;  // [n bond rows] 2 * face + end
+  size_t first_contact = 0, first_support = 0;
+  std::vector<BlockRate> rate_before;
+  std::vector<BlockRate> rate_now;  // mean of before and after: velocities at this instant
+  double dt_kick = 0;               // over which the impulses act
+  KickWork work;
+};
+
+/// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.
+StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state);
+
+/// Moves the blocks to `time_end` = state.time + dt with the rates of the kick; breaks faces.
+/// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
+void drift(const Scene& scene, double dt, double time_end, const StepWork& work, State& state,
+           StepReport& report);
+
+/// "striker corner 1 on bar[0,0] edge 3", for messages.
+std::string row_name(const Scene& scene, const StepWork& work, size_t row);
+
+}  // namespace talus

@@ -1,0 +1,52 @@
+#pragma once
+// Writing result files so that a reader never meets half a file, and every failure is reported.
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Writes a whole file under a temporary name and renames it into place. Throws FileError (path, cause).
+void write_file(const std::filesystem::path& path, const std::string& content);
+
+/// Prepares the folder for results. Throws FileError when it exists and `force` is false, or when it exists,
+/// is not empty and holds no summary.json of an earlier run (then even `force` removes nothing).
+void open_result_folder(const std::filesystem::path& folder, bool force);
+
+/// A table written row by row; every row is complete in the file when append() returns after flush().
+class CsvWriter {
+ public:
+  /// Writes the header: columns joined by commas.
+  CsvWriter(std::filesystem::path path, const std::vector<std::string>& columns);
+  ~CsvWriter();
+  CsvWriter(const CsvWriter&) = delete;
+  CsvWriter& operator=(const CsvWriter&) = delete;
+
+  /// One row, numbers with 17 significant digits. Throws FileError.
+  void append(const std::vector<double>& row);
+  void flush();
+
+ private:
+  void check(bool ok) const;
+
+  std::filesystem::path path_;
+  std::FILE* file_ = nullptr;
+  std::string line_;
+};
+
+struct CsvTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> values;  // [column][row]
+
+  /// The column called `name`, or the only one that begins with it. Throws FileError naming the columns there
+  /// are.
+  const std::vector<double>& column(const std::string& name) const;
+  size_t rows() const { return values.empty() ? 0 : values[0].size(); }
+};
+
+/// Reads a table of numbers. Throws FileError with path and line.
+CsvTable read_csv(const std::filesystem::path& path);
+
+}  // namespace talus

@@ -1,0 +1,140 @@
+#include "talus/output/vtk.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstring>
+
+#include "talus/output/files.h"
+
+namespace talus {
+
+namespace {
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+  static const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve(bytes.size() * 4 / 3 + 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t n = std::min<size_t>(3, bytes.size() - i);
+    uint32_t v = static_cast<uint32_t>(bytes[i]) << 16;
+    if (n > 1) v |= static_cast<uint32_t>(bytes[i + 1]) << 8;
+    if (n > 2) v |= bytes[i + 2];
+    out += digits[v >> 18];
+    out += digits[v >> 12 & 63];
+    out += n > 1 ? digits[v >> 6 & 63] : '=';
+    out += n > 2 ? digits[v & 63] : '=';
+  }
+  return out;
+}
+
+// A DataArray with its values as base64 behind their byte count (VTK's "binary").
+template <class T>
+std::string data_array(const std::string& type, const std::string& name, int components,
+                       const std::vector<T>& values) {
+  std::vector<unsigned char> bytes(8 + values.size() * sizeof(T));
+  const uint64_t size = values.size() * sizeof(T);
+  std::memcpy(bytes.data(), &size, 8);
+  if (!values.empty()) std::memcpy(bytes.data() + 8, values.data(), values.size() * sizeof(T));
+  return fmt::format(
+      "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n", type,
+      name, components, base64(bytes));
+}
+
+std::string doubles(const std::string& name, int components, const std::vector<double>& v) {
+  return data_array("Float64", name, components, v);
+}
+std::string integers(const std::string& name, const std::vector<int64_t>& v) {
+  return data_array("Int64", name, 1, v);
+}
+
+std::string file_begin(const char* type) {
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<{}>\n",
+      type, type);
+}
+std::string time_field(double time) {
+  return "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+         "format=\"ascii\">" +
+         fmt::format("{:.17g}", time) + "</DataArray>\n</FieldData>\n";
+}
+
+void push3(std::vector<double>& v, Vec2 p) { v.insert(v.end(), {p.x, p.y, 0.0}); }
+
+}  // namespace
+
+std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate) {
+  std::vector<double> points, displacement, velocity, stress;
+  std::vector<int64_t> connectivity, offsets, id, kind, material, group;
+  std::vector<uint8_t> types;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    for (int v = 0; v < blocks.vertex_count(i); ++v) {
+      const Vec2 X = blocks.corner(i, v);
+      connectivity.push_back(static_cast<int64_t>(connectivity.size()));
+      push3(points, blocks.centroid[k] + offset_now(state, k, X));
+      push3(displacement, displacement_at(state, k, X));
+      push3(velocity, velocity_at(rate[k], acting_arm(blocks, state, k, X)));
+    }
+    const Mat2 s = cauchy_stress(blocks, state, i);
+    stress.insert(stress.end(), {s.xx, s.yy, s.xy});
+    offsets.push_back(static_cast<int64_t>(connectivity.size()));
+    types.push_back(7);  // polygon
+    id.push_back(i), kind.push_back(static_cast<int>(blocks.kind[k]));
+    material.push_back(blocks.material[k]), group.push_back(blocks.group[k]);
+  }
+  std::string out = file_begin("UnstructuredGrid") + time_field(state.time);
+  out +=
+      fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", connectivity.size(), blocks.count);
+  out += "<Points>\n" + doubles("Points", 3, points) + "</Points>\n<Cells>\n" +
+         integers("connectivity", connectivity) + integers("offsets", offsets) +
+         data_array("UInt8", "types", 1, types) + "</Cells>\n";
+  out += "<PointData>\n" + doubles("displacement [m]", 3, displacement) +
+         doubles("velocity [m s-1]", 3, velocity) + "</PointData>\n";
+  out += "<CellData>\n" + doubles("stress xx yy xy [Pa]", 3, stress) + integers("block", id) +
+         integers("kind", kind) + integers("material", material) + integers("group", group) + "</CellData>\n";
+  return out + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+}
+
+std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time) {
+  std::vector<double> points, force, normal, shear, gap;
+  std::vector<int64_t> kind, connectivity, offsets;
+  for (const ContactFrame& c : contacts) {
+    push3(points, c.point);
+    push3(force, c.force);
+    normal.push_back(c.normal_force), shear.push_back(c.shear_force), gap.push_back(c.gap),
+        kind.push_back(c.kind);
+    connectivity.push_back(static_cast<int64_t>(connectivity.size()));
+    offsets.push_back(static_cast<int64_t>(connectivity.size()));
+  }
+  std::string out = file_begin("PolyData") + time_field(time);
+  out += fmt::format(
+      "<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+      "NumberOfPolys=\"0\">\n",
+      contacts.size());
+  out += "<Points>\n" + doubles("Points", 3, points) + "</Points>\n<Verts>\n" +
+         integers("connectivity", connectivity) + integers("offsets", offsets) + "</Verts>\n";
+  out += "<PointData>\n" + doubles("force [N]", 3, force) + doubles("normal force [N]", 1, normal) +
+         doubles("shear force [N]", 1, shear) + doubles("gap [m]", 1, gap) + integers("kind", kind) +
+         "</PointData>\n";
+  return out + "</Piece>\n</PolyData>\n</VTKFile>\n";
+}
+
+FrameSeries::FrameSeries(std::filesystem::path folder, std::string name, std::string extension)
+    : folder_(std::move(folder)), name_(std::move(name)), extension_(std::move(extension)) {}
+
+void FrameSeries::add(double time, const std::string& content) {
+  const auto file = [this](size_t i) { return fmt::format("{}_{:06}.{}", name_, i, extension_); };
+  write_file(folder_ / file(times_.size()), content);
+  times_.push_back(time);
+  std::string pvd =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<Collection>\n";
+  for (size_t i = 0; i < times_.size(); ++i)
+    pvd += fmt::format("<DataSet timestep=\"{:.17g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", times_[i],
+                       file(i));
+  write_file(folder_ / (name_ + ".pvd"), pvd + "</Collection>\n</VTKFile>\n");
+}
+
+}  // namespace talus

@@ -1,0 +1,41 @@
+#pragma once
+// Frames for ParaView: polygons of the blocks (.vtu), contact points (.vtp), and the time series (.pvd).
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "talus/blocks/state.h"
+
+namespace talus {
+
+/// One force between two blocks, or on a block by a support, as drawn in a frame.
+struct ContactFrame {
+  Vec2 point;  // [m]
+  Vec2 force;  // on the first block [N]
+  double normal_force = 0, shear_force = 0, gap = 0;
+  int kind = 0;  // 0 contact, 1 bond, 2 support
+};
+
+/// The deformed blocks: displacement and velocity at corners; stress (sxx, syy, sxy), block id, kind,
+/// material, group.
+/// @param rate  velocities at this instant
+std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate);
+
+std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time);
+
+/// A ParaView collection that always names the frames written so far.
+class FrameSeries {
+ public:
+  /// Frames are folder/NAME_000000.EXT; the collection is folder/NAME.pvd.
+  FrameSeries(std::filesystem::path folder, std::string name, std::string extension);
+  void add(double time, const std::string& content);
+  int count() const { return static_cast<int>(times_.size()); }
+
+ private:
+  std::filesystem::path folder_;
+  std::string name_, extension_;
+  std::vector<double> times_;
+};
+
+}  // namespace talus

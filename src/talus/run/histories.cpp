@@ -1,0 +1,215 @@
+#include "talus/run/histories.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace talus {
+
+namespace {
+
+// Impulse at time t, linear between knots (the force of a step is constant over it), zero before the first.
+void impulse_at(const auto& knots, double t, double (&out)[3]) {
+  const auto after = std::lower_bound(knots.begin(), knots.end(), t,
+                                      [](const auto& k, double time) { return k.time < time; });
+  if (after == knots.end() || after == knots.begin()) {
+    const auto& k = after == knots.end() ? knots.back() : knots.front();
+    for (int c = 0; c < 3; ++c) out[c] = k.value[c];
+    return;
+  }
+  const auto& k1 = *after;
+  const auto& k0 = *(after - 1);
+  const double s = (t - k0.time) / (k1.time - k0.time);
+  for (int c = 0; c < 3; ++c) out[c] = k0.value[c] + s * (k1.value[c] - k0.value[c]);
+}
+
+}  // namespace
+
+std::vector<std::string> step_columns() {
+  return {"t [s]",
+          "dt [s]",
+          "contacts",
+          "closed contacts",
+          "islands",
+          "largest island [points]",
+          "iterations",
+          "contact error [m]",
+          "failed steps",
+          "unbalanced",
+          "broken faces",
+          "kinetic energy [J]",
+          "strain energy [J]",
+          "gravity work [J]",
+          "load work [J]",
+          "support work [J]",
+          "bond work [J]",
+          "contact closing work [J]",
+          "friction work [J]",
+          "damping work [J]",
+          "energy left over [J]"};
+}
+
+std::vector<double> step_row(const Instant& i) {
+  const StepReport& r = i.report;
+  const Energy& e = r.energy;
+  int broken = 0;
+  for (const FaceState& f : i.state.face) broken += f.broken;
+  return {i.state.time,
+          i.plan.dt,
+          static_cast<double>(r.contacts),
+          static_cast<double>(r.closed),
+          static_cast<double>(r.solve.islands),
+          static_cast<double>(r.solve.largest_island),
+          static_cast<double>(r.solve.iterations),
+          r.error.worst,
+          r.failed ? 1.0 : 0.0,
+          r.unbalanced,
+          static_cast<double>(broken),
+          e.kinetic,
+          e.strain,
+          e.gravity,
+          e.work.loads,
+          e.work.supports,
+          e.work.bonds,
+          e.work.contact_closing,
+          e.work.friction,
+          e.work.damping,
+          e.left_over};
+}
+
+Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::move(sink)) {
+  columns_.push_back("t [s]");
+  const BlockSet& blocks = scene.blocks;
+  double least = blocks.size[0];
+  for (const double s : blocks.size) least = std::min(least, s);
+  for (const MonitorInput& m : scene.model.monitors) {
+    switch (m.kind) {
+      case MonitorKind::kPoint: {
+        const int block = blocks_at(scene.layout, m.point, 1e-6 * least).front();
+        points_.emplace_back(block, m.point - blocks.centroid[static_cast<size_t>(block)]);
+        add_columns(m.name,
+                    {"displacement_x [m]", "displacement_y [m]", "velocity_x [m/s]", "velocity_y [m/s]"});
+        break;
+      }
+      case MonitorKind::kBlock:
+        blocks_.push_back(scene.layout.blocks_called(m.target_a).front());
+        add_columns(m.name, {"stress_xx [Pa]", "stress_yy [Pa]", "stress_xy [Pa]"});
+        break;
+      case MonitorKind::kSupport: {
+        int index = 0;
+        while (scene.model.supports[static_cast<size_t>(index)].name != m.target_a) ++index;
+        supports_.push_back(index);
+        add_columns(m.name, {"reaction_x [N]", "reaction_y [N]"});
+        break;
+      }
+      case MonitorKind::kContact: {
+        Impulses c;
+        c.in_a.resize(static_cast<size_t>(blocks.count));
+        c.in_b.resize(static_cast<size_t>(blocks.count));
+        for (const int b : scene.layout.blocks_called(m.target_a)) c.in_a[static_cast<size_t>(b)] = 1;
+        for (const int b : scene.layout.blocks_called(m.target_b)) c.in_b[static_cast<size_t>(b)] = 1;
+        c.window = m.window;
+        add_columns(m.name, {"force_x [N]", "force_y [N]", "normal_force [N]", "impulse_x [N s]",
+                             "impulse_y [N s]", "normal_impulse [N s]"});
+        c.first_mean = columns_.size();
+        if (m.window > 0)
+          add_columns(m.name, {"mean_force_x [N]", "mean_force_y [N]", "mean_normal_force [N]"});
+        widest_ = std::max(widest_, m.window);
+        contacts_.push_back(std::move(c));
+        break;
+      }
+    }
+  }
+}
+
+void Histories::add_columns(const std::string& name, const std::vector<std::string>& titles) {
+  for (const std::string& t : titles) columns_.push_back(name + "." + t);
+}
+
+void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<double>& row) const {
+  const RowSet& rows = instant.work.rows;
+  double step[3] = {0, 0, 0};
+  for (size_t r = 0; r < instant.work.first_support; ++r) {
+    const PointRows& p = rows.points[r];
+    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    const bool forward = c.in_a[a] && c.in_b[b], backward = c.in_b[a] && c.in_a[b];
+    if (forward == backward) continue;
+    const Vec2 f = impulse_on(p, rows.impulse[r], forward ? 1 : -1).f;
+    step[0] += f.x, step[1] += f.y, step[2] += rows.impulse[r][0];
+  }
+  // the impulse of a kick acts from half a step before to half a step after; the first one only after
+  const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.dt_kick;
+  const bool first = c.knots.empty();
+  if (first) c.knots.push_back({t, {0, 0, 0}});
+  for (const double s : step) row.push_back(s / dt_kick);
+  for (int k = 0; k < 3; ++k) {
+    row.push_back(first ? 0 : c.sum[k] + 0.5 * step[k]);
+    c.sum[k] += step[k];
+  }
+  c.knots.push_back({t + 0.5 * dt, {c.sum[0], c.sum[1], c.sum[2]}});
+  if (c.window > 0) row.insert(row.end(), 3, 0.0);  // filled in when the window is known
+}
+
+void Histories::at(const Instant& instant, bool keep) {
+  const State& s = instant.state;
+  std::vector<double> row{s.time};
+  size_t point = 0, block = 0, support = 0, contact = 0;
+  for (const MonitorInput& m : scene_.model.monitors) {
+    switch (m.kind) {
+      case MonitorKind::kPoint: {
+        const auto& [b, arm] = points_[point++];
+        const auto k = static_cast<size_t>(b);
+        const Vec2 u = displacement_at(s, k, arm);
+        const Vec2 v = velocity_at(instant.work.rate_now[k], acting_arm(scene_.blocks, s, k, arm));
+        row.insert(row.end(), {u.x, u.y, v.x, v.y});
+        break;
+      }
+      case MonitorKind::kBlock: {
+        const Mat2 t = cauchy_stress(scene_.blocks, s, blocks_[block++]);
+        row.insert(row.end(), {t.xx, t.yy, 0.5 * (t.xy + t.yx)});
+        break;
+      }
+      case MonitorKind::kSupport: {
+        const int index = supports_[support++];
+        Vec2 sum;
+        for (size_t i = 0; i < scene_.supported.size(); ++i)
+          if (scene_.supported[i].support == index) sum += {s.support_force[i][0], s.support_force[i][1]};
+        row.insert(row.end(), {sum.x, sum.y});
+        break;
+      }
+      case MonitorKind::kContact:
+        sample_contact(instant, contacts_[contact++], row);
+        break;
+    }
+  }
+  known_until_ = s.time + 0.5 * instant.plan.dt;
+  if (keep) waiting_.push_back({std::move(row), s.time + 0.5 * widest_});
+  release(known_until_, false);
+}
+
+void Histories::release(double known_until, bool all) {
+  while (!waiting_.empty() && (all || waiting_.front().ready_at <= known_until)) {
+    std::vector<double>& row = waiting_.front().row;
+    const double t = row[0];
+    for (Impulses& c : contacts_) {
+      if (c.window <= 0) continue;
+      const double from = t - 0.5 * c.window,
+                   to = all ? std::min(t + 0.5 * c.window, known_until) : t + 0.5 * c.window;
+      double begin[3], end[3];
+      impulse_at(c.knots, from, begin);
+      impulse_at(c.knots, to, end);
+      for (size_t k = 0; k < 3; ++k) row[c.first_mean + k] = (end[k] - begin[k]) / (to - from);
+      while (c.knots.size() > 2 && c.knots[1].time < from) c.knots.pop_front();
+    }
+    if (sink_) sink_(row);
+    waiting_.pop_front();
+  }
+  if (waiting_.empty()) {
+    for (Impulses& c : contacts_)
+      while (c.knots.size() > 2 && c.knots[1].time < known_until - c.window) c.knots.pop_front();
+  }
+}
+
+void Histories::finish() { release(known_until_, true); }
+
+}  // namespace talus

@@ -1,0 +1,69 @@
+#pragma once
+// Columns of histories.csv: monitors of points, stresses, reactions and contact forces, row by row.
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "talus/run/instant.h"
+
+namespace talus {
+
+/// Titles of steps.csv.
+std::vector<std::string> step_columns();
+/// Its values at an instant (worst values are filled in by the caller over an interval).
+std::vector<double> step_row(const Instant& instant);
+
+class Histories {
+ public:
+  using Sink = std::function<void(const std::vector<double>&)>;
+
+  /// @param sink  gets every finished row; rows with window means come half a window late
+  Histories(const Scene& scene, Sink sink);
+
+  /// "t [s]", then the monitors in the order of the model.
+  const std::vector<std::string>& columns() const { return columns_; }
+
+  /// To be called at every instant: impulses add up whether a row is kept or not.
+  /// @param keep  whether this instant becomes a row
+  void at(const Instant& instant, bool keep);
+
+  /// Writes the rows still waiting; their windows end with the run.
+  void finish();
+
+ private:
+  // Impulse of a contact monitor over time: x, y on the first partner, and the sum of normal impulses.
+  struct Impulses {
+    std::vector<char> in_a, in_b;  // [n_blocks] whether the block belongs to a partner
+    double window = 0;
+    double sum[3] = {0, 0, 0};
+    struct Knot {
+      double time;
+      double value[3];
+    };
+    std::deque<Knot> knots;  // at half steps, the impulse so far; kept while a waiting row may need them
+    size_t first_mean = 0;   // column
+  };
+  struct Waiting {
+    std::vector<double> row;
+    double ready_at;
+  };
+
+  void add_columns(const std::string& name, const std::vector<std::string>& titles);
+  void sample_contact(const Instant& instant, Impulses& impulses, std::vector<double>& row) const;
+  void release(double known_until, bool all);
+
+  const Scene& scene_;
+  Sink sink_;
+  std::vector<std::string> columns_;
+  std::vector<std::pair<int, Vec2>> points_;  // block and arm, one per point monitor
+  std::vector<int> blocks_;                   // one per block monitor
+  std::vector<int> supports_;                 // one per support monitor
+  std::vector<Impulses> contacts_;            // one per contact monitor
+  double widest_ = 0;                         // largest window [s]
+  double known_until_ = 0;
+  std::deque<Waiting> waiting_;
+};
+
+}  // namespace talus

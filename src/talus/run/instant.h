@@ -1,0 +1,30 @@
+#pragma once
+// What observers of a run are shown at every time step.
+
+#include "talus/run/plan.h"
+#include "talus/step/step.h"
+
+namespace talus {
+
+struct Instant {
+  const Scene& scene;
+  const State& state;    // positions at state.time, rates half a step later
+  const StepWork& work;  // rows, impulses, velocities at this instant
+  const StepReport& report;
+  const StagePlan& plan;
+  int stage = 0;
+  bool stage_start = false;
+  bool last = false;  // no step follows
+};
+
+/// Receives the instants of a run in order.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void stage_begins(const Scene&, int /*stage*/, const StagePlan&) {}
+  virtual void at(const Instant& instant) = 0;
+  /// Asked before every step; true ends the run after the present instant.
+  virtual bool stop() { return false; }
+};
+
+}  // namespace talus

@@ -1,0 +1,118 @@
+#include "talus/run/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/contact/contact_rows.h"
+#include "talus/run/histories.h"
+
+namespace talus {
+
+namespace {
+
+constexpr double kWarnClampShare = 0.03;
+
+// Measured sizes of one cell or item in result files [bytes], from runs of the examples.
+constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 120, kVtkFile = 1700;
+
+double median_step(const BlockSet& blocks) {
+  std::vector<double> steps;
+  for (int i = 0; i < blocks.count; ++i)
+    if (blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable)
+      steps.push_back(stable_step_of(blocks, i));
+  if (steps.empty()) return std::numeric_limits<double>::infinity();
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return steps[steps.size() / 2];
+}
+
+int64_t rows_of(double duration, int64_t steps, double interval) {
+  if (interval <= 0) return steps;
+  return std::min<int64_t>(steps, static_cast<int64_t>(duration / interval));
+}
+
+}  // namespace
+
+std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
+  std::vector<StagePlan> plans;
+  const StableStep bound = stable_step(scene.blocks);
+  const std::string bound_name = bound.block >= 0 ? scene.blocks.name[static_cast<size_t>(bound.block)] : "";
+  for (const StageInput& stage : scene.model.stages) {
+    StagePlan plan;
+    plan.dt_bound = bound.dt;
+    plan.bound_block = bound.block;
+    const std::string path = "stage." + stage.name;
+    double wanted = stage.safety * bound.dt;
+    if (!std::isnan(stage.time_step)) {
+      wanted = stage.time_step;
+    } else if (bound.block < 0) {
+      findings.error(stage.where, path + ".time_step",
+                     "\"auto\" needs a deformable block; this model has none",
+                     "give a time_step, for example \"0.1 ms\"");
+      wanted = stage.duration;
+    }
+    plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
+    plan.dt = stage.duration / static_cast<double>(plan.steps);
+    if (plan.dt >= bound.dt && stage.moment_clamp) {
+      if (plan.dt > median_step(scene.blocks)) {
+        findings.error(stage.where_step, path + ".time_step",
+                       fmt::format("{:.4g} s is above the stable limit of a block of median size, {:.4g} s: "
+                                   "the moment clamp would change the model, not its slivers",
+                                   plan.dt, median_step(scene.blocks)),
+                       "use a smaller step");
+      }
+      BlockSet clamped = scene.blocks;
+      clamp_moments(clamped, plan.dt);
+      plan.clamped = clamped.clamped, plan.largest_clamp = clamped.largest_clamp;
+      if (plan.clamped > kWarnClampShare * scene.blocks.count)
+        findings.warning(stage.where_step, path + ".moment_clamp",
+                         fmt::format("clamps {} of {} blocks", plan.clamped, scene.blocks.count),
+                         "a smaller time_step clamps fewer");
+    } else if (plan.dt >= bound.dt) {
+      findings.error(stage.where_step, path + ".time_step",
+                     fmt::format("{:.4g} s is above the stable limit {:.4g} s, set by block \"{}\"", plan.dt,
+                                 bound.dt, bound_name),
+                     "use \"auto\", a smaller step, or moment_clamp = true if a few slivers set the limit");
+    }
+    plans.push_back(plan);
+  }
+  return plans;
+}
+
+Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
+  Prediction p;
+  p.blocks = scene.blocks.count;
+  p.bond_faces = static_cast<int>(scene.bonds.faces.size());
+  p.supported = static_cast<int>(scene.supported.size());
+  const State state = start_state(scene);
+  CandidateFinder candidates;
+  double least = scene.blocks.size[0];
+  for (const double s : scene.blocks.size) least = std::min(least, s);
+  p.contacts =
+      static_cast<int>(find_contacts(scene.blocks, scene.bonds, state, 0.02 * least, candidates).size());
+
+  const OutputInput& out = scene.model.output;
+  p.frames = 1;
+  for (size_t i = 0; i < plans.size(); ++i) {
+    const double duration = scene.model.stages[i].duration;
+    p.history_rows += rows_of(duration, plans[i].steps, out.history_interval);
+    p.step_rows += rows_of(duration, plans[i].steps, out.steps_interval);
+    p.frames += std::max<int64_t>(
+        1, out.field_interval > 0 ? rows_of(duration, plans[i].steps, out.field_interval) : 1);
+  }
+  ++p.history_rows, ++p.step_rows;
+
+  const double corners = static_cast<double>(scene.blocks.arm.size());
+  const double points = 2.0 * p.bond_faces + p.contacts + p.supported;
+  const double columns = static_cast<double>(Histories(scene, nullptr).columns().size());
+  const double frame = kVtkCorner * corners + kVtkBlock * p.blocks + kVtkContact * points + 2 * kVtkFile;
+  p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +
+                         static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
+             frame * static_cast<double>(p.frames) + 5000;
+  // blocks, state, candidates; per point its row, memory and about 16 x 2 entries of W, its factor and copies
+  p.memory = 900.0 * p.blocks + 32 * corners + points * (400 + 2 * 32 * 16 * 6);
+  return p;
+}
+
+}  // namespace talus

@@ -1,0 +1,34 @@
+#pragma once
+// What a run will do, known before its first step: time steps, counts, memory and output size.
+
+#include <string>
+#include <vector>
+
+#include "talus/model/findings.h"
+#include "talus/step/scene.h"
+
+namespace talus {
+
+struct StagePlan {
+  double dt = 0;         // [s]
+  int64_t steps = 0;     // of a static stage: the most
+  double dt_bound = 0;   // stable limit before any clamp [s]; infinite when no block deforms
+  int bound_block = -1;  // the block that sets it
+  int clamped = 0;       // blocks whose moments are raised
+  double largest_clamp = 1;
+};
+
+/// Plans every stage of the scene. A step above the stable limit, or none where none can be derived, is a
+/// finding.
+std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings);
+
+struct Prediction {
+  int blocks = 0, bond_faces = 0, contacts = 0, supported = 0;
+  double memory = 0;  // [bytes] of the run, without the program itself
+  double output = 0;  // [bytes] of all result files
+  int64_t frames = 0, history_rows = 0, step_rows = 0;
+};
+
+Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans);
+
+}  // namespace talus

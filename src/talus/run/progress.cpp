@@ -1,0 +1,98 @@
+#include "talus/run/progress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "talus/base/text.h"
+
+namespace talus {
+
+namespace {
+
+constexpr double kRewriteInterval = 0.5, kLineInterval = 10;  // [s] of wall time
+
+double wall_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan) {
+  next_.stage_begins(scene, stage, plan);
+  finish();
+  const StageInput& s = scene.model.stages[static_cast<size_t>(stage)];
+  const bool at_rest = s.kind == StageKind::kStatic;
+  fmt::print(out_, "stage {}/{} \"{}\" ({}): {:g} s in {}{} steps of {:.4g} s\n", stage + 1,
+             scene.model.stages.size(), s.name, at_rest ? "static" : "dynamic", s.duration,
+             at_rest ? "at most " : "", plan.steps, plan.dt);
+  std::fflush(out_);
+  stage_wall_ = last_shown_ = wall_now();
+  stage_step_ = 0;
+}
+
+void Progress::at(const Instant& instant) {
+  next_.at(instant);
+  worst_error_ = std::max(worst_error_, instant.report.error.worst);
+  if (instant.stage_start) stage_begin_ = instant.state.time;
+  ++stage_step_;
+  if (instant.last || stage_step_ % 16 != 0) return;  // the clock is not asked at every step
+  const double now = wall_now();
+  if (now - last_shown_ < (terminal_ ? kRewriteInterval : kLineInterval)) return;
+  show(instant, now);
+  last_shown_ = now;
+}
+
+void Progress::show(const Instant& instant, double now) {
+  const double rate = static_cast<double>(stage_step_) / (now - stage_wall_);
+  const auto left = static_cast<double>(instant.plan.steps - stage_step_);
+  const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
+  const double share = 100 * static_cast<double>(stage_step_) / static_cast<double>(instant.plan.steps);
+  const std::string line = fmt::format(
+      "  {}: t = {:.4g} s ({:.0f} %), {:.0f} steps/s, {} to go, worst contact error {:.1e} m{}", s.name,
+      instant.state.time, share, rate, readable_seconds(left / rate), worst_error_,
+      s.kind == StageKind::kStatic ? fmt::format(", unbalanced {:.1e}", instant.report.unbalanced) : "");
+  fmt::print(out_, "{}{}{}", terminal_ ? "\r" : "", line, terminal_ ? "\x1b[K" : "\n");
+  std::fflush(out_);
+  line_open_ = terminal_;
+}
+
+void Progress::finish() {
+  if (line_open_) fmt::print(out_, "\r\x1b[K");
+  line_open_ = false;
+}
+
+std::string closing_text(const Scene& scene, const RunResult& r, const std::string& folder) {
+  std::string out;
+  const char* ending = !r.failure.empty() ? "failed"
+                       : r.interrupted    ? "interrupted; the results up to then are valid"
+                                          : "finished";
+  out += fmt::format("{}: {} blocks, {} steps, {} wall, {} CPU\n", ending, scene.blocks.count, r.steps,
+                     readable_seconds(r.wall_seconds), readable_seconds(r.cpu_seconds));
+  if (r.steps > 0) {
+    out += fmt::format(
+        "  contact error   worst {:.2e} m at t = {:.4g} s; {} of {} steps above the tolerance; {:.1f} "
+        "iterations a step, at most {}\n",
+        r.worst_error, r.worst_error_time, r.failed_steps, r.steps,
+        static_cast<double>(r.iterations) / static_cast<double>(r.steps), r.most_iterations);
+    out += fmt::format(
+        "  energy ledger   {:.2e} of its largest term left over ({:.3g} J); closing contacts took {:.4g} J\n",
+        r.closure(), r.largest_energy, -r.energy.work.contact_closing);
+  }
+  for (const StageResult& s : r.stages) {
+    if (s.plan.clamped > 0)
+      out += fmt::format("  moment clamp    stage \"{}\": {} of {} blocks, up to {:.3g} times\n", s.name,
+                         s.plan.clamped, scene.blocks.count, s.plan.largest_clamp);
+    if (s.at_rest)
+      out += fmt::format("  at rest         stage \"{}\" after {} steps, unbalanced {:.1e}\n", s.name,
+                         s.steps, s.unbalanced);
+  }
+  if (r.broken_faces > 0)
+    out += fmt::format("  broken          {} of {} glued faces\n", r.broken_faces, scene.bonds.faces.size());
+  out += fmt::format(
+      "  results         {}: summary.json, histories.csv, steps.csv, fields/blocks.pvd (ParaView)\n", folder);
+  return out;
+}
+
+}  // namespace talus

@@ -1,0 +1,42 @@
+#pragma once
+// What a user sees while a run goes on: one rewritten line on a terminal, plain lines otherwise.
+
+#include <csignal>
+#include <cstdio>
+
+#include "talus/run/recorder.h"
+
+namespace talus {
+
+/// Passes every instant on to another observer and shows stage, time, steps per second, time to go and worst
+/// error.
+class Progress : public Observer {
+ public:
+  /// @param out       where lines go
+  /// @param terminal  whether `out` is one: the line is then rewritten twice a second, else a line every 10 s
+  Progress(Observer& next, std::FILE* out, bool terminal) : next_(next), out_(out), terminal_(terminal) {}
+
+  void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override;
+  void at(const Instant& instant) override;
+  bool stop() override { return next_.stop() || (stop_ && *stop_ != 0); }
+  /// Ends the run at the next step once `*flag` is not 0 (set by a signal handler).
+  void stop_when(const volatile std::sig_atomic_t* flag) { stop_ = flag; }
+  /// Ends a rewritten line.
+  void finish();
+
+ private:
+  void show(const Instant& instant, double now);
+
+  Observer& next_;
+  std::FILE* out_;
+  bool terminal_;
+  const volatile std::sig_atomic_t* stop_ = nullptr;
+  double last_shown_ = 0, stage_wall_ = 0, stage_begin_ = 0, worst_error_ = 0;
+  int64_t stage_step_ = 0;
+  bool line_open_ = false;
+};
+
+/// Closing lines of a run: what happened and how far to trust it.
+std::string closing_text(const Scene& scene, const RunResult& result, const std::string& folder);
+
+}  // namespace talus

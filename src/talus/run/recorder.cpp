@@ -1,0 +1,189 @@
+#include "talus/run/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/version.h"
+
+namespace talus {
+
+namespace {
+
+double wall_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Whether an instant reaches the next multiple of the interval, which then moves on. Interval 0: always.
+bool is_due(double time, double dt, double interval, double& next) {
+  if (interval <= 0) return true;
+  if (time < next - 1e-6 * dt) return false;
+  while (next <= time + 1e-6 * dt) next += interval;
+  return true;
+}
+
+std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
+  std::vector<ContactFrame> frames;
+  const RowSet& rows = i.work.rows;
+  for (size_t r = 0; r < rows.points.size(); ++r) {
+    const PointRows& p = rows.points[r];
+    const auto a = static_cast<size_t>(p.block_a);
+    ContactFrame f;
+    // the acting arm of a deformable block is the reference one
+    const bool deforms = scene.blocks.kind[a] == BlockKind::kDeformable;
+    const Vec2 from_centroid = deforms ? p.arm_a + i.state.strain_part[a] * p.arm_a : p.arm_a;
+    f.point = scene.blocks.centroid[a] + i.state.displacement[a] + from_centroid;
+    f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.dt_kick;
+    f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
+    f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
+    f.kind = r < i.work.first_contact ? 1 : r < i.work.first_support ? 0 : 2;
+    if (f.kind == 0) f.gap = i.work.contacts[r - i.work.first_contact].gap;
+    frames.push_back(f);
+  }
+  return frames;
+}
+
+std::filesystem::path make_folder(const std::filesystem::path& p) {
+  std::error_code ec;
+  std::filesystem::create_directories(p, ec);  // a failure shows, with its cause, at the first file
+  return p;
+}
+
+}  // namespace
+
+Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
+    : scene_(scene),
+      folder_(std::move(folder)),
+      history_file_(folder_ / "histories.csv", Histories(scene, nullptr).columns()),
+      steps_file_(folder_ / "steps.csv", step_columns()),
+      histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
+      block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
+      contact_frames_(folder_ / "fields", "contacts", "vtp"),
+      last_flush_(wall_now()) {
+  write_file(folder_ / "model.toml", scene.model.text);
+}
+
+void Recorder::at(const Instant& i) {
+  const OutputInput& out = scene_.model.output;
+  const double t = i.state.time, dt = i.plan.dt;
+  histories_.at(i, is_due(t, dt, out.history_interval, next_history_) || i.last);
+  record_step(i);
+  const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
+  if (frame || i.stage_start || i.last) write_frame(i);
+  if (wall_now() - last_flush_ > 1) {
+    history_file_.flush();
+    steps_file_.flush();
+    last_flush_ = wall_now();
+  }
+}
+
+void Recorder::record_step(const Instant& i) {
+  // columns in which the worst since the last row counts: islands, island size, iterations, error; failures
+  // add up
+  constexpr size_t kFirstWorst = 4, kLastWorst = 7, kFailed = 8;
+  std::vector<double> row = step_row(i);
+  if (!worst_.empty()) {
+    for (size_t c = kFirstWorst; c <= kLastWorst; ++c) row[c] = std::max(row[c], worst_[c]);
+    row[kFailed] += worst_[kFailed];
+  }
+  if (is_due(i.state.time, i.plan.dt, scene_.model.output.steps_interval, next_steps_) || i.last ||
+      i.report.failed) {
+    steps_file_.append(row);
+    worst_.clear();
+  } else {
+    worst_ = std::move(row);
+  }
+}
+
+void Recorder::write_frame(const Instant& i) {
+  block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, i.work.rate_now));
+  contact_frames_.add(i.state.time, contacts_vtp(contact_frames(scene_, i), i.state.time));
+}
+
+void Recorder::finish(const RunResult& result, const std::vector<std::string>& overrides,
+                      const Findings& findings) {
+  histories_.finish();
+  history_file_.flush();
+  steps_file_.flush();
+  write_file(folder_ / "summary.json",
+             summary_text(scene_, result, overrides, findings, block_frames_.count()));
+}
+
+std::string summary_text(const Scene& scene, const RunResult& r, const std::vector<std::string>& overrides,
+                         const Findings& findings, int frames) {
+  using nlohmann::ordered_json;
+  const BlockSet& b = scene.blocks;
+  const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
+  ordered_json j;
+  j["program"] = fmt::format("talus {}", kVersion);
+  j["title"] = scene.model.title;
+  j["model_file"] = std::filesystem::path(scene.model.file).filename().string();
+  j["model_hash"] = scene.model.hash;
+  j["overrides"] = overrides;
+  j["status"] = !r.failure.empty() ? "failed" : r.interrupted ? "interrupted" : "finished";
+  if (!r.failure.empty()) j["failure"] = r.failure;
+  ordered_json warnings = ordered_json::array();
+  for (const Finding& f : findings.list()) warnings.push_back(f.key + ": " + f.text);
+  j["warnings"] = warnings;
+
+  j["blocks"] = {{"all", b.count},
+                 {"deformable", count(BlockKind::kDeformable)},
+                 {"rigid", count(BlockKind::kRigid)},
+                 {"fixed", count(BlockKind::kFixed)},
+                 {"driven", count(BlockKind::kDriven)}};
+  j["contacts"] = {{"bond_faces", scene.bonds.faces.size()},
+                   {"bond_faces_broken", r.broken_faces},
+                   {"supported_points", scene.supported.size()},
+                   {"contact_points_most", r.most_contacts},
+                   {"candidate_list_rebuilds", r.candidate_rebuilds}};
+  j["stages"] = ordered_json::array();
+  for (const StageResult& s : r.stages) {
+    const int bound = s.plan.bound_block;
+    ordered_json stage = {{"name", s.name},
+                          {"kind", s.kind == StageKind::kStatic ? "static" : "dynamic"},
+                          {"begin [s]", s.begin},
+                          {"end [s]", s.end},
+                          {"steps", s.steps},
+                          {"dt [s]", s.plan.dt},
+                          {"dt_bound [s]", s.plan.dt_bound},
+                          {"dt_bound_block", bound < 0 ? "" : b.name[static_cast<size_t>(bound)]},
+                          {"blocks_clamped", s.plan.clamped},
+                          {"largest_clamp", s.plan.largest_clamp},
+                          {"unbalanced", s.unbalanced}};
+    if (s.kind == StageKind::kStatic) stage["at_rest"] = s.at_rest;
+    j["stages"].push_back(stage);
+  }
+  j["solver"] = {
+      {"method", "newton"},
+      {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
+      {"contact_solves", r.steps},
+      {"failed_steps", r.failed_steps},
+      {"iterations_mean",
+       r.steps > 0 ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0},
+      {"iterations_most", r.most_iterations},
+      {"contact_error_worst [m]", r.worst_error},
+      {"contact_error_time [s]", r.worst_error_time},
+      {"contact_error_at", r.worst_error_row}};
+  const Energy& e = r.energy;
+  j["energy [J]"] = {{"kinetic", e.kinetic},
+                     {"strain", e.strain},
+                     {"gravity_work", e.gravity},
+                     {"load_work", e.work.loads},
+                     {"support_work", e.work.supports},
+                     {"bond_work", e.work.bonds},
+                     {"contact_closing_work", e.work.contact_closing},
+                     {"friction_work", e.work.friction},
+                     {"damping_work", e.work.damping},
+                     {"left_over", e.left_over},
+                     {"left_over_largest", r.largest_left_over},
+                     {"term_largest", r.largest_energy}};
+  j["energy_closure"] = r.closure();
+  j["frames"] = frames;
+  j["wall_time [s]"] = r.wall_seconds;
+  j["cpu_time [s]"] = r.cpu_seconds;
+  return j.dump(2) + "\n";
+}
+
+}  // namespace talus

@@ -1,0 +1,43 @@
+#pragma once
+// Writes the result folder while a run goes on, and the summary when it ends.
+
+#include <filesystem>
+#include <optional>
+
+#include "talus/output/files.h"
+#include "talus/output/vtk.h"
+#include "talus/run/histories.h"
+#include "talus/run/run.h"
+
+namespace talus {
+
+/// model.toml, histories.csv, steps.csv, fields/. Rows reach the file at least once a second, frames at once.
+class Recorder : public Observer {
+ public:
+  /// @param folder  ready for results (open_result_folder)
+  Recorder(const Scene& scene, std::filesystem::path folder);
+
+  void at(const Instant& instant) override;
+
+  /// Writes waiting rows and summary.json. To be called also when the run failed or was interrupted.
+  void finish(const RunResult& result, const std::vector<std::string>& overrides, const Findings& findings);
+
+ private:
+  void record_step(const Instant& instant);
+  void write_frame(const Instant& instant);
+
+  const Scene& scene_;
+  std::filesystem::path folder_;
+  CsvWriter history_file_, steps_file_;
+  Histories histories_;
+  FrameSeries block_frames_, contact_frames_;
+  double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
+  std::vector<double> worst_;  // of steps.csv columns since its last row
+  double last_flush_ = 0;
+};
+
+/// Text of summary.json.
+std::string summary_text(const Scene& scene, const RunResult& result,
+                         const std::vector<std::string>& overrides, const Findings& findings, int frames);
+
+}  // namespace talus

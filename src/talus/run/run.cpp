@@ -1,0 +1,159 @@
+#include "talus/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "talus/base/error.h"
+#include "talus/model/read_model.h"
+
+namespace talus {
+
+namespace {
+
+double smallest_block(const BlockSet& blocks) {
+  return *std::min_element(blocks.size.begin(), blocks.size.end());
+}
+
+class Runner {
+ public:
+  Runner(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer)
+      : scene_(scene), plans_(plans), state_(state), observer_(observer), unclamped_(scene.blocks) {}
+
+  RunResult run() {
+    const auto wall = std::chrono::steady_clock::now();
+    const std::clock_t cpu = std::clock();
+    try {
+      for (size_t i = 0; i < plans_.size() && !result_.interrupted; ++i) run_stage(static_cast<int>(i));
+      show_end();
+    } catch (const NumericalError& e) {
+      result_.failure = e.what();
+    }
+    result_.candidate_rebuilds = work_.candidates.rebuilds();
+    for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
+    result_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+    result_.cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+    return result_;
+  }
+
+ private:
+  void run_stage(int index) {
+    const auto k = static_cast<size_t>(index);
+    const StageInput& stage = scene_.model.stages[k];
+    const StagePlan& plan = plans_[k];
+    scene_.blocks = unclamped_;
+    if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.dt);
+    settings_ = {stage.damping_mass, stage.damping_local,
+                 scene_.model.solver.tolerance * smallest_block(scene_.blocks)};
+    state_.largest_kinetic = 0;
+    result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
+    StageResult& out = result_.stages.back();
+    observer_.stage_begins(scene_, index, plan);
+
+    for (int64_t n = 0; n < plan.steps; ++n) {
+      if (observer_.stop()) {
+        result_.interrupted = true;
+        break;
+      }
+      StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
+      note(report);
+      observer_.at({scene_, state_, work_, report, plan, index, n == 0, false});
+      // from the start of the stage, not by adding: the last step ends exactly on the stage's end
+      drift(scene_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_, report);
+      ++out.steps;
+      out.unbalanced = report.unbalanced;
+      state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.kinetic);
+      if (stage.kind == StageKind::kStatic && is_at_rest(stage, report, n)) {
+        out.at_rest = true;
+        break;
+      }
+    }
+    out.end = state_.time;
+    if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
+      throw NumericalError(
+          fmt::format("static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced "
+                      "force is {:.3g} of the "
+                      "mean, asked for is {:g}. Give a longer duration, or look in steps.csv whether "
+                      "something slides or falls",
+                      stage.name, stage.duration, out.steps, out.unbalanced, stage.unbalanced));
+    }
+  }
+
+  // Forces in balance is not enough: a block that swings through its rest position is in balance there.
+  bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
+    if (n < 1 || report.unbalanced > stage.unbalanced) return false;
+    const double speed_left =
+        std::sqrt(std::max(report.energy.kinetic, 0.0) / std::max(state_.largest_kinetic, 1e-300));
+    return speed_left <= stage.unbalanced || state_.largest_kinetic <= 0;
+  }
+
+  // The last instant has its forces too, found on a copy so that the state stays between two steps.
+  void show_end() {
+    if (result_.stages.empty()) return;
+    const int index = static_cast<int>(result_.stages.size()) - 1;
+    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    State copy = state_;
+    const StepReport report = kick(scene_, settings_, plan.dt, work_, copy);
+    note(report);
+    observer_.at({scene_, copy, work_, report, plan, index, false, true});
+  }
+
+  void note(const StepReport& r) {
+    ++result_.steps;
+    result_.iterations += r.solve.iterations;
+    result_.most_contacts = std::max(result_.most_contacts, r.contacts);
+    result_.most_iterations = std::max(result_.most_iterations, r.solve.iterations);
+    if (std::isnan(r.error.worst) || r.error.worst > result_.worst_error) {
+      result_.worst_error = r.error.worst;
+      result_.worst_error_time = state_.time;
+      result_.worst_error_row = r.worst;
+    }
+    result_.energy = r.energy;
+    result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));
+    result_.largest_energy = std::max(result_.largest_energy, r.energy.largest());
+    if (!r.failed) return;
+    ++result_.failed_steps;
+    if (scene_.model.solver.stop_on_failure) {
+      throw NumericalError(fmt::format(
+          "step {} at t = {:.9g} s: the contact equations were not solved; error {:.3g} m after {} "
+          "iterations, allowed "
+          "{:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a wider "
+          "solver.tolerance may help; "
+          "solver.on_failure = \"continue\" counts such steps instead of stopping",
+          state_.step, state_.time, r.error.worst, r.solve.iterations, settings_.tolerance, r.worst));
+    }
+  }
+
+  Scene& scene_;
+  const std::vector<StagePlan>& plans_;
+  State& state_;
+  Observer& observer_;
+  const BlockSet unclamped_;
+  StepSettings settings_;
+  StepWork work_;
+  RunResult result_;
+};
+
+}  // namespace
+
+RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer) {
+  return Runner(scene, plans, state, observer).run();
+}
+
+PreparedRun prepare_run(const std::string& file, const std::string& text,
+                        const std::vector<std::string>& overrides, Findings& findings) {
+  PreparedRun run;
+  Model model = read_model(file, text, overrides, findings);
+  findings.throw_if_errors();
+  Layout layout = make_layout(model, findings);
+  findings.throw_if_errors();
+  run.scene = build_scene(std::move(model), std::move(layout));
+  run.plans = plan_stages(run.scene, findings);
+  findings.throw_if_errors();
+  return run;
+}
+
+}  // namespace talus

@@ -1,0 +1,51 @@
+#pragma once
+// The stages of a run, one after the other, and what came of them.
+
+#include <string>
+#include <vector>
+
+#include "talus/run/instant.h"
+
+namespace talus {
+
+struct StageResult {
+  std::string name;
+  StageKind kind = StageKind::kDynamic;
+  StagePlan plan;
+  int64_t steps = 0;
+  double begin = 0, end = 0;  // [s]
+  double unbalanced = 0;      // at the end
+  bool at_rest = false;       // static stages
+};
+
+struct RunResult {
+  std::vector<StageResult> stages;
+  int64_t steps = 0, failed_steps = 0, iterations = 0;
+  int most_contacts = 0, most_iterations = 0, candidate_rebuilds = 0;
+  double worst_error = 0, worst_error_time = 0;  // [m], [s]
+  std::string worst_error_row;
+  Energy energy;                                     // at the end
+  double largest_left_over = 0, largest_energy = 0;  // [J] over the run
+  int broken_faces = 0;
+  bool interrupted = false;
+  std::string failure;  // text of the NumericalError that ended the run, "" otherwise
+  double wall_seconds = 0, cpu_seconds = 0;
+
+  /// largest_left_over / largest_energy, 0 when nothing moved.
+  double closure() const { return largest_energy > 0 ? largest_left_over / largest_energy : 0; }
+};
+
+/// Runs all stages from `state` on, showing every instant to the observer. Numerical trouble ends the run and
+/// is told in `failure`; errors of the observer (files) pass through.
+/// @param plans  one per stage, from plan_stages() without errors
+RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer);
+
+/// Reads, checks and plans a model. Throws InputError with all findings; warnings are left in `findings`.
+struct PreparedRun {
+  Scene scene;
+  std::vector<StagePlan> plans;
+};
+PreparedRun prepare_run(const std::string& file, const std::string& text,
+                        const std::vector<std::string>& overrides, Findings& findings);
+
+}  // namespace talus

@@ -1,0 +1,153 @@
+// The `talus` command: argument parsing and nothing else.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "plot_command.h"
+#include "talus/base/text.h"
+#include "talus/model/schema.h"
+#include "talus/model/toml_source.h"
+#include "talus/run/progress.h"
+#include "talus/talus.h"
+
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+extern "C" void request_stop(int) { stop_requested = 1; }
+
+struct ModelArguments {
+  std::string file;
+  std::vector<std::string> overrides;
+};
+
+void add_model_arguments(CLI::App& verb, ModelArguments& args) {
+  verb.add_option("MODEL", args.file, "model file (TOML)")->required();
+  verb.add_option("--set", args.overrides,
+                  "override a key, for example --set material.bar.young=\"1 GPa\" (repeatable)")
+      ->allow_extra_args(false);
+}
+
+talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings, const std::string& text) {
+  talus::PreparedRun run = talus::prepare_run(args.file, text, args.overrides, findings);
+  if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
+  return run;
+}
+
+int check(const ModelArguments& args) {
+  const std::string text = talus::read_text_file(args.file);
+  talus::Findings findings(args.file, text);
+  const talus::PreparedRun run = prepare(args, findings, text);
+  const talus::Prediction p = talus::predict(run.scene, run.plans);
+  fmt::print("{}: no errors, {} warning{}\n", args.file, findings.warning_count(),
+             findings.warning_count() == 1 ? "" : "s");
+  fmt::print("  blocks     {}; {} glued faces, {} contact points at the start, {} supported points\n",
+             p.blocks, p.bond_faces, p.contacts, p.supported);
+  for (size_t i = 0; i < run.plans.size(); ++i) {
+    const talus::StagePlan& plan = run.plans[i];
+    const talus::StageInput& stage = run.scene.model.stages[i];
+    const std::string bound = plan.bound_block < 0
+                                  ? "no block deforms"
+                                  : fmt::format("stable limit {:.4g} s, set by {}", plan.dt_bound,
+                                                run.scene.blocks.name[static_cast<size_t>(plan.bound_block)]);
+    fmt::print("  stage      \"{}\": {}{} steps of {:.4g} s ({})\n", stage.name,
+               stage.kind == talus::StageKind::kStatic ? "at most " : "", plan.steps, plan.dt, bound);
+    if (plan.clamped > 0)
+      fmt::print("             moment clamp: {} blocks, up to {:.3g} times\n", plan.clamped,
+                 plan.largest_clamp);
+  }
+  fmt::print("  memory     about {}\n", talus::readable_bytes(p.memory));
+  fmt::print("  output     about {}: {} rows of histories, {} rows of steps, {} frames\n",
+             talus::readable_bytes(p.output), p.history_rows, p.step_rows, p.frames);
+  return talus::kExitOk;
+}
+
+int run(const ModelArguments& args, const std::string& folder, bool force, bool quiet) {
+  const std::string text = talus::read_text_file(args.file);
+  talus::Findings findings(args.file, text);
+  talus::PreparedRun prepared = prepare(args, findings, text);
+  talus::open_result_folder(folder, force);
+
+  talus::Recorder recorder(prepared.scene, folder);
+  talus::State state = talus::start_state(prepared.scene);
+  std::FILE* out = quiet ? std::fopen("/dev/null", "w") : stdout;
+  talus::Progress progress(recorder, out, isatty(fileno(out)) != 0);
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  progress.stop_when(&stop_requested);
+  const talus::RunResult result = talus::run_stages(prepared.scene, prepared.plans, state, progress);
+  progress.finish();
+  recorder.finish(result, args.overrides, findings);
+  fmt::print(out, "{}", talus::closing_text(prepared.scene, result, folder));
+  if (!result.failure.empty())
+    throw talus::NumericalError(result.failure + fmt::format("\nresults up to then are in {}", folder));
+  return result.interrupted ? talus::kExitInterrupted : talus::kExitOk;
+}
+
+int run_command(int argc, char** argv) {
+  CLI::App app(
+      "talus: blocks that move, slip and break under dynamic load, with contact forces found exactly");
+  app.set_version_flag("--version",
+                       fmt::format("talus {} (model format {})", talus::kVersion, talus::kModelFormat));
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 130 "
+      "interrupted.\nHelp on a verb: talus VERB --help");
+
+  ModelArguments model;
+  std::string folder;
+  bool force = false, quiet = false, json = false;
+  CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
+  add_model_arguments(*run_verb, model);
+  run_verb->add_option("-o,--output", folder, "folder for the results")->required();
+  run_verb->add_flag("--force", force, "replace the results of an earlier run in that folder");
+  run_verb->add_flag("-q,--quiet", quiet, "say nothing but errors");
+  run_verb->footer(
+      "Example: talus run examples/impact_bar/impact_bar.toml -o out/bar --set grid.bar.cells=[20,1]");
+
+  CLI::App* check_verb =
+      app.add_subcommand("check", "check a model and predict its steps, memory and output; runs nothing");
+  add_model_arguments(*check_verb, model);
+  check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml");
+
+  talus::app::PlotArguments plot;
+  CLI::App* plot_verb =
+      app.add_subcommand("plot", "draw histories of one or more result folders as SVG and PNG");
+  talus::app::add_plot_arguments(*plot_verb, plot);
+
+  CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
+  schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? talus::kExitOk : talus::kExitUsage;
+  }
+  if (*run_verb) return run(model, folder, force, quiet);
+  if (*check_verb) return check(model);
+  if (*plot_verb) return talus::app::plot_command(plot);
+  fmt::print("{}", json ? talus::schema_json() : talus::schema_markdown());
+  return talus::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit shows as a write error with its own message
+  try {
+    return run_command(argc, argv);
+  } catch (const talus::Error& e) {
+    fmt::print(stderr, "{}{}\n", e.code() == talus::kExitInput ? "" : "talus: ", e.what());
+    return e.code();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "talus: not enough memory; talus check predicts what a model needs\n");
+    return talus::kExitNumerical;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "talus: internal error: {}\n", e.what());
+    return talus::kExitInternal;
+  }
+}

@@ -1,0 +1,128 @@
+#include "plot_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "talus/base/error.h"
+#include "talus/output/files.h"
+#include "talus/plot/figure.h"
+
+namespace talus::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// "impact.mean_normal_force [N]" -> monitor "impact", quantity "mean normal force [N]"
+struct ColumnName {
+  std::string monitor, quantity;
+};
+
+ColumnName split_column(const std::string& column) {
+  const size_t dot = column.find('.');
+  ColumnName name{column.substr(0, dot), dot == std::string::npos ? column : column.substr(dot + 1)};
+  std::replace(name.quantity.begin(), name.quantity.end(), '_', ' ');
+  return name;
+}
+
+std::vector<double> in_unit(std::vector<double> t, double scale) {
+  for (double& v : t) v *= scale;
+  return t;
+}
+
+std::string full_title(const CsvTable& table, const std::string& column) {
+  const auto* values = &table.column(column);
+  return table.columns[static_cast<size_t>(values - table.values.data())];
+}
+
+void draw_column(const PlotArguments& args, const std::vector<CsvTable>& tables, const std::string& column,
+                 const fs::path& stem) {
+  plot::Figure figure;
+  const std::string title = full_title(tables[0], column);
+  const ColumnName name = split_column(title);
+  figure.title = args.title.empty() ? name.monitor + ": " + name.quantity.substr(0, name.quantity.find(" ["))
+                                    : args.title;
+  figure.x_label = args.time_unit == "ms" ? "t [ms]" : "t [s]";
+  figure.y_label = name.quantity;
+  const double scale = args.time_unit == "ms" ? 1e3 : 1;
+  for (size_t i = 0; i < tables.size(); ++i) {
+    const std::string label = i < args.labels.size()
+                                  ? args.labels[i]
+                                  : fs::path(args.folders[i]).lexically_normal().filename().string();
+    const std::vector<double> t = in_unit(tables[i].values[0], scale);
+    if (!args.raw.empty())
+      figure.curves.push_back({label + " (each step)", t, tables[i].column(args.raw), static_cast<int>(i),
+                               plot::Style::kThin, false});
+    figure.curves.push_back(
+        {label, t, tables[i].column(column), static_cast<int>(i), plot::Style::kSolid, true});
+    if (i < args.references.size()) {
+      const CsvTable reference = read_csv(args.references[i]);
+      const auto same = std::find(reference.columns.begin(), reference.columns.end(), title);
+      const size_t c = same == reference.columns.end()
+                           ? std::min<size_t>(1, reference.columns.size() - 1)
+                           : static_cast<size_t>(same - reference.columns.begin());
+      figure.curves.push_back({label + ", " + args.reference_label, in_unit(reference.values[0], scale),
+                               reference.values[c], static_cast<int>(i), plot::Style::kDashed, true});
+    }
+  }
+  if (args.limit_y.size() == 2) figure.y_min = args.limit_y[0], figure.y_max = args.limit_y[1];
+  if (args.limit_t.size() == 2) figure.x_min = args.limit_t[0], figure.x_max = args.limit_t[1];
+  try {
+    plot::write_figure(figure, stem);
+  } catch (const std::runtime_error& e) {
+    throw FileError(e.what());
+  }
+  fmt::print("{0}.svg\n{0}.png\n", stem.string());
+}
+
+}  // namespace
+
+void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
+  verb.add_option("DIR", args.folders, "result folders; several are overlaid")->required();
+  verb.add_option("-c,--column", args.column,
+                  "column of histories.csv, or its beginning; without: a figure of every column");
+  verb.add_option("-o,--output", args.output, "path of the figure without ending; without: DIR/plots/COLUMN");
+  verb.add_option("-l,--label", args.labels, "legend text, one per folder in their order")
+      ->allow_extra_args(false);
+  verb.add_option("-r,--reference", args.references,
+                  "CSV with times and the column to compare with, one per folder, drawn dashed")
+      ->allow_extra_args(false);
+  verb.add_option("--reference-label", args.reference_label, "what the dashed curves are called")
+      ->default_val("exact");
+  verb.add_option("--raw", args.raw,
+                  "a second column drawn thin below, for example the force of each step below its mean");
+  verb.add_option("--title", args.title, "title of the figure");
+  verb.add_option("--time-unit", args.time_unit, "unit of the time axis")
+      ->check(CLI::IsMember({"s", "ms"}))
+      ->default_val("s");
+  verb.add_option("--limit-y", args.limit_y, "ends of the value axis")->expected(2);
+  verb.add_option("--limit-t", args.limit_t, "ends of the time axis, in its unit")->expected(2);
+  verb.footer(
+      "Example: talus plot out/bar -c impact.mean_normal_force --raw impact.normal_force -o out/force");
+}
+
+int plot_command(const PlotArguments& args) {
+  std::vector<CsvTable> tables;
+  for (const std::string& folder : args.folders)
+    tables.push_back(read_csv(fs::path(folder) / "histories.csv"));
+  if (!args.column.empty()) {
+    const fs::path stem = args.output.empty() ? fs::path(args.folders[0]) / "plots" /
+                                                    split_column(full_title(tables[0], args.column)).monitor
+                                              : fs::path(args.output);
+    if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
+    draw_column(args, tables, args.column, stem);
+    return kExitOk;
+  }
+  if (!args.output.empty()) throw Error(kExitUsage, "-o needs -c: without a column there are many figures");
+  const fs::path folder = fs::path(args.folders[0]) / "plots";
+  fs::create_directories(folder);
+  for (size_t c = 1; c < tables[0].columns.size(); ++c) {
+    const std::string& column = tables[0].columns[c];
+    draw_column(args, tables, column, folder / column.substr(0, column.find(" [")));
+  }
+  return kExitOk;
+}
+
+}  // namespace talus::app

@@ -1,0 +1,19 @@
+#pragma once
+// `talus plot`: figures of histories.csv.
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace talus::app {
+
+struct PlotArguments {
+  std::vector<std::string> folders, labels, references;
+  std::string column, output, title, raw, reference_label, time_unit;
+  std::vector<double> limit_y, limit_t;
+};
+
+void add_plot_arguments(CLI::App& verb, PlotArguments& args);
+int plot_command(const PlotArguments& args);
+
+}  // namespace talus::app

@@ -64,7 +64,7 @@ inline BarMeasures measure(const BarCase& bar, const CsvTable& run) {
   }
   size_t last = 0;
   for (size_t i = 0; i < t.size(); ++i) {
-    if (force[i] > 0) last = i;
+    if (force[i] > 1e-6 * bar.force_unit()) last = i;  // a parting contact may touch once more by round-off
     if (t[i] > 0.3 * bar.time_unit()) m.raw_peak = std::max(m.raw_peak, force[i] / bar.force_unit());
   }
   m.raw_first = force[0] / bar.force_unit();

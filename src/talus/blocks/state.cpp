@@ -15,7 +15,8 @@ Polar polar_strain(const Mat2& H) {
   const double a = 2 + H.xx + H.yy, b = H.yx - H.xy;
   const double r = std::hypot(a, b);
   const double c = a / r, s = b / r;
-  const double c1 = -b * b / (r * (r + a));  // c - 1
+  // c - 1, each way without cancellation: small turns here, turns near half a circle there
+  const double c1 = a > 0 ? -b * b / (r * (r + a)) : (a - r) / r;
   return {c, s, c1 + c * H.xx + s * H.yx, c1 + c * H.yy - s * H.xy,
           0.5 * (c * (H.xy + H.yx) + s * (H.yy - H.xx))};
 }

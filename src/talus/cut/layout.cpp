@@ -80,6 +80,15 @@ double model_size(const Layout& layout) {
   return norm(all.max - all.min);
 }
 
+void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
+                   Findings& findings) {
+  std::vector<std::string> names = layout.groups;
+  for (const BlockShape& b : layout.blocks) names.push_back(b.name);
+  const std::string near = closest_name(name, names);
+  findings.error(where, path, fmt::format("there is no block called \"{}\"", name),
+                 near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
+}
+
 void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
   const double tolerance = kPointShare * model_size(layout);
   for (const MonitorInput& m : model.monitors) {
@@ -97,19 +106,17 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
                      fmt::format("({:g}, {:g}) lies outside every block", m.point.x, m.point.y),
                      fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
     }
-    if (m.kind == MonitorKind::kBlock && layout.blocks_called(m.target_a).size() != 1) {
-      const bool grid = layout.find_group(m.target_a) >= 0;
-      std::vector<std::string> names;
-      for (const BlockShape& b : layout.blocks) names.push_back(b.name);
-      const std::string near = closest_name(m.target_a, names);
-      findings.error(
-          m.where, path,
-          grid ? fmt::format("\"{}\" is a grid, not one block", m.target_a)
-               : fmt::format("there is no block called \"{}\"", m.target_a),
-          grid           ? fmt::format("name one of its blocks, for example \"{}\"",
-                                       layout.blocks[static_cast<size_t>(layout.blocks_called(m.target_a)[0])].name)
-          : near.empty() ? ""
-                         : fmt::format("did you mean \"{}\"?", near));
+    if (m.kind == MonitorKind::kBlock) {
+      const std::vector<int> called = layout.blocks_called(m.target_a);
+      if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);
+      if (called.size() > 1)
+        findings.error(m.where, path, fmt::format("\"{}\" is a grid, not one block", m.target_a),
+                       fmt::format("name one of its blocks, for example \"{}\"",
+                                   layout.blocks[static_cast<size_t>(called[0])].name));
+    }
+    if (m.kind == MonitorKind::kContact) {
+      for (const std::string& name : {m.target_a, m.target_b})
+        if (layout.blocks_called(name).empty()) unknown_block(layout, name, m.where, path, findings);
     }
   }
 }
@@ -162,6 +169,12 @@ Layout make_layout(const Model& model, Findings& findings) {
   }
   for (const ContactPairInput& p : model.contact_pairs) {
     const int a = layout.find_group(p.name_a), b = layout.find_group(p.name_b);
+    if (a < 0 || b < 0) {
+      findings.error(p.where, "contact_pair.between",
+                     fmt::format("\"{}\" is one block of a grid", a < 0 ? p.name_a : p.name_b),
+                     "a joint belongs to whole grids or blocks: name the grid");
+      continue;
+    }
     if (a == b) findings.error(p.where, "contact_pair", "names the same block or grid twice");
     layout.pair_joint[std::minmax(a, b)] = p.joint;
   }

@@ -143,7 +143,9 @@ class ModelReader {
     return i;
   }
 
+  // A block of a grid ("bar[3,0]") is known only when the grid is divided: checked with the layout.
   void refer_block_or_grid(const std::string& name, const Where& where, const std::string& path) {
+    if (name.find('[') != std::string::npos) return;
     struct Named {
       std::string name;
     };

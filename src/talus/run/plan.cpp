@@ -36,9 +36,13 @@ int64_t rows_of(double duration, int64_t steps, double interval) {
 
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::vector<StagePlan> plans;
-  const StableStep bound = stable_step(scene.blocks);
+  const StableStep undamped = stable_step(scene.blocks);
+  StableStep bound = undamped;
   const std::string bound_name = bound.block >= 0 ? scene.blocks.name[static_cast<size_t>(bound.block)] : "";
   for (const StageInput& stage : scene.model.stages) {
+    // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
+    // theory 4.5
+    bound.dt = undamped.dt / std::sqrt(1 + stage.damping_local);
     StagePlan plan;
     plan.dt_bound = bound.dt;
     plan.bound_block = bound.block;
@@ -55,7 +59,8 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
     plan.dt = stage.duration / static_cast<double>(plan.steps);
     if (plan.dt >= bound.dt && stage.moment_clamp) {
-      if (plan.dt > median_step(scene.blocks)) {
+      const double clamp_dt = plan.dt * std::sqrt(1 + stage.damping_local);
+      if (clamp_dt > median_step(scene.blocks)) {
         findings.error(stage.where_step, path + ".time_step",
                        fmt::format("{:.4g} s is above the stable limit of a block of median size, {:.4g} s: "
                                    "the moment clamp would change the model, not its slivers",
@@ -63,7 +68,8 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
                        "use a smaller step");
       }
       BlockSet clamped = scene.blocks;
-      clamp_moments(clamped, plan.dt);
+      clamp_moments(clamped, clamp_dt);
+      plan.clamp_dt = clamp_dt;
       plan.clamped = clamped.clamped, plan.largest_clamp = clamped.largest_clamp;
       if (plan.clamped > kWarnClampShare * scene.blocks.count)
         findings.warning(stage.where_step, path + ".moment_clamp",

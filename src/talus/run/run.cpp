@@ -45,7 +45,7 @@ class Runner {
     const StageInput& stage = scene_.model.stages[k];
     const StagePlan& plan = plans_[k];
     scene_.blocks = unclamped_;
-    if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.dt);
+    if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     settings_ = {stage.damping_mass, stage.damping_local,
                  scene_.model.solver.tolerance * smallest_block(scene_.blocks)};
     state_.largest_kinetic = 0;

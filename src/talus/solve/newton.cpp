@@ -46,7 +46,7 @@ class Direction {
     if (n_free == 0) return true;
 
     std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd rhs(n_free);
+    Eigen::VectorXd rhs(n_free), added(n_free);
     for (int r = 0; r < problem_.size(); ++r) {
       const int row = free_index[static_cast<size_t>(r)];
       if (row < 0) continue;
@@ -58,13 +58,16 @@ class Direction {
         else
           rhs[row] -= it.value() * d[it.col()];
       }
-      entries.emplace_back(row, row, kRegularisation * problem_.diagonal[r]);
+      added[row] = kRegularisation * problem_.diagonal[r];
+      entries.emplace_back(row, row, added[row]);
     }
     Eigen::SparseMatrix<double> a(n_free, n_free);
     a.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(a);
     if (factor.info() != Eigen::Success) return false;
-    const Eigen::VectorXd x = factor.solve(rhs);
+    // one refinement against the matrix without the added share: what W can feel is then solved to round-off
+    Eigen::VectorXd x = factor.solve(rhs);
+    x += factor.solve(Eigen::VectorXd(rhs - (a * x - added.cwiseProduct(x))));
     if (!x.allFinite()) return false;
     for (int r = 0; r < problem_.size(); ++r) {
       const int row = free_index[static_cast<size_t>(r)];
@@ -83,6 +86,10 @@ class Direction {
     Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(a);
     if (factor.info() != Eigen::Success) return false;
     d = factor.solve(-h);
+    Eigen::VectorXd left = -h - a * d;  // refined as above
+    for (int r = 0; r < problem_.size(); ++r)
+      if (states[static_cast<size_t>(r)].free) left[r] += kRegularisation * problem_.diagonal[r] * d[r];
+    d += factor.solve(left);
     return d.allFinite();
   }
 
@@ -105,7 +112,10 @@ int solve_island(const ContactProblem& problem, const SolverInput& options, doub
   const Direction direction(problem);
   Eigen::VectorXd h = residual(problem, p), d;
   for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
-    if (h.lpNorm<Eigen::Infinity>() <= tolerance) return iteration;
+    // at least one iteration: a first guess that happens to be good enough would make the accuracy of a step
+    // depend on the scale of the problem
+    const double left = h.lpNorm<Eigen::Infinity>();
+    if ((iteration > 0 && left <= tolerance) || left == 0) return iteration;
     const bool solved = options.jacobian == JacobianKind::kDifference
                             ? direction_by_differences(problem, p, h, d)
                             : direction.solve(row_states(problem, p), h, d);

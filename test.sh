@@ -1,0 +1,31 @@
+#!/bin/bash
+# Installs what is missing, builds, and runs all tests: optimised, then under the sanitizers.
+# Usage: ./test.sh [release|sanitize]    (default: both)
+set -eu
+cd "$(dirname "$0")"
+. tools/setup.sh
+install_missing_packages
+
+format_check() {
+  command -v clang-format >/dev/null || { echo "format: skipped, clang-format is not installed"; return 0; }
+  case "$(clang-format --version)" in *" 14."*) ;; *) echo "format: skipped, needs clang-format 14"; return 0 ;; esac
+  find src app examples tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run --Werror
+  echo "format: clean"
+}
+
+run_tests() {
+  build "$1"
+  ctest --preset "$1" -j 2 --no-tests=error --progress ${2:-} >"build/$1.test.log" 2>&1 || { tail -100 "build/$1.test.log"; return 1; }
+  tail -4 "build/$1.test.log"
+}
+
+which=${1:-both}
+format_check
+if [ "$which" != sanitize ]; then
+  run_tests release
+  echo
+  echo "accuracy reached   | what                                                       |        computed |           exact |   error   |    pass | stretch |"
+  grep -h '^residual' build/release/Testing/Temporary/LastTest.log | sort -u
+  echo
+fi
+[ "$which" = release ] || run_tests sanitize

@@ -1,0 +1,64 @@
+#pragma once
+// Runs a model text in memory and keeps its histories as a table.
+
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "talus/talus.h"
+
+namespace talus::test {
+
+struct CaseResult {
+  CsvTable table;
+  RunResult run;
+  State state;  // after the last step
+
+  const std::vector<double>& column(const std::string& name) const { return table.column(name); }
+};
+
+/// Collects the histories; `watch`, when given, sees every instant.
+class MemoryObserver : public Observer {
+ public:
+  MemoryObserver(const Scene& scene, std::function<void(const Instant&)> watch)
+      : histories_(scene, [this](const std::vector<double>& row) { keep(row); }), watch_(std::move(watch)) {
+    table.columns = histories_.columns();
+    table.values.resize(table.columns.size());
+  }
+  void at(const Instant& instant) override {
+    histories_.at(instant, true);
+    if (watch_) watch_(instant);
+    if (instant.last) histories_.finish();
+  }
+
+  CsvTable table;
+
+ private:
+  void keep(const std::vector<double>& row) {
+    for (size_t i = 0; i < row.size(); ++i) table.values[i].push_back(row[i]);
+  }
+  Histories histories_;
+  std::function<void(const Instant&)> watch_;
+};
+
+/// @param prepare  may change the state before the first step
+inline CaseResult run_case(const std::string& model, const std::vector<std::string>& overrides = {},
+                           const std::function<void(const Instant&)>& watch = nullptr,
+                           const std::function<void(const Scene&, State&)>& prepare = nullptr) {
+  Findings findings("case.toml", model);
+  PreparedRun prepared = prepare_run("case.toml", model, overrides, findings);
+  CaseResult result;
+  result.state = start_state(prepared.scene);
+  if (prepare) prepare(prepared.scene, result.state);
+  MemoryObserver observer(prepared.scene, watch);
+  result.run = run_stages(prepared.scene, prepared.plans, result.state, observer);
+  result.table = observer.table;
+  INFO(result.run.failure);
+  REQUIRE(result.run.failure.empty());
+  CHECK(result.run.failed_steps == 0);
+  return result;
+}
+
+}  // namespace talus::test

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""Fails on the first include that goes up in the order of the folders (docs/architecture.md).
+
+Usage: check_layers.py src/talus
+"""
+import pathlib
+import re
+import sys
+
+# each folder and the folders it may include, besides itself
+ALLOWED = {
+    "base": "",
+    "geometry": "base",
+    "model": "base geometry",
+    "cut": "base geometry model",
+    "blocks": "base geometry model cut",
+    "rows": "base geometry model cut blocks",
+    "contact": "base geometry model cut blocks rows",
+    "supports": "base geometry model cut blocks rows",
+    "solve": "base model blocks rows",
+    "step": "base geometry model cut blocks rows contact supports solve",
+    "output": "base geometry model cut blocks",
+    "run": "base geometry model cut blocks rows contact supports solve step output",
+    "plot": "base output",
+}
+
+
+def main() -> int:
+    root = pathlib.Path(sys.argv[1])
+    wrong = []
+    files = sorted(p for p in root.rglob("*") if p.suffix in (".h", ".cpp"))
+    for path in files:
+        relative = path.relative_to(root)
+        if len(relative.parts) == 1:
+            continue  # talus.h, the public face
+        folder = relative.parts[0]
+        if folder not in ALLOWED:
+            wrong.append(f"{path}: folder '{folder}' is not in the order; add it to tools/check_layers.py")
+            continue
+        allowed = set(ALLOWED[folder].split()) | {folder}
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = re.match(r'\s*#include\s+"([^"]+)"', line)
+            if not match:
+                continue
+            parts = match.group(1).split("/")
+            if parts[0] != "talus":
+                wrong.append(f"{path}:{number}: write includes from the root: \"talus/...\"")
+            elif parts[1] not in allowed:
+                wrong.append(f"{path}:{number}: {folder}/ may not include {parts[1]}/")
+    for text in wrong:
+        print(text)
+    print(f"{len(files)} files, {len(wrong)} wrong includes")
+    return 1 if wrong or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,39 @@
+# Sourced by run.sh and test.sh: installs the missing Debian packages, configures and builds.
+# Quick when nothing has changed: one look at the package database, one look of the build tool at the sources.
+
+talus_packages="g++ cmake ninja-build pkgconf python3-minimal libeigen3-dev libgeos-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+  libmuparser-dev libcairo2-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
+
+install_missing_packages() {
+  local missing="" p
+  for p in $talus_packages; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$p" 2>/dev/null)" = installed ] || missing="$missing $p"
+  done
+  [ -n "$missing" ] || return 0
+  local as_root=""
+  if [ "$(id -u)" != 0 ]; then
+    if command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
+      as_root="sudo"
+    elif command -v sudo >/dev/null && [ -t 0 ]; then
+      as_root="sudo"
+    else
+      echo "talus needs packages that only root can install. Have this line run once, then start again:"
+      echo "  apt-get update && apt-get install -y --no-install-recommends$missing"
+      exit 1
+    fi
+  fi
+  echo "installing:$missing"
+  # an old package list is the usual reason of a first failure
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends --no-remove $missing >/dev/null 2>&1 ||
+    { $as_root apt-get update -q >/dev/null &&
+      $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends --no-remove $missing >/dev/null; }
+}
+
+# build PRESET: configures once and builds what has changed; the log is shown when it fails.
+build() {
+  local log="build/$1.log"
+  mkdir -p build
+  [ -e "build/$1/build.ninja" ] || echo "building ($1); the first time takes a few minutes"
+  { { [ -e "build/$1/build.ninja" ] || cmake --preset "$1" ${2:-}; } && cmake --build --preset "$1"; } >"$log" 2>&1 ||
+    { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }
+}

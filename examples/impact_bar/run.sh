@@ -36,11 +36,11 @@ echo "The peak is that of the force as mean over 0.2 L/c, for the reason given i
 echo
 
 column=impact.mean_normal_force
-"$talus" plot "$out/E0.5625e7" "$out/E1e7" "$out/E2.25e7" "$out/E9e7" -c $column -o "$out/figure8" --time-unit ms --limit-t 0 32 --limit-y 0 3300 \
+"$talus" plot "$out/E0.5625e7" "$out/E1e7" "$out/E2.25e7" "$out/E9e7" -c $column -o "$out/figure8" --time-unit ms --limit-t 0 32 --limit-y 0 2500 \
   -l "E = 0.56e7 Pa" -l "E = 1.0e7 Pa" -l "E = 2.25e7 Pa" -l "E = 9.0e7 Pa" \
   -r "$out/E0.5625e7/exact.csv" -r "$out/E1e7/exact.csv" -r "$out/E2.25e7/exact.csv" -r "$out/E9e7/exact.csv" \
   --title "Contact force for four moduli (10 sub-blocks, mean over 0.2 L/c)"
-"$talus" plot "$out/E1e7" "$out/v2.5" "$out/v3.75" "$out/v5" -c $column -o "$out/figure9" --time-unit ms --limit-t 0 26 --limit-y 0 4400 \
+"$talus" plot "$out/E1e7" "$out/v2.5" "$out/v3.75" "$out/v5" -c $column -o "$out/figure9" --time-unit ms --limit-t 0 26 --limit-y 0 3300 \
   -l "v = 1.25 m/s" -l "v = 2.5 m/s" -l "v = 3.75 m/s" -l "v = 5.0 m/s" \
   -r "$out/E1e7/exact.csv" -r "$out/v2.5/exact.csv" -r "$out/v3.75/exact.csv" -r "$out/v5/exact.csv" \
   --title "Contact force for four velocities (10 sub-blocks, mean over 0.2 L/c)"

@@ -67,9 +67,10 @@ struct WorkDone {
 };
 
 struct State {
-  double time = 0;       // [s]
-  int64_t step = 0;      // steps completed
-  double dt_before = 0;  // length of the step before [s]; 0 at the start, which makes the first half step
+  double time = 0;          // [s]
+  int64_t step = 0;         // steps completed
+  double history_time = 0;  // [s] clock of the histories: time spent in dynamic stages
+  double dt_before = 0;     // length of the step before [s]; 0 at the start, which makes the first half step
 
   std::vector<Vec2> displacement;  // [count] c - c0 [m]
   std::vector<Mat2> strain_part;   // [count] F - I

@@ -61,24 +61,26 @@ class ModelReader {
     }
   }
 
-  // The table of a [section]; empty when the file has none.
-  toml::table table_of(const std::string& name, const std::string& form) {
+  // The table of a [section]; empty when the file has none. (Never a copy: copies forget their place in the
+  // file.)
+  const toml::table& table_of(const std::string& name, const std::string& form) {
+    static const toml::table none;
     const toml::node* node = source_.root.get(name);
-    if (!node) return {};
+    if (!node) return none;
     if (const toml::table* t = node->as_table()) return *t;
     findings_.error(where_of(node->source()), name, fmt::format("is written {}", form));
-    return {};
+    return none;
   }
 
   Fields read_table(const std::string& name) {
-    const toml::table t = table_of(name, "[" + name + "]");
+    const toml::table& t = table_of(name, "[" + name + "]");
     return read_section(section_spec(name), t, name, where_of(t.source()), source_, findings_);
   }
 
   // Calls `use(name, fields)` for every [section.NAME].
   template <class Use>
   void for_named(const std::string& section, Use use) {
-    const toml::table all = table_of(section, fmt::format("[{}.NAME]", section));
+    const toml::table& all = table_of(section, fmt::format("[{}.NAME]", section));
     for (const auto& [key, node] : all) {
       const std::string path = section + "." + std::string(key.str());
       const toml::table* t = node.as_table();
@@ -212,8 +214,9 @@ class ModelReader {
       Material m;
       m.name = name;
       m.density = f.get("density", 1.0);
-      m.young = f.get("young", m.young);
-      m.poisson = f.get("poisson", m.poisson);
+      // a value that was given but refused has its message already: 0 keeps it from being called missing
+      m.young = f.get("young", f.given("young") ? 0 : m.young);
+      m.poisson = f.get("poisson", f.given("poisson") ? 0 : m.poisson);
       model_.materials.push_back(m);
     });
   }

@@ -107,7 +107,9 @@ std::vector<SectionSpec> build_schema() {
 
       {"history",
        SectionShape::kNamed,
-       "A quantity over time, linear between its points, held before the first and after the last. Give "
+       "A quantity over time, linear between its points, held before the first and after the last. Its clock "
+       "runs in dynamic "
+       "stages only and starts with the first of them. Give "
        "`time` and "
        "`value`, or `expression` with `duration`.",
        {{.name = "time", .type = K::kNumbers, .dimension = D::kTime, .doc = "Rising times [s]."},
@@ -425,7 +427,7 @@ std::string_view type_text(const KeySpec& k) {
 }
 
 std::string allowed_text(const KeySpec& k) {
-  std::string out = k.range.describe(D::kNone);
+  std::string out = k.range.describe(k.dimension == D::kAngle ? D::kAngle : D::kNone);
   for (const std::string& c : k.choices) out += (out.empty() ? "`" : ", `") + c + "`";
   if (!k.refers_to.empty()) out = fmt::format("name of a {}", k.refers_to);
   return out;

@@ -144,6 +144,8 @@ Quantity parse_quantity(std::string_view text, Dimension dimension) {
 }
 
 std::string with_unit(double value, Dimension dimension) {
+  if (dimension == Dimension::kAngle)
+    return fmt::format("{:g} deg", value / kDegree);  // as people write them
   const std::string_view symbol = si_symbol(dimension);
   return symbol.empty() ? fmt::format("{:g}", value) : fmt::format("{:g} {}", value, symbol);
 }

@@ -47,7 +47,8 @@ class Runner {
     scene_.blocks = unclamped_;
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     settings_ = {stage.damping_mass, stage.damping_local,
-                 scene_.model.solver.tolerance * smallest_block(scene_.blocks)};
+                 scene_.model.solver.tolerance * smallest_block(scene_.blocks),
+                 stage.kind == StageKind::kDynamic};
     state_.largest_kinetic = 0;
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
     StageResult& out = result_.stages.back();
@@ -62,7 +63,8 @@ class Runner {
       note(report);
       observer_.at({scene_, state_, work_, report, plan, index, n == 0, false});
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-      drift(scene_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_, report);
+      drift(scene_, settings_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_,
+            report);
       ++out.steps;
       out.unbalanced = report.unbalanced;
       state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.kinetic);

@@ -78,6 +78,8 @@ class Kick {
   }
 
  private:
+  double history_end() const { return state_.history_time + (settings_.histories_run ? dt_ : 0); }
+
   // Rates at the end of the kick as they would be without rows (theory 4.2), damping included.
   void predict(double damping) {
     work_.rate_now.clear();
@@ -92,7 +94,7 @@ class Kick {
       const BlockForce impulse = work_.dt_kick * forces_[k] + local_damping_[k];
       v = scale_ * ((1 - damping) * v + accelerate(blocks_, k, impulse));
     }
-    drive_blocks(blocks_, scene_.model, scene_.layout, state_, dt_, state_.rate);
+    drive_blocks(blocks_, scene_.model, scene_.layout, state_, history_end(), dt_, state_.rate);
     rate_free_ = state_.rate;
   }
 
@@ -122,7 +124,7 @@ class Kick {
     add_contact_rows(blocks_, scene_.layout, model.joints, work_.contacts, state_, dt_, work_.dt_kick,
                      work_.rows);
     work_.first_support = work_.rows.points.size();
-    add_support_rows(blocks_, model, scene_.supported, state_, dt_, work_.dt_kick, work_.rows);
+    add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
     report_.contacts = static_cast<int>(work_.contacts.size());
   }
 
@@ -242,8 +244,8 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
   return Kick(scene, settings, dt, work, state).run();
 }
 
-void drift(const Scene& scene, double dt, double time_end, const StepWork& work, State& state,
-           StepReport& report) {
+void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, const StepWork& work,
+           State& state, StepReport& report) {
   const BlockSet& blocks = scene.blocks;
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
@@ -275,6 +277,7 @@ void drift(const Scene& scene, double dt, double time_end, const StepWork& work,
   add(work.work.after);
   report.broken_faces = update_bonds(scene.bonds, scene.model.joints, blocks.thickness, dt, state);
   state.time = time_end;
+  if (settings.histories_run) state.history_time += dt;
   state.dt_before = dt;
   ++state.step;
 }

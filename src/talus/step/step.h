@@ -14,9 +14,10 @@
 namespace talus {
 
 struct StepSettings {
-  double damping_mass = 0;   // [1/s]
-  double damping_local = 0;  // [-]
-  double tolerance = 0;      // largest contact error of a step [m]
+  double damping_mass = 0;    // [1/s]
+  double damping_local = 0;   // [-]
+  double tolerance = 0;       // largest contact error of a step [m]
+  bool histories_run = true;  // false: their clock stands still (static stages)
 };
 
 /// Work that one kick does, half at the velocity before and half at the velocity after it: the second half
@@ -55,8 +56,8 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 
 /// Moves the blocks to `time_end` = state.time + dt with the rates of the kick; breaks faces.
 /// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
-void drift(const Scene& scene, double dt, double time_end, const StepWork& work, State& state,
-           StepReport& report);
+void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, const StepWork& work,
+           State& state, StepReport& report);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.
 std::string row_name(const Scene& scene, const StepWork& work, size_t row);

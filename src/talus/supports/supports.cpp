@@ -16,8 +16,7 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
 }
 
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
-                      const State& state, double dt, double dt_kick, RowSet& rows) {
-  const double end = state.time + dt;
+                      const State& state, double history_end, double dt, double dt_kick, RowSet& rows) {
   for (size_t i = 0; i < points.size(); ++i) {
     const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
     const auto block = static_cast<size_t>(points[i].block);
@@ -30,7 +29,7 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
       if (motion.kind == Motion::kFree)
         row.lower = row.upper = 0;
       else
-        row.bias = sign * (place - motion.displacement_at(end, model.histories)) / dt;
+        row.bias = sign * (place - motion.displacement_at(history_end, model.histories)) / dt;
     };
     hold(p.row[0], support.x, now.x, 1);
     hold(p.row[1], support.y, now.y, -1);
@@ -39,15 +38,14 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
 }
 
 void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
-                  double dt, std::vector<BlockRate>& rate) {
-  const double end = state.time + dt;
+                  double history_end, double dt, std::vector<BlockRate>& rate) {
   for (size_t i = 0; i < rate.size(); ++i) {
     if (blocks.kind[i] == BlockKind::kFixed) rate[i] = {};
     if (blocks.kind[i] != BlockKind::kDriven) continue;
     const BlockShape& shape = layout.blocks[i];
-    const Vec2 target{shape.motion_x.displacement_at(end, model.histories),
-                      shape.motion_y.displacement_at(end, model.histories)};
-    const double angle = shape.motion_rotation.displacement_at(end, model.histories);
+    const Vec2 target{shape.motion_x.displacement_at(history_end, model.histories),
+                      shape.motion_y.displacement_at(history_end, model.histories)};
+    const double angle = shape.motion_rotation.displacement_at(history_end, model.histories);
     rate[i] = {(target - state.displacement[i]) / dt, spin_matrix((angle - state.angle[i]) / dt)};
   }
 }

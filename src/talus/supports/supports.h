@@ -18,13 +18,13 @@ struct SupportedPoint {
 std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
                                              const BlockSet& blocks);
 
-/// Rows of the supports for a step from state.time to state.time + dt: along x, and along -y (the tangent of
-/// x).
+/// Rows of the supports for a step of length dt: along x, and along -y (the tangent of x).
+/// @param history_end  clock of the histories at the end of the step [s]
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
-                      const State& state, double dt, double dt_kick, RowSet& rows);
+                      const State& state, double history_end, double dt, double dt_kick, RowSet& rows);
 
-/// Rates that bring driven blocks to their prescribed place at state.time + dt; fixed blocks get none.
+/// Rates that bring driven blocks to their prescribed place at the end of the step; fixed blocks get none.
 void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
-                  double dt, std::vector<BlockRate>& rate);
+                  double history_end, double dt, std::vector<BlockRate>& rate);
 
 }  // namespace talus

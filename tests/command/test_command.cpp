@@ -1,0 +1,247 @@
+// The talus command as a user meets it: exit codes, messages, result files, interruption, full disk.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "talus/model/toml_source.h"
+#include "talus/output/files.h"
+
+using namespace talus;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder of its own for each test, removed at its end.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / fmt::format("talus_command_{}_{}", getpid(), count_++)) {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  static inline int count_ = 0;
+  fs::path path_;
+};
+
+struct Outcome {
+  int code;
+  std::string text;  // both streams
+};
+
+// Runs a shell line in which $talus is the program.
+Outcome shell(const Folder& folder, const std::string& line) {
+  const fs::path log = folder / "log.txt";
+  const int status =
+      std::system(fmt::format("talus='{}'; ( {} ) > '{}' 2>&1", TALUS_COMMAND, line, log.string()).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text_file(log)};
+}
+
+const std::string kBar = std::string(TALUS_SOURCE_DIR) + "/examples/impact_bar/impact_bar.toml";
+
+bool has(const std::string& text, const std::string& part) {
+  INFO("text:\n", text, "\nshould hold: ", part);
+  CHECK(text.find(part) != std::string::npos);
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("command: help, version and wrong usage") {
+  const Folder f;
+  CHECK(shell(f, "$talus --help").code == 0);
+  for (const char* verb : {"run", "check", "plot", "schema"}) {
+    const Outcome o = shell(f, fmt::format("$talus {} --help", verb));
+    CHECK(o.code == 0);
+    if (std::string(verb) != "schema") has(o.text, "Example: talus");
+  }
+  has(shell(f, "$talus --version").text, "model format 1");
+  CHECK(shell(f, "$talus").code == 2);
+  CHECK(shell(f, "$talus rum x").code == 2);
+  CHECK(shell(f, "$talus run").code == 2);
+}
+
+TEST_CASE("command: check predicts and runs nothing") {
+  const Folder f;
+  const Outcome o = shell(f, fmt::format("cd {} && $talus check {}", (f / "").string(), kBar));
+  CHECK(o.code == 0);
+  for (const char* part :
+       {"no errors", "11; 9 glued faces", "135 steps", "stable limit 0.0004743 s", "memory", "output"})
+    has(o.text, part);
+  size_t files = 0;
+  for ([[maybe_unused]] const auto& e : fs::directory_iterator(f / "")) ++files;
+  CHECK(files == 1);  // the log of this test
+}
+
+TEST_CASE("command: a run writes every result file, and refuses to overwrite") {
+  const Folder f;
+  const std::string out = (f / "out").string();
+  const Outcome o = shell(f, fmt::format("$talus run {} -o {}", kBar, out));
+  CHECK(o.code == 0);
+  for (const char* part : {"stage 1/1 \"impact\"", "finished: 11 blocks", "contact error", "energy ledger"})
+    has(o.text, part);
+  CHECK(o.text.find('\r') == std::string::npos);  // plain lines where there is no terminal
+
+  CHECK(read_text_file(fs::path(out) / "model.toml") == read_text_file(kBar));
+  const auto summary = nlohmann::json::parse(read_text_file(fs::path(out) / "summary.json"));
+  CHECK(summary["status"] == "finished");
+  CHECK(summary["blocks"]["all"] == 11);
+  CHECK(summary["stages"][0]["steps"] == 135);
+  CHECK(summary["stages"][0]["dt_bound_block"].get<std::string>().rfind("bar[", 0) == 0);
+  CHECK(summary["solver"]["failed_steps"] == 0);
+  CHECK(summary["energy_closure"].get<double>() < 1e-12);
+  const CsvTable histories = read_csv(fs::path(out) / "histories.csv"),
+                 steps = read_csv(fs::path(out) / "steps.csv");
+  CHECK(histories.columns[0] == "t [s]");
+  CHECK(histories.rows() == 136);
+  CHECK(steps.rows() == 136);
+  std::set<std::string> names(histories.columns.begin(), histories.columns.end());
+  CHECK(names.size() == histories.columns.size());
+  CHECK(fs::exists(fs::path(out) / "fields/blocks.pvd"));
+  CHECK(fs::exists(fs::path(out) / "fields/blocks_000032.vtu"));
+  CHECK(fs::exists(fs::path(out) / "fields/contacts_000000.vtp"));
+  for (const auto& e : fs::recursive_directory_iterator(out)) CHECK(e.path().extension() != ".part");
+
+  const Outcome again = shell(f, fmt::format("$talus run {} -o {}", kBar, out));
+  CHECK(again.code == 4);
+  has(again.text, "exists already; nothing was run");
+  CHECK(shell(f, fmt::format("$talus run {} -o {} --force -q", kBar, out)).text == "");
+  // --force removes results, never anything else
+  CHECK(shell(f, fmt::format("mkdir {0}/mine && echo x > {0}/mine/x && $talus run {1} -o {0}/mine --force",
+                             (f / "").string(), kBar))
+            .code == 4);
+  CHECK(fs::exists(f / "mine/x"));
+}
+
+TEST_CASE("command: two runs give the same bits") {
+  const Folder f;
+  const auto run = [&](const char* name) {
+    CHECK(shell(f, fmt::format("$talus run {} -o {}", kBar, (f / name).string())).code == 0);
+    return read_text_file(f / name / "histories.csv") + read_text_file(f / name / "steps.csv") +
+           read_text_file(f / name / "fields/contacts_000032.vtp");
+  };
+  CHECK(run("a") == run("b"));
+}
+
+TEST_CASE("command: overrides change the run and are recorded") {
+  const Folder f;
+  const std::string out = (f / "out").string();
+  CHECK(
+      shell(f, fmt::format("$talus run {} -o {} --set grid.bar.cells=[20,1] --set 'material.bar.young=4 MPa'",
+                           kBar, out))
+          .code == 0);
+  const auto summary = nlohmann::json::parse(read_text_file(fs::path(out) / "summary.json"));
+  CHECK(summary["blocks"]["all"] == 21);
+  CHECK(summary["overrides"][1] == "material.bar.young=4 MPa");
+  has(read_text_file(fs::path(out) / "model.toml"), "# --set grid.bar.cells=[20,1]");
+}
+
+TEST_CASE("command: wrong model exits 3 and creates nothing") {
+  const Folder f;
+  write_file(f / "m.toml", "talus = 1\n[[blok]]\n");
+  const Outcome o =
+      shell(f, fmt::format("$talus run {} -o {}", (f / "m.toml").string(), (f / "out").string()));
+  CHECK(o.code == 3);
+  has(o.text, "m.toml:2:3: error: blok: unknown section");
+  has(o.text, "did you mean \"block\"?");
+  CHECK(!fs::exists(f / "out"));
+  CHECK(shell(f, fmt::format("$talus check {}", (f / "m.toml").string())).code == 3);
+}
+
+TEST_CASE("command: unreadable input, folder instead of file, unwritable output exit 4") {
+  const Folder f;
+  const Outcome missing = shell(f, "$talus check nothing.toml");
+  CHECK(missing.code == 4);
+  has(missing.text, "nothing.toml: cannot be read: No such file or directory");
+  CHECK(shell(f, "$talus check /").code == 4);
+  write_file(f / "file", "x");
+  CHECK(shell(f, fmt::format("$talus run {} -o {}", kBar, (f / "file").string())).code == 4);
+  CHECK(shell(f, fmt::format("$talus run {} -o {}", kBar, (f / "file/below").string())).code == 4);
+}
+
+TEST_CASE("command: a full disk is told, with its file, and exits 4") {
+  // a limit on the size of files stands for the disk: the write fails in the same place
+  const Folder f;
+  const Outcome o = shell(f, fmt::format("ulimit -f 16; $talus run {} -o {}", kBar, (f / "out").string()));
+  CHECK(o.code == 4);
+  has(o.text, "cannot be written: File too large");
+}
+
+TEST_CASE("command: numbers that leave the finite exit 5 with time and block") {
+  const Folder f;
+  write_file(f / "m.toml", R"(talus = 1
+[material.m]
+density = 1e-300
+[[block]]
+name = "b"
+polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
+material = "m"
+kind = "rigid"
+[history.h]
+time = [0, 1]
+value = [0, 1e300]
+[[support]]
+name = "s"
+point = [0.5, 0.5]
+x = { velocity = "h" }
+[[stage]]
+name = "go"
+kind = "dynamic"
+duration = 1e8
+time_step = 1e7
+)");
+  const Outcome o =
+      shell(f, fmt::format("$talus run {} -o {}", (f / "m.toml").string(), (f / "out").string()));
+  CHECK(o.code == 5);
+  has(o.text, "t = ");
+  has(o.text, "results up to then are in");
+  CHECK(nlohmann::json::parse(read_text_file(f / "out" / "summary.json"))["status"] == "failed");
+}
+
+TEST_CASE("command: Ctrl-C ends a run with valid results and exit code 130") {
+  const Folder f;
+  const std::string out = (f / "out").string();
+  // a run of minutes, interrupted as soon as it has written its first frame
+  const Outcome o =
+      shell(f, fmt::format("$talus run {0} -o {1} --set 'stage.impact.duration=1000 s' --set "
+                           "'output.steps_interval=1 s' --set 'output.history_interval=10 ms' "
+                           "--set 'output.field_interval=0 s' & pid=$!; while [ ! -e {1}/fields/blocks.pvd "
+                           "]; do sleep 0.05; done; sleep 0.3; kill -INT $pid; wait $pid",
+                           kBar, out));
+  CHECK(o.code == 130);
+  has(o.text, "interrupted; the results up to then are valid");
+  const auto summary = nlohmann::json::parse(read_text_file(fs::path(out) / "summary.json"));
+  CHECK(summary["status"] == "interrupted");
+  const CsvTable histories = read_csv(fs::path(out) / "histories.csv");
+  CHECK(histories.rows() > 2);
+  CHECK(histories.values[0].back() == doctest::Approx(summary["stages"][0]["end [s]"].get<double>()));
+}
+
+TEST_CASE("command: plot draws a column, several runs, and names what is missing") {
+  const Folder f;
+  const std::string out = (f / "out").string();
+  CHECK(shell(f, fmt::format("$talus run {} -o {} -q", kBar, out)).code == 0);
+  CHECK(
+      shell(f, fmt::format(
+                   "$talus plot {0} {0} -c impact.mean_normal_force -l one -l two -o {0}/two --time-unit ms",
+                   out))
+          .code == 0);
+  CHECK(fs::file_size(out + "/two.png") > 5000);
+  has(read_text_file(out + "/two.svg"), "<svg");
+  const Outcome all = shell(f, fmt::format("$talus plot {}", out));
+  CHECK(all.code == 0);
+  CHECK(fs::exists(out + "/plots/impact.normal_force.svg"));
+  const Outcome wrong = shell(f, fmt::format("$talus plot {} -c impact.nothing -o {}/x", out, out));
+  CHECK(wrong.code == 4);
+  has(wrong.text, "there is no column \"impact.nothing\"; there is t [s], impact.force_x [N]");
+  has(shell(f, "$talus plot nowhere").text, "nowhere/histories.csv: cannot be read");
+}

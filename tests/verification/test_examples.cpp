@@ -1,0 +1,71 @@
+// Every example runs, and gives the number that its README quotes.
+
+#include "support/run_case.h"
+#include "support/tolerance.h"
+#include "talus/model/toml_source.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+CaseResult run_example(const std::string& name, const std::function<void(const Instant&)>& watch = nullptr) {
+  return run_case(read_text_file(fmt::format("{0}/examples/{1}/{1}.toml", TALUS_SOURCE_DIR, name)), {},
+                  watch);
+}
+
+}  // namespace
+
+TEST_CASE("example wave_column: the pulse doubles at the free end") {
+  const CaseResult r = run_example("wave_column");
+  const auto &t = r.column("t [s]"), &end = r.column("free_end.velocity_x"),
+             &middle = r.column("middle.velocity_x");
+  size_t top = 0;
+  for (size_t i = 0; i < t.size() && t[i] < 6e-3; ++i)  // before the reflection returns
+    if (middle[i] > middle[top]) top = i;
+  // samples at every 70 us miss the top of a 1.4 ms half-sine by up to 0.3 %
+  check_close("wave_column free end [m/s]", *std::max_element(end.begin(), end.end()), 2, 1e-2, 5e-3);
+  check_close("wave_column peak at the middle [s]", t[top], 10 / 2828.42712 + 0.5 * 1.41421356e-3, 7.1e-5,
+              4e-5, 1);
+  check_below("wave_column energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+TEST_CASE("example pull_apart: breaks once at tensile strength x area") {
+  bool broken = false;
+  double force_after = 0;
+  const CaseResult r = run_example("pull_apart", [&](const Instant& i) {
+    if (i.state.face[0].broken) broken = true;
+    if (broken) force_after = std::max(force_after, std::abs(i.state.bond_force[0][0]));
+  });
+  const auto& f = r.column("joint.normal_force");
+  check_close("pull_apart largest pull of the joint [N]", *std::min_element(f.begin(), f.end()), -500e3, 1e-9,
+              1e-12);
+  CHECK(r.run.broken_faces == 1);
+  CHECK(force_after == 0);
+  CHECK(f.back() == 0);
+  check_below("pull_apart energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+TEST_CASE("example shaken_tower: carries its weight at rest, then follows the base") {
+  double at_rest = 0, slip = 0;
+  const CaseResult r = run_example("shaken_tower", [&](const Instant& i) {
+    if (i.stage == 1 && i.stage_start)
+      for (const ContactMemory& c : i.state.contacts) at_rest += c.force[0];
+    for (const ContactMemory& c : i.state.contacts) slip += std::isnan(c.anchor) && c.force[0] > 0;
+  });
+  check_close("shaken_tower footing at rest [N]", at_rest, 39240, 1e-5, 1e-6);
+  CHECK(slip == 0);
+  CHECK(r.run.stages[0].at_rest);
+  check_below("shaken_tower energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+TEST_CASE("example spinning_block: mean and first peak of the centrifugal stress") {
+  const CaseResult r = run_example("spinning_block");
+  const auto& s = r.column("spinner.stress_xx");
+  double mean = 0;
+  for (const double v : s) mean += v / static_cast<double>(s.size());
+  // mean over some 200 breaths, not a whole number of them: 1/200
+  check_close("spinning_block mean stress [Pa]", mean, 83333.3, 5e-3, 1e-3);
+  check_close("spinning_block peak stress [Pa]", *std::max_element(s.begin(), s.end()), 166666.7, 2e-3, 1e-3);
+  check_below("spinning_block energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}

@@ -30,11 +30,12 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 std::string closest_name(std::string_view word, const std::vector<std::string>& known) {
   std::string best;
-  int best_distance = 1 + static_cast<int>(std::max<size_t>(word.size(), 3)) / 3;
+  if (word.empty()) return best;
+  int best_distance = (static_cast<int>(word.size()) + 2) / 3;
   for (const std::string& name : known) {
     const int distance = edit_distance(word, name);
     const bool begins = word.size() >= 3 && name.rfind(word, 0) == 0;  // "dens" for "density"
-    if (distance <= best_distance || (begins && best.empty())) {
+    if ((distance <= best_distance && distance < static_cast<int>(word.size())) || (begins && best.empty())) {
       if (best.empty() || distance < best_distance) best = name;
       best_distance = std::min(best_distance, distance);
     }

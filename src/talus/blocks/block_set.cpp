@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Share of its stable step that a step means for a clamped block.
+constexpr double kClampMargin = 0.9;
+
 // Eigenvalues s1 >= s2 of a symmetric matrix and the direction of s1.
 struct Eigen2 {
   double s1, s2;
@@ -95,7 +98,8 @@ StableStep stable_step(const BlockSet& blocks) {
 }
 
 void clamp_moments(BlockSet& blocks, double dt) {
-  const double allowed = 4 / (dt * dt);
+  // a mode exactly at its limit grows linearly: clamped blocks stay a tenth below it
+  const double allowed = 4 * kClampMargin * kClampMargin / (dt * dt);
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
     if (stable_step_of(blocks, i) >= dt) continue;

@@ -49,6 +49,40 @@ void add_faces(const BlockSet& blocks, int a, int b, std::vector<BondFace>& face
   }
 }
 
+// Blocks of a bonded body that meet at a corner only are tied when a fan of bonded faces around that corner
+// joins them: their neighbours hold them, and a contact would only say the same again.
+void tie_around_corners(const Layout& layout, const BlockSet& blocks,
+                        const std::vector<std::pair<int, int>>& pairs, BondSet& bonds) {
+  std::vector<std::vector<int>> neighbours(static_cast<size_t>(blocks.count));
+  for (const auto& [a, b] : bonds.tied) {
+    neighbours[static_cast<size_t>(a)].push_back(b);
+    neighbours[static_cast<size_t>(b)].push_back(a);
+  }
+  const auto touches = [&](int block, Vec2 point) {
+    return contains(layout.blocks[static_cast<size_t>(block)].polygon, point,
+                    kTouching * blocks.size[static_cast<size_t>(block)]);
+  };
+  std::vector<std::pair<int, int>> joined;
+  for (const auto& [a, b] : pairs) {
+    bool found = false;
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+      for (const Vec2 corner : layout.blocks[static_cast<size_t>(from)].polygon) {
+        if (found || !touches(to, corner)) continue;
+        // walk from face to face through the blocks around this corner
+        std::vector<int> reached{from};
+        for (size_t i = 0; i < reached.size(); ++i)
+          for (const int next : neighbours[static_cast<size_t>(reached[i])])
+            if (touches(next, corner) && std::find(reached.begin(), reached.end(), next) == reached.end())
+              reached.push_back(next);
+        found = std::find(reached.begin(), reached.end(), to) != reached.end();
+      }
+    }
+    if (found) joined.emplace_back(a, b);
+  }
+  bonds.tied.insert(bonds.tied.end(), joined.begin(), joined.end());
+  std::sort(bonds.tied.begin(), bonds.tied.end());
+}
+
 double transit_time(const Model& model, const BlockSet& blocks, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return 0;
@@ -62,9 +96,10 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
   BondSet bonds;
   std::vector<Box> boxes;
   for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
-  double least = blocks.size[0];
-  for (const double s : blocks.size) least = std::min(least, s);
-  for (const auto& [a, b] : close_pairs(boxes, kTouching * least)) {
+  // near enough for the largest pair; each pair is then judged by its own size
+  const double largest = *std::max_element(blocks.size.begin(), blocks.size.end());
+  std::vector<std::pair<int, int>> without_face;
+  for (const auto& [a, b] : close_pairs(boxes, kTouching * largest)) {
     if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
     const int joint =
         layout.joint_between(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
@@ -76,9 +111,11 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
       bonds.faces[f].unbreakable = model.joints[static_cast<size_t>(joint)].bonded;
       bonds.faces[f].memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
     }
-    // blocks of a bonded body that meet at a corner only: held by their neighbours
-    if (model.joints[static_cast<size_t>(joint)].bonded) bonds.tied.emplace_back(a, b);
+    const bool bonded = model.joints[static_cast<size_t>(joint)].bonded;
+    if (bonded && bonds.faces.size() > first) bonds.tied.emplace_back(a, b);
+    if (bonded && bonds.faces.size() == first) without_face.emplace_back(a, b);
   }
+  tie_around_corners(layout, blocks, without_face, bonds);
   return bonds;
 }
 

@@ -49,7 +49,12 @@ void corners_over_edges(const BlockSet& blocks, const State& s, int a, int b, do
     const size_t first = hits.size();
     for (int e = 0; e < nb; ++e) {
       const CornerEdge c = corner_over_edge(blocks, s, a, v, b, e);
-      if (std::abs(c.gap) > margin || c.along * c.length < -same || (c.along - 1) * c.length > same) continue;
+      // beyond a convex end lies free space; beyond an end in a notch lies the block itself, and a corner
+      // that has gone slightly into both sides of the notch is still held by both
+      const double before = is_convex(blocks, s, b, e) ? same : margin;
+      const double beyond = is_convex(blocks, s, b, (e + 1) % nb) ? same : margin;
+      if (std::abs(c.gap) > margin || c.along * c.length < -before || (c.along - 1) * c.length > beyond)
+        continue;
       if (!may_enter(blocks, s, a, v, c.normal)) continue;
       Hit hit;
       hit.point.key = {a, v, b, e};
@@ -82,11 +87,13 @@ void corners_over_edges(const BlockSet& blocks, const State& s, int a, int b, do
 }
 
 // Where corner of a meets corner of b there may be hits both ways; one stays.
-void merge_corner_pairs(std::vector<Hit>& hits) {
-  const auto same_place = [](const Hit& x, const Hit& y) {
+void merge_corner_pairs(const BlockSet& blocks, const State& s, double same, std::vector<Hit>& hits) {
+  const auto same_place = [&](const Hit& x, const Hit& y) {
     if (x.at_corner < 0 || y.at_corner < 0) return false;
     const ContactKey &p = x.point.key, &q = y.point.key;
-    return (p.block_a == q.block_a && p.vertex == q.vertex && x.at_corner == y.at_corner) ||
+    // a corner in a notch rests on both sides of it
+    return (p.block_a == q.block_a && p.vertex == q.vertex && x.at_corner == y.at_corner &&
+            is_convex(blocks, s, p.block_b, x.at_corner)) ||
            (p.block_a == q.block_b && p.vertex == y.at_corner && q.vertex == x.at_corner);
   };
   for (size_t i = 0; i < hits.size(); ++i) {
@@ -97,7 +104,7 @@ void merge_corner_pairs(std::vector<Hit>& hits) {
       }
       const double gi = hits[i].point.gap, gj = hits[j].point.gap;
       // gaps that differ by round-off are equal: the key decides, so that the choice does not flicker
-      const double tie = 1e-12 * (std::abs(gi) + std::abs(gj)) + 1e-15;
+      const double tie = 1e-3 * same;
       const bool take_j = gj > gi + tie || (gj >= gi - tie && hits[j].point.key < hits[i].point.key);
       if (take_j) hits[i] = hits[j];
       hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(j));
@@ -116,7 +123,8 @@ void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits)
     const ContactKey& k = h.point.key;
     const int na = blocks.vertex_count(k.block_a), nb = blocks.vertex_count(k.block_b);
     std::vector<int> eb{k.edge};
-    if (h.at_corner >= 0) eb.push_back(h.at_corner == k.edge ? (k.edge + nb - 1) % nb : (k.edge + 1) % nb);
+    if (h.at_corner >= 0 && is_convex(blocks, s, k.block_b, h.at_corner))
+      eb.push_back(h.at_corner == k.edge ? (k.edge + nb - 1) % nb : (k.edge + 1) % nb);
     for (const int e : eb) {
       const Vec2 db = edge_vector(blocks, s, k.block_b, e);
       for (const int f : {k.vertex, (k.vertex + na - 1) % na}) {
@@ -168,7 +176,7 @@ void touch_blocks(const BlockSet& blocks, const State& state, int a, int b, doub
   std::vector<Hit> hits;
   corners_over_edges(blocks, state, a, b, margin, same, hits);
   corners_over_edges(blocks, state, b, a, margin, same, hits);
-  merge_corner_pairs(hits);
+  merge_corner_pairs(blocks, state, same, hits);
   share_faces(blocks, state, hits);
   std::sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });
   for (const Hit& h : hits) out.push_back(h.point);

@@ -170,8 +170,12 @@ Layout make_layout(const Model& model, Findings& findings) {
   for (const ContactPairInput& p : model.contact_pairs) {
     const int a = layout.find_group(p.name_a), b = layout.find_group(p.name_b);
     if (a < 0 || b < 0) {
-      findings.error(p.where, "contact_pair.between",
-                     fmt::format("\"{}\" is one block of a grid", a < 0 ? p.name_a : p.name_b),
+      const std::string& name = a < 0 ? p.name_a : p.name_b;
+      if (layout.blocks_called(name).empty()) {
+        unknown_block(layout, name, p.where, "contact_pair.between", findings);
+        continue;
+      }
+      findings.error(p.where, "contact_pair.between", fmt::format("\"{}\" is one block of a grid", name),
                      "a joint belongs to whole grids or blocks: name the grid");
       continue;
     }

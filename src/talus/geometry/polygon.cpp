@@ -22,17 +22,20 @@ PolygonMoments polygon_moments(std::span<const Vec2> polygon) {
   const Vec2 origin = polygon[0];
   double area = 0;
   Vec2 first;
-  Mat2 second;
   for (size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const Vec2 a = polygon[i] - origin, b = polygon[i + 1] - origin, s = a + b;
+    const Vec2 a = polygon[i] - origin, b = polygon[i + 1] - origin;
     const double c = cross(a, b);
     area += c / 2;
-    first += (c / 6) * s;
-    second += (c / 24) * (outer(s, s) + outer(a, a) + outer(b, b));
+    first += (c / 6) * (a + b);
   }
   TALUS_ASSERT(area != 0);
+  // second moments from the centroid itself: from a corner they would be a difference of large numbers
   const Vec2 arm = first / area;
-  second = second - area * outer(arm, arm);
+  Mat2 second;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 a = polygon[i] - origin - arm, b = polygon[(i + 1) % polygon.size()] - origin - arm, s = a + b;
+    second += (cross(a, b) / 24) * (outer(s, s) + outer(a, a) + outer(b, b));
+  }
   if (area < 0) area = -area, second = -1.0 * second;
   return {area, origin + arm, second};
 }

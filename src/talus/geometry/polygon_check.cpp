@@ -88,7 +88,9 @@ std::string polygon_defect(const Polygon& polygon) {
     GEOSGeom_destroy_r(geos().context(), where);
     const Box box = bounding_box(polygon);
     const double size = std::max(box.max.x - box.min.x, box.max.y - box.min.y);
-    if (std::abs(signed_area(polygon)) < 1e-12 * size * size) text = "has no area";
+    // below this the second moments have no digits left
+    if (std::abs(signed_area(polygon)) < 2e-7 * size * size)
+      text = fmt::format("has no area: its width is below a millionth of its length {:.3g} m", size);
   }
   if (reason) GEOSFree_r(geos().context(), reason);
   return text;

@@ -8,7 +8,7 @@
 namespace talus {
 
 /// "" when `polygon` is simple with at least three corners and non-zero area; otherwise what is wrong and
-/// where, for example "crosses itself at (0.5, 0.5)".
+/// where, for example "crosses or touches itself at (0.5, 0.5)".
 std::string polygon_defect(const Polygon& polygon);
 
 struct Overlap {

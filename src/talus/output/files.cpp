@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -38,7 +39,11 @@ void write_file(const fs::path& path, const std::string& content) {
     fail(path, "written", error);
   }
   fs::rename(part, path, ec);
-  if (ec) fail(path, "renamed into place", ec.value());
+  if (ec) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    fail(path, "renamed into place", ec.value());
+  }
 }
 
 void open_result_folder(const fs::path& folder, bool force) {
@@ -52,7 +57,9 @@ void open_result_folder(const fs::path& folder, bool force) {
           fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
                       "replace the results in it",
                       folder.string()));
-    if (!empty && !fs::exists(folder / "summary.json", ec))
+    const bool ours = fs::exists(folder / "summary.json", ec) ||
+                      (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
+    if (!empty && !ours)
       throw FileError(
           fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
                       "Give another folder",
@@ -93,9 +100,10 @@ void CsvWriter::check(bool ok) const {
 }
 
 const std::vector<double>& CsvTable::column(const std::string& name) const {
+  const auto exact = std::find(columns.begin(), columns.end(), name);
+  if (exact != columns.end()) return values[static_cast<size_t>(exact - columns.begin())];
   const std::vector<double>* found = nullptr;
   for (size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i] == name) return values[i];
     if (columns[i].rfind(name, 0) == 0) {
       if (found)
         throw FileError(fmt::format("more than one column begins with \"{}\": {}", name, join_or(columns)));

@@ -11,8 +11,8 @@ namespace talus {
 /// Writes a whole file under a temporary name and renames it into place. Throws FileError (path, cause).
 void write_file(const std::filesystem::path& path, const std::string& content);
 
-/// Prepares the folder for results. Throws FileError when it exists and `force` is false, or when it exists,
-/// is not empty and holds no summary.json of an earlier run (then even `force` removes nothing).
+/// Prepares the folder for results. Throws FileError when it holds anything and `force` is false, or when
+/// what it holds is no (even unfinished) run of talus: then even `force` removes nothing.
 void open_result_folder(const std::filesystem::path& folder, bool force);
 
 /// A table written row by row; every row is complete in the file when append() returns after flush().

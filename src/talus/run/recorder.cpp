@@ -63,6 +63,11 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
       contact_frames_(folder_ / "fields", "contacts", "vtp"),
       last_flush_(wall_now()) {
   write_file(folder_ / "model.toml", scene.model.text);
+  // replaced at the end: a run that was killed shows as one
+  nlohmann::ordered_json running = {{"program", fmt::format("talus {}", kVersion)},
+                                    {"model_hash", scene.model.hash},
+                                    {"status", "running"}};
+  write_file(folder_ / "summary.json", running.dump(2) + "\n");
 }
 
 void Recorder::at(const Instant& i) {

@@ -1,0 +1,298 @@
+#include "talus/contact/find.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "talus/contact/contact_rows.h"
+#include "talus/step/scene.h"
+
+using namespace talus;
+
+namespace {
+
+constexpr double kMargin = 0.05;
+const Polygon kSquare{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+
+Polygon moved(Polygon polygon, Vec2 by) {
+  for (Vec2& p : polygon) p += by;
+  return polygon;
+}
+
+/// A square with half-diagonals `r` that stands with its lowest corner at `tip`.
+Polygon diamond(Vec2 tip, double r) {
+  return {tip, tip + Vec2{r, r}, tip + Vec2{0, 2 * r}, tip + Vec2{-r, r}};
+}
+
+Scene scene_of(const std::vector<Polygon>& polygons) {
+  Model model;
+  model.materials = {{"rock", 2700, 50e9, 0.25}};
+  for (size_t i = 0; i < polygons.size(); ++i) {
+    BlockInput b;
+    b.name = "b" + std::to_string(i);
+    b.polygon = polygons[i];
+    b.material = 0;
+    model.blocks.push_back(b);
+  }
+  // blocks may lie a little inside each other here, so findings about overlaps are not looked at
+  Findings findings("case.toml", "");
+  Layout layout = make_layout(model, findings);
+  REQUIRE(layout.blocks.size() == polygons.size());
+  return build_scene(std::move(model), std::move(layout));
+}
+
+std::vector<ContactPoint> touch(const Scene& s, const State& state, int a = 0, int b = 1) {
+  std::vector<ContactPoint> out;
+  touch_blocks(s.blocks, state, a, b, kMargin, out);
+  for (size_t i = 1; i < out.size(); ++i) CHECK(out[i - 1].key < out[i].key);  // sorted, none twice
+  return out;
+}
+
+std::vector<ContactPoint> touch(const std::vector<Polygon>& polygons) {
+  const Scene s = scene_of(polygons);
+  return touch(s, start_state(s));
+}
+
+Vec2 place_of(const Scene& s, const ContactPoint& c) {
+  return s.blocks.centroid[static_cast<size_t>(c.key.block_a)] + c.arm_a;
+}
+
+// Pairs whose bounding boxes, as they lie now, are closer than the margin.
+std::vector<std::pair<int, int>> close_now(const BlockSet& blocks, const State& state) {
+  std::vector<Box> boxes;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    std::vector<Vec2> corners;
+    for (int v = 0; v < blocks.vertex_count(i); ++v)
+      corners.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner(i, v)));
+    boxes.push_back(bounding_box(corners));
+  }
+  return close_pairs(boxes, kMargin);
+}
+
+// Sums of a few numbers of order 1.
+constexpr double kRound = 1e-14;
+
+}  // namespace
+
+TEST_CASE("square on square: two points with half the face each") {
+  const Scene s = scene_of({kSquare, moved(kSquare, {0, 1})});
+  const auto contacts = touch(s, start_state(s));
+  REQUIRE(contacts.size() == 2);
+  for (const ContactPoint& c : contacts) {
+    CHECK(std::abs(c.gap) <= kRound);
+    CHECK(std::abs(c.length - 0.5) <= kRound);
+    // from b into a: up when the upper block is a
+    CHECK(norm(c.normal - Vec2{0, c.key.block_a == 1 ? 1.0 : -1.0}) <= kRound);
+    CHECK(place_of(s, c).y == 1);
+  }
+  CHECK(std::abs(std::abs(place_of(s, contacts[0]).x - place_of(s, contacts[1]).x) - 1) <= kRound);
+}
+
+TEST_CASE("offset square: a corner of each block ends the common face") {
+  const Scene s = scene_of({kSquare, moved(kSquare, {0.3, 1})});
+  const auto contacts = touch(s, start_state(s));
+  REQUIRE(contacts.size() == 2);
+  CHECK(contacts[0].key == ContactKey{0, 2, 1, 0});  // right end: the lower block's corner at x = 1
+  CHECK(contacts[1].key == ContactKey{1, 0, 0, 2});  // left end: the upper block's corner at x = 0.3
+  for (const ContactPoint& c : contacts) {
+    CHECK(std::abs(c.length - 0.35) <= kRound);
+    CHECK(std::abs(c.gap) <= kRound);
+  }
+}
+
+TEST_CASE("a corner over an edge") {
+  for (const double gap : {0.01, 0.0, -0.01}) {
+    CAPTURE(gap);
+    const Scene s = scene_of({kSquare, diamond({0.3, 1 + gap}, 0.5)});
+    const auto contacts = touch(s, start_state(s));
+    REQUIRE(contacts.size() == 1);
+    const ContactPoint& c = contacts[0];
+    CHECK(c.key == ContactKey{1, 0, 0, 2});
+    CHECK(std::abs(c.gap - gap) <= kRound);
+    CHECK(norm(c.normal - Vec2{0, 1}) <= kRound);
+    CHECK(norm(c.arm_a - Vec2{0, -0.5}) <= kRound);
+    CHECK(norm(c.arm_b - Vec2{0.3 - 0.5, 0.5}) <= kRound);
+    CHECK(c.length == 0);
+    // the slip coordinate rises along the normal turned clockwise, here along x
+    State later = start_state(s);
+    later.displacement[1].x = 0.02;
+    CHECK(std::abs(touch(s, later)[0].slip - c.slip - 0.02) <= kRound);
+  }
+  CHECK(touch({kSquare, diamond({0.3, 1 + 1.01 * kMargin}, 0.5)}).empty());
+  CHECK(touch({kSquare, diamond({0.3, 1 + 0.99 * kMargin}, 0.5)}).size() == 1);
+}
+
+TEST_CASE("a corner beyond the end of an edge touches nothing") {
+  // the tip of a steep wedge, level with the top side but beside it
+  const auto wedge = [](double x, double y) { return Polygon{{x, y}, {x + 0.02, y + 1}, {x - 0.02, y + 1}}; };
+  CHECK(touch({kSquare, wedge(1.01, 1.005)}).empty());
+  CHECK(touch({kSquare, wedge(-0.01, 1.005)}).empty());
+  CHECK(touch({kSquare, wedge(0.99, 1.005)}).size() == 1);
+  CHECK(touch({kSquare, moved(kSquare, {1.01, 1.01})}).empty());  // corner beside corner
+}
+
+TEST_CASE("a corner whose own edges lie behind an edge does not touch it") {
+  // the upper square's lower left corner is near the left side of the lower one, too
+  for (const ContactPoint& c : touch({kSquare, moved(kSquare, {0.02, 1})}))
+    CHECK(std::abs(c.normal.x) <= kRound);
+}
+
+TEST_CASE("corner against corner makes one contact") {
+  CHECK(touch({kSquare, moved(kSquare, {1, 1})}).size() == 1);
+  CHECK(touch({moved(kSquare, {1, 1}), kSquare}).size() == 1);
+  CHECK(touch({kSquare, moved(kSquare, {-1, 1})}).size() == 1);
+  CHECK(touch({kSquare, diamond({1, 1}, 0.5)}).size() == 1);
+  CHECK(touch({kSquare, diamond({0, 1}, 0.5)}).size() == 1);
+  // slightly inside each other: the contact has the larger gap, the shorter way out
+  const auto inside = touch({kSquare, moved(kSquare, {1 - 4e-7, 1 - 2e-7})});
+  REQUIRE(inside.size() == 1);
+  CHECK(std::abs(inside[0].gap + 2e-7) <= kRound);
+  CHECK(std::abs(inside[0].normal.x) <= kRound);
+}
+
+TEST_CASE("of two corners inside each other the larger gap counts") {
+  // the tip of the diamond lies `y` below the top side, the square's corner (x + y) / sqrt(2) behind the
+  // diamond's lower left side
+  for (const Vec2 in : {Vec2{1e-7, 3e-7}, Vec2{3e-7, 1e-7}}) {
+    const auto contacts = touch({kSquare, diamond(Vec2{1, 1} - in, 0.5)});
+    REQUIRE(contacts.size() == 1);
+    const bool tip = in.y < in.x;
+    CHECK(contacts[0].key == (tip ? ContactKey{1, 0, 0, 2} : ContactKey{0, 2, 1, 3}));
+    CHECK(std::abs(contacts[0].gap + (tip ? in.y : (in.x + in.y) / std::sqrt(2.0))) <= kRound);
+  }
+}
+
+TEST_CASE("the contact of two corners does not depend on the order of the blocks") {
+  for (const Vec2 by : {Vec2{1 - 4e-7, 1 - 2e-7}, Vec2{1 - 2e-7, 1 - 4e-7}, Vec2{1, 1}}) {
+    const auto one = touch({kSquare, moved(kSquare, by)}), other = touch({moved(kSquare, by), kSquare});
+    REQUIRE(one.size() == 1);
+    REQUIRE(other.size() == 1);
+    CHECK(std::abs(one[0].gap - other[0].gap) <= kRound);
+  }
+}
+
+TEST_CASE("four squares around a point") {
+  const Scene s = scene_of({kSquare, moved(kSquare, {1, 0}), moved(kSquare, {0, 1}), moved(kSquare, {1, 1})});
+  const State state = start_state(s);
+  for (const auto& [a, b] : {std::pair(0, 3), std::pair(1, 2)}) CHECK(touch(s, state, a, b).size() == 1);
+  for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 3), std::pair(2, 3)}) {
+    const auto contacts = touch(s, state, a, b);
+    REQUIRE(contacts.size() == 2);
+    for (const ContactPoint& c : contacts) CHECK(std::abs(c.length - 0.5) <= kRound);
+    CHECK(touch(s, state, b, a).size() == 2);
+  }
+  CandidateFinder candidates;
+  const auto all = find_contacts(s.blocks, s.bonds, state, kMargin, candidates);
+  CHECK(all.size() == 10);
+  for (size_t i = 1; i < all.size(); ++i) CHECK(all[i - 1].key < all[i].key);  // sorted, none twice
+}
+
+TEST_CASE("a corner in the notch of an L-shaped block touches both sides of the notch") {
+  const Polygon l{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  // a little apart, well in the middle of the sides' ends: the corner lies over both edges
+  const Scene s = scene_of({l, moved(kSquare, {1 + 0.01, 1 + 0.02})});
+  const auto contacts = touch(s, start_state(s));
+  const auto has = [&](ContactKey key, double gap) {
+    return std::any_of(contacts.begin(), contacts.end(), [&](const ContactPoint& c) {
+      return c.key == key && std::abs(c.gap - gap) <= kRound;
+    });
+  };
+  CHECK(has({1, 0, 0, 2}, 0.02));  // over the lower side
+  CHECK(has({1, 0, 0, 3}, 0.01));  // beside the left one
+  CHECK(has({0, 2, 1, 0}, 0.02));  // the L's own convex corners under and beside the square
+  CHECK(has({0, 4, 1, 3}, 0.01));
+  CHECK(contacts.size() == 4);
+}
+
+TEST_CASE("gaps do not change when both blocks move 1 km") {
+  const Scene s = scene_of({kSquare, diamond({0.3, 1.01}, 0.5)});
+  State state = start_state(s);
+  state.strain_part[0] = {1e-4, 2e-5, -3e-5, 2e-4};
+  const auto before = touch(s, state);
+  for (Vec2& d : state.displacement) d += Vec2{1000, -700};
+  const auto after = touch(s, state);
+  REQUIRE(before.size() == 1);
+  REQUIRE(after.size() == 1);
+  // a displacement of 1 km is rounded by 1e-13 m
+  CHECK(std::abs(after[0].gap - before[0].gap) <= 1e-12);
+  CHECK(std::abs(after[0].slip - before[0].slip) <= 1e-12);
+
+  const Vec2 far{1024, -2048};
+  const auto there = touch({moved(kSquare, far), moved(diamond({0.3, 1.01}, 0.5), far)});
+  REQUIRE(there.size() == 1);
+  CHECK(std::abs(there[0].gap - 0.01) <= 1e-12);
+}
+
+TEST_CASE("a corner over the edge of a turned and strained block") {
+  const Scene s = scene_of({kSquare, diamond({0.5, 1.01}, 0.5)});
+  State state = start_state(s);
+  const double angle = 0.02, stretch = 1.1;
+  const Mat2 r = kIdentity + rotation_minus_identity(angle);
+  state.strain_part[0] = r * Mat2{1, 0, 0, stretch} - kIdentity;
+  state.strain_part[1] = {0.1, 0, 0, -0.02};  // lifts the tip, half a metre below the middle, by 0.01
+  // the top side turns about the centroid and lies stretch / 2 from it
+  const Vec2 normal = r * Vec2{0, 1};
+  const double gap = dot(normal, Vec2{0.5, 1.02} - Vec2{0.5, 0.5}) - 0.5 * stretch;
+  const auto contacts = touch(s, state);
+  REQUIRE(contacts.size() == 1);
+  CHECK(std::abs(contacts[0].gap - gap) <= kRound);
+  CHECK(norm(contacts[0].normal - normal) <= kRound);
+}
+
+TEST_CASE("CandidateFinder misses no close pair while the blocks move") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Polygon> polygons;
+  for (int i = 0; i < 100; ++i) {
+    const double width = i % 7 == 0 ? 0.53 : 0.5;  // gaps of 0.07 and 0.04; the skin is 0.05
+    const Vec2 at{0.57 * (i % 10), 0.57 * (i / 10)};
+    polygons.push_back({at, at + Vec2{width, 0}, at + Vec2{width, width}, at + Vec2{0, width}});
+  }
+  const Scene s = scene_of(polygons);
+  struct Stride {
+    double shift, strain;
+    int least_rebuilds, most_rebuilds;
+  };
+  // far below the skin, at a part of it, mostly by strain, beyond it
+  for (const Stride stride :
+       {Stride{0.0005, 0.0001, 1, 5}, {0.005, 0.001, 2, 40}, {0.0002, 0.01, 2, 40}, {0.4, 0.01, 60, 60}}) {
+    CAPTURE(stride.shift);
+    State state = start_state(s);
+    CandidateFinder candidates;
+    size_t met = 0;
+    for (int step = 0; step < 60; ++step) {
+      for (size_t i = 0; i < state.displacement.size(); ++i) {
+        state.displacement[i] += stride.shift * Vec2{unit(random), unit(random)};
+        state.strain_part[i] += stride.strain * Mat2{unit(random), unit(random), unit(random), unit(random)};
+      }
+      const auto& pairs = candidates.pairs(s.blocks, state, kMargin);
+      const auto expected = close_now(s.blocks, state);
+      met += expected.size();
+      CHECK(std::is_sorted(pairs.begin(), pairs.end()));
+      CHECK(std::includes(pairs.begin(), pairs.end(), expected.begin(), expected.end()));
+    }
+    CHECK(met > 60);
+    CHECK(candidates.rebuilds() >= stride.least_rebuilds);
+    CHECK(candidates.rebuilds() <= stride.most_rebuilds);
+  }
+}
+
+TEST_CASE("CandidateFinder leaves out pairs that cannot move and renews for another margin") {
+  Scene s = scene_of({kSquare, moved(kSquare, {1.04, 0}), moved(kSquare, {2.04, 0})});
+  s.blocks.kind[0] = BlockKind::kFixed;
+  s.blocks.kind[1] = BlockKind::kDriven;
+  const State state = start_state(s);
+  CandidateFinder candidates;
+  using Pairs = std::vector<std::pair<int, int>>;
+  CHECK(candidates.pairs(s.blocks, state, kMargin) == Pairs{{1, 2}});
+  CHECK(candidates.pairs(s.blocks, state, kMargin) == Pairs{{1, 2}});
+  CHECK(candidates.rebuilds() == 1);
+  CHECK(candidates.pairs(s.blocks, state, 1.5) == Pairs{{0, 2}, {1, 2}});
+  CHECK(candidates.rebuilds() == 2);
+}

@@ -1,0 +1,238 @@
+#include "talus/cut/layout.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace talus;
+
+namespace {
+
+BlockInput block(const std::string& name, const Polygon& polygon) {
+  BlockInput b;
+  b.name = name;
+  b.polygon = polygon;
+  b.material = 0;
+  return b;
+}
+
+Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
+
+GridInput grid(const std::string& name, Vec2 min, Vec2 max, int columns, int rows, int joint = 0) {
+  GridInput g;
+  g.name = name;
+  g.min = min, g.max = max;
+  g.columns = columns, g.rows = rows;
+  g.material = 0;
+  g.joint = joint;
+  return g;
+}
+
+Layout layout_of(const Model& model) {
+  Findings findings("case.toml", "");
+  const Layout layout = make_layout(model, findings);
+  INFO(findings.render());
+  REQUIRE_FALSE(findings.has_errors());
+  return layout;
+}
+
+std::string errors_of(const Model& model) {
+  Findings findings("case.toml", "");
+  make_layout(model, findings);
+  CHECK(findings.has_errors());
+  return findings.render();
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+SupportInput edge_support(Vec2 from, Vec2 to) {
+  SupportInput s;
+  s.name = "base";
+  s.is_edge = true;
+  s.from = from, s.to = to;
+  return s;
+}
+
+SupportInput point_support(Vec2 at, const std::string& on = "") {
+  SupportInput s;
+  s.name = "pin";
+  s.from = s.to = at;
+  s.block = on;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("cells of a grid tile its rectangle and share their corners to the last bit") {
+  for (const GridPattern pattern : {GridPattern::kRectangles, GridPattern::kCrossedTriangles}) {
+    const bool triangles = pattern == GridPattern::kCrossedTriangles;
+    CAPTURE(triangles);
+    Model model;
+    model.grids = {grid("wall", {-0.1, 0.3}, {1.0 / 3, 2.7}, 7, 5)};  // no corner is exact in binary
+    model.grids[0].pattern = pattern;
+    const Layout layout = layout_of(model);
+    REQUIRE(layout.blocks.size() == (triangles ? 140 : 35));
+    double area = 0;
+    std::vector<Vec2> corners;
+    for (const BlockShape& b : layout.blocks) {
+      CHECK(signed_area(b.polygon) > 0);
+      area += signed_area(b.polygon);
+      corners.insert(corners.end(), b.polygon.begin(), b.polygon.end());
+    }
+    const double whole = (1.0 / 3 + 0.1) * 2.4;
+    CHECK(std::abs(area - whole) <= 1e-14 * whole);  // 140 areas, each rounded by 1e-16
+    std::sort(corners.begin(), corners.end(),
+              [](Vec2 a, Vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    const auto different = std::unique(corners.begin(), corners.end()) - corners.begin();
+    CHECK(different == (triangles ? 48 + 35 : 48));
+    CHECK(corners.front() == Vec2{-0.1, 0.3});
+    CHECK(corners[static_cast<size_t>(different) - 1] == Vec2{1.0 / 3, 2.7});
+  }
+}
+
+TEST_CASE("areas of a grid with exact corners sum exactly") {
+  Model model;
+  model.grids = {grid("wall", {0, 0}, {4, 2}, 16, 8)};
+  model.grids[0].pattern = GridPattern::kCrossedTriangles;
+  double area = 0;
+  for (const BlockShape& b : layout_of(model).blocks) area += signed_area(b.polygon);
+  CHECK(area == 8);  // all numbers are sums of powers of two
+}
+
+TEST_CASE("names of grid cells run from the lower left, triangles from the lower one") {
+  Model model;
+  model.grids = {grid("wall", {0, 0}, {2, 2}, 2, 2), grid("roof", {0, 2}, {2, 4}, 1, 1)};
+  model.grids[1].pattern = GridPattern::kCrossedTriangles;
+  const Layout layout = layout_of(model);
+  REQUIRE(layout.blocks.size() == 8);
+  const std::vector<std::string> names{"wall[0,0]",   "wall[1,0]",   "wall[0,1]",   "wall[1,1]",
+                                       "roof[0,0,0]", "roof[0,0,1]", "roof[0,0,2]", "roof[0,0,3]"};
+  for (size_t i = 0; i < names.size(); ++i) CHECK(layout.blocks[i].name == names[i]);
+  CHECK(layout.blocks[1].polygon == box(1, 0, 2, 1));
+  CHECK(layout.blocks[4].polygon == Polygon{{0, 2}, {2, 2}, {1, 3}});
+  CHECK(layout.blocks[5].polygon == Polygon{{2, 2}, {2, 4}, {1, 3}});
+  CHECK(layout.blocks_called("wall") == std::vector<int>{0, 1, 2, 3});
+  CHECK(layout.blocks_called("wall[1,0]") == std::vector<int>{1});
+  CHECK(layout.blocks_called("floor").empty());
+  CHECK(layout.find_group("roof") == 1);
+  CHECK(layout.find_group("roof[0,0,0]") == -1);
+}
+
+TEST_CASE("a clockwise polygon is turned") {
+  Model model;
+  model.blocks = {block("a", {{0, 0}, {0, 1}, {2, 1}, {2, 0}})};
+  const Layout layout = layout_of(model);
+  CHECK(signed_area(layout.blocks[0].polygon) == 2);
+  CHECK(layout.blocks[0].polygon == Polygon{{2, 0}, {2, 1}, {0, 1}, {0, 0}});
+}
+
+TEST_CASE("joints: a named pair goes before a grid's own joint and before the default") {
+  Model model;
+  model.blocks = {block("a", box(0, 0, 1, 1)), block("b", box(1, 0, 2, 1))};
+  model.grids = {grid("g", {0, 1}, {2, 2}, 2, 1, 5), grid("h", {0, 2}, {2, 3}, 2, 1, 6)};
+  model.default_joint = 3;
+  model.contact_pairs = {{"g", "a", 7, {}}};
+  const Layout layout = layout_of(model);
+  const int a = 0, b = 1, g = 2, h = 3;
+  CHECK(layout.joint_between(a, g) == 7);
+  CHECK(layout.joint_between(g, a) == 7);
+  CHECK(layout.joint_between(g, g) == 5);
+  CHECK(layout.joint_between(h, h) == 6);
+  CHECK(layout.joint_between(a, b) == 3);
+  CHECK(layout.joint_between(g, h) == 3);
+  CHECK(layout.joint_between(b, g) == 3);
+  model.default_joint = -1;
+  CHECK(layout_of(model).joint_between(a, b) == -1);
+}
+
+TEST_CASE("an edge support holds the corners of edges on the segment, not lone corners") {
+  Model model;
+  model.grids = {grid("wall", {0, 0}, {3, 2}, 3, 2)};
+  const Layout layout = layout_of(model);
+  const auto all = corners_of_support(layout, edge_support({0, 0}, {3, 0}));
+  REQUIRE(all.size() == 6);  // two of each block of the lowest row
+  for (size_t i = 0; i < 6; ++i) {
+    CHECK(all[i].block == static_cast<int>(i / 2));
+    CHECK(all[i].vertex == static_cast<int>(i % 2));
+    CHECK(all[i].point == Vec2{static_cast<double>((i + 1) / 2), 0});
+  }
+  // the third block has one corner on the segment, no edge; the segment may run either way
+  CHECK(corners_of_support(layout, edge_support({2, 0}, {0, 0})).size() == 4);
+  // an inner line belongs to the blocks of both sides
+  CHECK(corners_of_support(layout, edge_support({0, 1}, {3, 1})).size() == 12);
+  CHECK(corners_of_support(layout, edge_support({0, 1.5}, {3, 1.5})).empty());
+  CHECK(corners_of_support(layout, edge_support({0.2, 0}, {0.8, 0})).empty());
+  SupportInput one = edge_support({0, 1}, {3, 1});
+  one.block = "wall[1,1]";
+  const auto corners = corners_of_support(layout, one);
+  REQUIRE(corners.size() == 2);
+  CHECK(corners[0].block == 4);
+}
+
+TEST_CASE("a point support holds every corner at the point, else the first block around it") {
+  Model model;
+  model.blocks = {block("a", box(0, 0, 1, 1)), block("b", box(1, 0, 2, 1)), block("c", box(0, 1, 2, 2))};
+  const Layout layout = layout_of(model);
+  auto corners = corners_of_support(layout, point_support({1, 1}));
+  REQUIRE(corners.size() == 2);  // on the side of c, but no corner of it
+  CHECK(corners[0].block == 0);
+  CHECK(corners[0].vertex == 2);
+  CHECK(corners[1].block == 1);
+  CHECK(corners[1].vertex == 3);
+
+  corners = corners_of_support(layout, point_support({1, 1}, "c"));
+  REQUIRE(corners.size() == 1);
+  CHECK(corners[0].block == 2);
+  CHECK(corners[0].vertex == -1);
+
+  corners = corners_of_support(layout, point_support({1.25, 0.5}));
+  REQUIRE(corners.size() == 1);
+  CHECK(corners[0].block == 1);
+  CHECK(corners[0].vertex == -1);
+  CHECK(corners[0].point == Vec2{1.25, 0.5});
+
+  corners = corners_of_support(layout, point_support({1, 0.5}));  // on the side of a and b
+  REQUIRE(corners.size() == 1);
+  CHECK(corners[0].block == 0);
+
+  CHECK(corners_of_support(layout, point_support({1.25, 0.5}, "a")).empty());
+  CHECK(corners_of_support(layout, point_support({5, 5})).empty());
+}
+
+TEST_CASE("blocks_at includes the boundary") {
+  Model model;
+  model.grids = {grid("wall", {0, 0}, {2, 2}, 2, 2)};
+  const Layout layout = layout_of(model);
+  CHECK(blocks_at(layout, {1, 1}, 0) == std::vector<int>{0, 1, 2, 3});
+  CHECK(blocks_at(layout, {1, 0.5}, 0) == std::vector<int>{0, 1});
+  CHECK(blocks_at(layout, {2.05, 0.5}, 0).empty());
+  CHECK(blocks_at(layout, {2.05, 0.5}, 0.1) == std::vector<int>{1});
+}
+
+TEST_CASE("what cannot be laid out is reported by name") {
+  Model model;
+  CHECK(has(errors_of(model), "the model has no block"));
+  model.blocks = {block("a", box(0, 0, 1, 1)), block("b", box(0.5, 0, 1.5, 1))};
+  CHECK(has(errors_of(model), "overlaps \"a\" by 0.5 m2"));
+  model.blocks[1] = block("b", {{2, 0}, {3, 1}, {3, 0}, {2, 1}});
+  CHECK(has(errors_of(model), "block.b.polygon"));
+  model.blocks[1] = block("b", box(1, 0, 2, 1));
+  model.supports = {point_support({5, 5})};
+  CHECK(has(errors_of(model), "support.pin: the point lies on no block"));
+  model.supports.clear();
+  model.contact_pairs = {{"a", "a", 0, {}}};
+  CHECK(has(errors_of(model), "twice"));
+  model.grids = {grid("wall", {3, 0}, {5, 1}, 2, 1)};
+  model.contact_pairs = {{"a", "wall[0,0]", 0, {}}};
+  CHECK(has(errors_of(model), "\"wall[0,0]\" is one block of a grid"));
+  model.contact_pairs.clear();
+  MonitorInput monitor;
+  monitor.name = "tip";
+  monitor.point = {2.25, 0.5};
+  model.monitors = {monitor};
+  CHECK(has(errors_of(model), "\"b\", is 0.25 m away"));
+  model.monitors[0].point = {2, 0.5};
+  layout_of(model);
+}

@@ -69,3 +69,13 @@ TEST_CASE("example spinning_block: mean and first peak of the centrifugal stress
   check_close("spinning_block peak stress [Pa]", *std::max_element(s.begin(), s.end()), 166666.7, 2e-3, 1e-3);
   check_below("spinning_block energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
+
+TEST_CASE("example sliding_block: slip on a table that shakes sideways and up and down") {
+  // A2d of the verification plan, a = 0.8, b = 0.4, f = 1 Hz; reference good to 5e-4
+  const CaseResult r = run_example("sliding_block");
+  const auto& x = r.column("block.displacement_x");
+  check_close("sliding_block slip after 0.5 s [m]", x[500], -0.019300, 2e-3, 2e-5, 1);
+  check_close("sliding_block slip after 1 s [m]", x[1000], 0.242553, 1e-3, 1e-4);
+  check_close("sliding_block slip after 5 s [m]", x[5000], 1.423471, 1e-3, 1e-4);
+  check_below("sliding_block energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}

@@ -91,6 +91,14 @@ struct SupportInput {
   Where where;
 };
 
+/// Acceleration of blocks by a body force, added to gravity (shaking in the frame of the base).
+struct LoadInput {
+  std::string name;
+  std::string block;                   // "" = all
+  int history_x = -1, history_y = -1;  // [m/s2], -1 = none
+  Where where;
+};
+
 enum class JacobianKind { kAnalytic, kDifference };
 
 struct SolverInput {
@@ -147,6 +155,7 @@ struct Model {
   int default_joint = -1;  // -1: hard and frictionless
   std::vector<ContactPairInput> contact_pairs;
   std::vector<SupportInput> supports;
+  std::vector<LoadInput> loads;
   SolverInput solver;
   std::vector<StageInput> stages;
   std::vector<MonitorInput> monitors;

@@ -31,6 +31,7 @@ class ModelReader {
     read_grids();
     read_contact();
     read_supports();
+    read_loads();
     read_solver();
     read_stages();
     read_monitors();
@@ -406,6 +407,25 @@ class ModelReader {
       if (s.x.kind == Motion::kFree && s.y.kind == Motion::kFree)
         findings_.error(f.where(), f.path(), "is free along x and y: it supports nothing");
       model_.supports.push_back(s);
+    });
+  }
+
+  void read_loads() {
+    std::set<std::string> used;
+    for_list("load", [this, &used](const Fields& f) {
+      claim_name(f, used, "load");
+      LoadInput l;
+      l.name = f.get<std::string>("name");
+      l.where = f.where();
+      l.history_x = refer(f, "acceleration_x", model_.histories, "history");
+      l.history_y = refer(f, "acceleration_y", model_.histories, "history");
+      if (!f.given("acceleration_x") && !f.given("acceleration_y"))
+        findings_.error(f.where(), f.path(), "has no effect", "give acceleration_x or acceleration_y");
+      if (f.has("block")) {
+        l.block = f.get<std::string>("block");
+        refer_block_or_grid(l.block, f.where("block"), f.path_of("block"));
+      }
+      model_.loads.push_back(l);
     });
   }
 

@@ -263,6 +263,22 @@ std::vector<SectionSpec> build_schema() {
              "Along x: \"fixed\", \"free\", { velocity = \"HISTORY\" } or { displacement = \"HISTORY\" }."},
         {.name = "y", .type = K::kMotion, .default_text = "\"fixed\"", .doc = "The same along y."}}},
 
+      {"load",
+       SectionShape::kList,
+       "A body force on blocks, as an acceleration added to gravity.",
+       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+        {.name = "acceleration_x",
+         .type = K::kName,
+         .refers_to = "history",
+         .doc = "History of the acceleration along x [m/s2]. A base that shakes with a(t) is the same as a "
+                "load of -a(t) "
+                "seen from the base."},
+        {.name = "acceleration_y", .type = K::kName, .refers_to = "history", .doc = "The same along y."},
+        {.name = "block",
+         .type = K::kName,
+         .refers_to = "block or grid",
+         .doc = "Only blocks of this name; none: all."}}},
+
       {"solver",
        SectionShape::kTable,
        "Solution of the contact constraint equations.",

@@ -11,6 +11,7 @@ Scene build_scene(Model model, Layout layout) {
   scene.blocks = build_blocks(scene.model, scene.layout);
   scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
+  scene.loaded = loaded_blocks(scene.model, scene.layout);
   return scene;
 }
 

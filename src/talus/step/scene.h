@@ -2,6 +2,7 @@
 // Everything a step needs to know and may not change: the model, its blocks, bonds and supports.
 
 #include "talus/contact/bonds.h"
+#include "talus/supports/loads.h"
 #include "talus/supports/supports.h"
 
 namespace talus {
@@ -12,6 +13,7 @@ struct Scene {
   BlockSet blocks;
   BondSet bonds;
   std::vector<SupportedPoint> supported;
+  std::vector<std::vector<int>> loaded;  // blocks of each load
 };
 
 /// @pre  neither read_model nor make_layout found an error

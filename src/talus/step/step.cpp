@@ -69,7 +69,7 @@ class Kick {
     for (size_t i = 0; i < state_.rate.size(); ++i)
       work_.rate_now.push_back(state_.dt_before > 0 ? mean(work_.rate_before[i], state_.rate[i])
                                                     : work_.rate_before[i]);
-    tally_damping();
+    tally_loads_and_damping();
     tally_rows();
     measure_balance();
     tally_energy();
@@ -85,10 +85,12 @@ class Kick {
     work_.rate_now.clear();
     forces_.resize(state_.rate.size());
     local_damping_.assign(state_.rate.size(), {});
+    const Model& model = scene_.model;
+    load_ = load_acceleration(model, scene_.loaded, blocks_.count, state_.history_time);
     for (int i = 0; i < blocks_.count; ++i) {
       const auto k = static_cast<size_t>(i);
       if (!blocks_.moves_freely(i)) continue;
-      forces_[k] = force_without_rows(blocks_, scene_.model.gravity, state_, k);
+      forces_[k] = force_without_rows(blocks_, model.gravity + load_[k], state_, k);
       BlockRate& v = state_.rate[k];
       if (settings_.damping_local > 0) local_damping_[k] = local_damping_impulse(k);
       const BlockForce impulse = work_.dt_kick * forces_[k] + local_damping_[k];
@@ -151,13 +153,15 @@ class Kick {
       report_.worst = row_name(scene_, work_, static_cast<size_t>(report_.error.point));
   }
 
-  void tally_damping() {
+  void tally_loads_and_damping() {
     KickWork& w = work_.work;
     for (size_t i = 0; i < state_.rate.size(); ++i) {
       if (!blocks_.moves_freely(static_cast<int>(i))) continue;
       const BlockRate &v0 = work_.rate_before[i], &v1 = state_.rate[i];
       const BlockForce viscous =
           (-settings_.damping_mass * work_.dt_kick) * momentum(blocks_, i, mean(v0, v1));
+      const BlockForce load{(work_.dt_kick * blocks_.mass[i]) * load_[i], {}};
+      tally(w.before.loads, w.after.loads, load, v0, v1);
       tally(w.before.damping, w.after.damping, viscous + local_damping_[i], v0, v1);
     }
   }
@@ -236,6 +240,7 @@ class Kick {
   double scale_ = 1;
   std::vector<BlockForce> forces_, local_damping_, row_force_;
   std::vector<BlockRate> rate_free_;
+  std::vector<Vec2> load_;  // acceleration by loads
 };
 
 }  // namespace

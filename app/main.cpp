@@ -1,9 +1,11 @@
 // The `talus` command: argument parsing and nothing else.
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -61,8 +63,16 @@ int check(const ModelArguments& args) {
                  plan.largest_clamp);
   }
   fmt::print("  memory     about {}\n", talus::readable_bytes(p.memory));
-  fmt::print("  output     about {}: {} rows of histories, {} rows of steps, {} frames\n",
-             talus::readable_bytes(p.output), p.history_rows, p.step_rows, p.frames);
+  const bool at_most = std::any_of(run.scene.model.stages.begin(), run.scene.model.stages.end(),
+                                   [](const auto& s) { return s.kind == talus::StageKind::kStatic; });
+  const int joint = run.scene.model.default_joint;
+  fmt::print("  contact    {}\n", joint < 0
+                                      ? "pairs without a joint of their own are frictionless"
+                                      : fmt::format("joint \"{}\" between pairs without their own",
+                                                    run.scene.model.joints[static_cast<size_t>(joint)].name));
+  fmt::print("  output     {}{}: {} rows of histories, {} rows of steps, {} frames\n",
+             at_most ? "at most " : "about ", talus::readable_bytes(p.output), p.history_rows, p.step_rows,
+             p.frames);
   return talus::kExitOk;
 }
 
@@ -122,6 +132,14 @@ int run_command(int argc, char** argv) {
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
+  const std::vector<std::string> verbs{"run", "check", "plot", "schema"};
+  if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
+    const std::string near = talus::closest_name(argv[1], verbs);
+    fmt::print(
+        stderr, "talus: unknown verb \"{}\"; {}\n", argv[1],
+        near.empty() ? "there is " + talus::join_or(verbs) : fmt::format("did you mean \"{}\"?", near));
+    return talus::kExitUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -137,6 +155,10 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // factorisations allocate and release the same megabyte every step: keep it instead of asking the system
+  // anew
+  mallopt(M_MMAP_THRESHOLD, 1 << 28);
+  mallopt(M_TRIM_THRESHOLD, 1 << 28);
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit shows as a write error with its own message
   try {
     return run_command(argc, argv);

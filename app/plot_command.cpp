@@ -63,10 +63,8 @@ void draw_column(const PlotArguments& args, const std::vector<CsvTable>& tables,
       const size_t c = same == reference.columns.end()
                            ? std::min<size_t>(1, reference.columns.size() - 1)
                            : static_cast<size_t>(same - reference.columns.begin());
-      figure.curves.push_back(
-          {args.references.size() == 1 ? args.reference_label : label + ", " + args.reference_label,
-           in_unit(reference.values[0], scale), reference.values[c], static_cast<int>(i),
-           plot::Style::kDashed, true});
+      figure.curves.push_back({"dashed: " + args.reference_label, in_unit(reference.values[0], scale),
+                               reference.values[c], static_cast<int>(i), plot::Style::kDashed, i == 0});
     }
   }
   if (args.limit_y.size() == 2) figure.y_min = args.limit_y[0], figure.y_max = args.limit_y[1];

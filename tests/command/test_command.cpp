@@ -188,7 +188,7 @@ material = "m"
 kind = "rigid"
 [history.h]
 time = [0, 1]
-value = [0, 1e300]
+value = [0, 1e305]
 [[support]]
 name = "s"
 point = [0.5, 0.5]

@@ -50,6 +50,7 @@ struct ContactKey {
 struct ContactMemory {
   ContactKey key;
   std::array<double, 2> force{};  // normal, tangential [N]
+  double stretch = 0;             // elastic slip of the contact [m]
   double anchor = 0;              // slip coordinate at which the contact sticks [m]
 };
 
@@ -59,11 +60,17 @@ struct FaceState {
   std::array<double, 4> mean_force{};  // running mean of normal, tangential of point 0 and of point 1 [N]
 };
 
-/// Work done since the start [J], by cause; > 0: energy given to the blocks.
+/// Work done since the start [J], by cause; > 0: energy given to the blocks. `joints`: elastic joints, stored
+/// and lost.
 struct WorkDone {
-  double loads = 0, supports = 0, bonds = 0, contact_closing = 0, friction = 0, damping = 0;
+  double loads = 0, supports = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0, damping = 0;
 
-  double total() const { return loads + supports + bonds + contact_closing + friction + damping; }
+  WorkDone& operator+=(const WorkDone& o) {
+    loads += o.loads, supports += o.supports, bonds += o.bonds, joints += o.joints;
+    contact_closing += o.contact_closing, friction += o.friction, damping += o.damping;
+    return *this;
+  }
+  double total() const { return loads + supports + bonds + joints + contact_closing + friction + damping; }
 };
 
 struct State {

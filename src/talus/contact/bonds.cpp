@@ -12,7 +12,7 @@ constexpr double kTouching = 1e-6;
 
 // A face breaks when the running mean of its forces reaches this share of the limit: the mean of forces that
 // are cut off at the limit comes to the limit only in infinite time.
-constexpr double kAtLimit = 0.999;
+constexpr double kAtLimit = 0.9999;
 
 bool has_strength(const std::vector<JointProperty>& joints, int joint) {
   if (joint < 0) return false;
@@ -131,7 +131,8 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
 }
 
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                   const State& state, double dt, double dt_kick, RowSet& rows, std::vector<int>& owner) {
+                   const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+                   RowSet& rows, std::vector<int>& owner) {
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
     if (state.face[f].broken) continue;
@@ -149,18 +150,25 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       p.normal = normal;
       const Vec2 apart =
           displacement_at(state, a, face.arm_a[end]) - displacement_at(state, b, face.arm_b[end]);
-      p.row[0].bias = dot(normal, apart) / dt;
-      p.row[1].bias = dot(turn_right(normal), apart) / dt;
+      p.row[0].bias = dot(normal, apart) / timing.dt;
+      p.row[1].bias = dot(turn_right(normal), apart) / timing.dt;
       if (!face.unbreakable) {
         const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
-        p.row[0].lower = -joint.tensile_strength * half_area * dt_kick;
+        p.row[0].lower = -joint.tensile_strength * half_area * timing.dt_kick;
+        if (joint.normal_stiffness > 0 || joint.shear_stiffness > 0) {
+          add_compliance(joint, half_area, true, timing, relative_velocity(p, before), p);
+          p.partner = static_cast<int>(rows.points.size()) + (end == 0 ? 1 : -1);
+        }
         p.cone = true;
         p.friction = std::tan(joint.friction_angle);
-        p.cohesion = joint.cohesion * half_area * dt_kick;
+        p.cohesion = joint.cohesion * half_area * timing.dt_kick;
       }
+      // the two tangential rows of a face between rigid blocks say the same: from equal guesses they stay
+      // equal
       const auto& force = state.bond_force[2 * f + static_cast<size_t>(end)];
-      rows.add(p, {force[0] * dt_kick, force[1] * dt_kick});
+      const double shear = 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]);
+      rows.add(p, {force[0] * timing.dt_kick, shear * timing.dt_kick});
       owner.push_back(static_cast<int>(2 * f) + end);
     }
   }
@@ -176,17 +184,22 @@ int update_bonds(const BondSet& bonds, const std::vector<JointProperty>& joints,
     const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
     const double half_area = 0.5 * face.length * thickness, mu = std::tan(joint.friction_angle);
     const double share = dt / (face.memory + dt);
-    bool at_limit = true;
+    int pulled = 0;                     // ends at their tensile strength
+    double shear = 0, shear_limit = 0;  // of the other ends
     for (size_t end = 0; end < 2; ++end) {
       const auto& force = state.bond_force[2 * f + end];
       for (size_t k = 0; k < 2; ++k)
         now.mean_force[2 * end + k] += share * (force[k] - now.mean_force[2 * end + k]);
-      const double normal = now.mean_force[2 * end], tangential = std::abs(now.mean_force[2 * end + 1]);
-      const bool pulled = normal < 0 && normal <= -kAtLimit * joint.tensile_strength * half_area;
-      const bool sheared =
-          tangential > 0 && tangential >= kAtLimit * std::max(0.0, joint.cohesion * half_area + mu * normal);
-      if (!pulled && !sheared) at_limit = false;
+      const double normal = now.mean_force[2 * end];
+      if (normal < 0 && normal <= -kAtLimit * joint.tensile_strength * half_area) {
+        ++pulled;
+        continue;
+      }
+      shear += now.mean_force[2 * end + 1];
+      shear_limit += std::max(0.0, joint.cohesion * half_area + mu * normal);
     }
+    // shear as a resultant: how two rigid blocks share it between the ends of a face is not determined
+    const bool at_limit = pulled == 2 || (shear != 0 && std::abs(shear) >= kAtLimit * shear_limit);
     if (!at_limit) continue;
     now.broken = true;
     state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};

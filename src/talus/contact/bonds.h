@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/blocks/state.h"
+#include "talus/contact/compliance.h"
 #include "talus/rows/rows.h"
 
 namespace talus {
@@ -32,9 +33,11 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
 bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 
 /// Rows of all intact faces (two points each), with the first guess from the last step.
-/// @param owner  gets 2 * face + end for each row added
+/// @param before  rates half a step ago
+/// @param owner   gets 2 * face + end for each row added
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                   const State& state, double dt, double dt_kick, RowSet& rows, std::vector<int>& owner);
+                   const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+                   RowSet& rows, std::vector<int>& owner);
 
 /// Follows the mean forces of breakable faces over a step of length dt and breaks those at their limit at
 /// both ends. Returns the number broken.

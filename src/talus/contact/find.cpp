@@ -36,14 +36,49 @@ bool may_enter(const BlockSet& blocks, const State& s, int block, int k, Vec2 n)
          dot(back, n) >= -kEntrance * norm(back);
 }
 
+// Whether only convex corners lie between two edges of a block, the shorter way round.
+bool on_convex_chain(const BlockSet& blocks, const State& s, int block, int edge_1, int edge_2) {
+  const int n = blocks.vertex_count(block);
+  const int forward = (edge_2 - edge_1 + n) % n;
+  const int from = 2 * forward <= n ? edge_1 : edge_2, to = 2 * forward <= n ? edge_2 : edge_1;
+  for (int k = from; k != to; k = (k + 1) % n)
+    if (!is_convex(blocks, s, block, (k + 1) % n)) return false;
+  return true;
+}
+
+// Corner v of a comes towards edge e of b level with its end, where b's other edge there and an edge of a lie
+// in one line: a slides over the joint between b and its neighbour. It touches b's other edge next, not the
+// side of b.
+bool is_flush(const BlockSet& blocks, const State& s, int a, int v, int b, int e, int end, double same) {
+  const int na = blocks.vertex_count(a), nb = blocks.vertex_count(b);
+  const int other = end == e ? (e + nb - 1) % nb : end;
+  const CornerEdge over = corner_over_edge(blocks, s, a, v, b, other);
+  if (std::abs(over.gap) > same) return false;
+  const Vec2 db = edge_vector(blocks, s, b, other);
+  for (const int f : {v, (v + na - 1) % na}) {
+    const Vec2 da = edge_vector(blocks, s, a, f);
+    if (dot(da, db) < 0 && std::abs(cross(da, db)) <= kParallel * norm(da) * norm(db)) return true;
+  }
+  return false;
+}
+
 struct Hit {
   ContactPoint point;
-  int at_corner = -1;  // corner of b at the foot, -1 inside the edge
+  int at_corner = -1;   // corner of b at the foot, -1 inside the edge
+  double expected = 0;  // gap after the look-ahead
 };
+
+// Whether x is the way out rather than y: larger gap, or nearly equal ones by what is coming.
+bool is_better(const Hit& x, const Hit& y, double same) {
+  if (std::abs(x.point.gap - y.point.gap) > same) return x.point.gap > y.point.gap;
+  const double tie = 1e-3 * same;
+  if (std::abs(x.expected - y.expected) > tie) return x.expected > y.expected;
+  return x.point.key < y.point.key;
+}
 
 // All corner-edge pairs of corners of a over edges of b.
 void corners_over_edges(const BlockSet& blocks, const State& s, int a, int b, double margin, double same,
-                        std::vector<Hit>& hits) {
+                        double look_ahead, std::vector<Hit>& hits) {
   const int na = blocks.vertex_count(a), nb = blocks.vertex_count(b);
   for (int v = 0; v < na; ++v) {
     const size_t first = hits.size();
@@ -64,23 +99,26 @@ void corners_over_edges(const BlockSet& blocks, const State& s, int a, int b, do
       const double along = std::clamp(c.along, 0.0, 1.0);
       hit.point.arm_b = b0 + along * (b1 - b0);
       hit.point.gap = c.gap;
-      hit.point.slip = -c.along * c.length;
+      hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
+      const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
+      const Vec2 va = velocity_at(s.rate[ia], acting_arm(blocks, s, ia, hit.point.arm_a));
+      const Vec2 vb = velocity_at(s.rate[ib], acting_arm(blocks, s, ib, hit.point.arm_b));
+      hit.expected = c.gap + look_ahead * dot(c.normal, va - vb);
       if (c.along * c.length < same) hit.at_corner = e;
       if ((1 - c.along) * c.length < same) hit.at_corner = (e + 1) % nb;
+      if (hit.at_corner >= 0 && c.gap > same && is_flush(blocks, s, a, v, b, e, hit.at_corner, same))
+        continue;
       hits.push_back(hit);
     }
-    // around a convex corner of b the corner obeys the edge it is least behind
+    // where b is convex the corner obeys one edge, the one it is least behind
     for (size_t i = first; i < hits.size(); ++i) {
       for (size_t j = i + 1; j < hits.size();) {
-        const int ei = hits[i].point.key.edge, ej = hits[j].point.key.edge;
-        const bool follow = (ei + 1) % nb == ej, lead = (ej + 1) % nb == ei;
-        const int between = follow ? ej : ei;
-        if ((follow || lead) && is_convex(blocks, s, b, between)) {
-          if (hits[j].point.gap > hits[i].point.gap) std::swap(hits[i], hits[j]);
-          hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(j));
-        } else {
+        if (!on_convex_chain(blocks, s, b, hits[i].point.key.edge, hits[j].point.key.edge)) {
           ++j;
+          continue;
         }
+        if (is_better(hits[j], hits[i], same)) std::swap(hits[i], hits[j]);
+        hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(j));
       }
     }
   }
@@ -102,11 +140,7 @@ void merge_corner_pairs(const BlockSet& blocks, const State& s, double same, std
         ++j;
         continue;
       }
-      const double gi = hits[i].point.gap, gj = hits[j].point.gap;
-      // gaps that differ by round-off are equal: the key decides, so that the choice does not flicker
-      const double tie = 1e-3 * same;
-      const bool take_j = gj > gi + tie || (gj >= gi - tie && hits[j].point.key < hits[i].point.key);
-      if (take_j) hits[i] = hits[j];
+      if (is_better(hits[j], hits[i], same)) hits[i] = hits[j];
       hits.erase(hits.begin() + static_cast<std::ptrdiff_t>(j));
     }
   }
@@ -149,6 +183,8 @@ void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits)
           const double length = norm(place(hits[i]) - place(hits[j]));
           hits[i].point.length += 0.5 * length;
           hits[j].point.length += 0.5 * length;
+          hits[i].point.partner = hits[j].point.key;
+          hits[j].point.partner = hits[i].point.key;
         }
       }
     }
@@ -170,12 +206,12 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int a, i
 }
 
 void touch_blocks(const BlockSet& blocks, const State& state, int a, int b, double margin,
-                  std::vector<ContactPoint>& out) {
+                  std::vector<ContactPoint>& out, double look_ahead) {
   const double same =
       kSamePlace * std::min(blocks.size[static_cast<size_t>(a)], blocks.size[static_cast<size_t>(b)]);
   std::vector<Hit> hits;
-  corners_over_edges(blocks, state, a, b, margin, same, hits);
-  corners_over_edges(blocks, state, b, a, margin, same, hits);
+  corners_over_edges(blocks, state, a, b, margin, same, look_ahead, hits);
+  corners_over_edges(blocks, state, b, a, margin, same, look_ahead, hits);
   merge_corner_pairs(blocks, state, same, hits);
   share_faces(blocks, state, hits);
   std::sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });

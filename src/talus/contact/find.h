@@ -11,11 +11,12 @@ namespace talus {
 /// One contact point: a corner of block a on, near or slightly inside an edge of block b.
 struct ContactPoint {
   ContactKey key;
-  Vec2 normal;        // outward normal of b's edge now: from b into a
-  Vec2 arm_a, arm_b;  // reference arms of the corner and of its foot on the edge
-  double gap = 0;     // [m] > 0 apart
-  double slip = 0;    // [m] position of the foot along the tangent (the normal turned clockwise)
-  double length = 0;  // [m] tributary length: half the face it ends, 0 for a corner alone
+  Vec2 normal;         // outward normal of b's edge now: from b into a
+  Vec2 arm_a, arm_b;   // reference arms of the corner and of its foot on the edge
+  double gap = 0;      // [m] > 0 apart
+  double slip = 0;     // [m] position of the foot along the tangent (the normal turned clockwise)
+  double length = 0;   // [m] tributary length: half the face it ends, 0 for a corner alone
+  ContactKey partner;  // the other end of that face; block_a = -1 when there is none
 };
 
 /// Gap and foot of a corner over an edge; digits are kept however far both are from the origin.
@@ -34,9 +35,12 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int bloc
 ///  edges
 ///    do not lie behind the edge (entrance condition);
 ///  - a corner near a convex corner of the other block obeys one edge: the one with the larger gap;
-///  - two corners at one place make one contact: again the larger gap, equal gaps by the lower key.
+///  - two corners at one place make one contact: again the larger gap; gaps that are equal by what they come
+///  to
+///    within `look_ahead` [s] at the rates of the state (a block that slides over a flush joint must not be
+///    caught by the side of the next block), then by the lower key.
 void touch_blocks(const BlockSet& blocks, const State& state, int block_a, int block_b, double margin,
-                  std::vector<ContactPoint>& out);
+                  std::vector<ContactPoint>& out, double look_ahead = 0);
 
 /// Keeps the list of close pairs between calls and renews it when some block has moved half the skin.
 class CandidateFinder {

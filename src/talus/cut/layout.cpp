@@ -70,6 +70,29 @@ void check_overlaps(const Model& model, const Layout& layout, Findings& findings
   }
 }
 
+// Two supports that hold one corner along one axis must ask for the same motion.
+void check_contradictions(const Model& model, const Layout& layout, Findings& findings) {
+  std::map<std::pair<int, int>, std::vector<const SupportInput*>> holders;
+  for (const SupportInput& s : model.supports)
+    for (const SupportedCorner& c : corners_of_support(layout, s))
+      if (c.vertex >= 0) holders[{c.block, c.vertex}].push_back(&s);
+  const auto differ = [](const Motion& p, const Motion& q) {
+    const bool both = p.kind != Motion::kFree && q.kind != Motion::kFree;
+    return both && (p.kind != q.kind || p.history != q.history);
+  };
+  for (const auto& [corner, list] : holders) {
+    for (size_t i = 1; i < list.size(); ++i) {
+      const SupportInput &first = *list[0], &other = *list[i];
+      if (!differ(first.x, other.x) && !differ(first.y, other.y)) continue;
+      findings.error(other.where, "support." + other.name,
+                     fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
+                                 layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
+                     "make one of them \"free\" along that axis, or shorten it");
+      return;
+    }
+  }
+}
+
 double model_size(const Layout& layout) {
   Box all = bounding_box(layout.blocks[0].polygon);
   for (const BlockShape& b : layout.blocks) {
@@ -82,18 +105,18 @@ double model_size(const Layout& layout) {
 
 void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
                    Findings& findings) {
+  if (name.empty()) return;  // told by the reader
   std::vector<std::string> names = layout.groups;
   for (const BlockShape& b : layout.blocks) names.push_back(b.name);
   const std::string near = closest_name(name, names);
-  findings.error(where, path, fmt::format("there is no block called \"{}\"", name),
+  findings.error(where, path, fmt::format("there is no block or grid called \"{}\"", name),
                  near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
 }
 
 void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
-  const double tolerance = kPointShare * model_size(layout);
   for (const MonitorInput& m : model.monitors) {
     const std::string path = "monitor." + m.name;
-    if (m.kind == MonitorKind::kPoint && blocks_at(layout, m.point, tolerance).empty()) {
+    if (m.kind == MonitorKind::kPoint && block_of_point(layout, m.point) < 0) {
       double nearest = std::numeric_limits<double>::infinity();
       std::string name;
       for (const BlockShape& b : layout.blocks) {
@@ -114,6 +137,9 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
                        fmt::format("name one of its blocks, for example \"{}\"",
                                    layout.blocks[static_cast<size_t>(called[0])].name));
     }
+    if (m.kind == MonitorKind::kContact && m.target_a == m.target_b && !m.target_a.empty())
+      findings.error(m.where, path, fmt::format("names \"{}\" twice", m.target_a),
+                     "name the two partners of the contact");
     if (m.kind == MonitorKind::kContact) {
       for (const std::string& name : {m.target_a, m.target_b})
         if (layout.blocks_called(name).empty()) unknown_block(layout, name, m.where, path, findings);
@@ -179,6 +205,9 @@ Layout make_layout(const Model& model, Findings& findings) {
                      "a joint belongs to whole grids or blocks: name the grid");
       continue;
     }
+    if (layout.pair_joint.count(std::minmax(a, b)) && a != b)
+      findings.error(p.where, "contact_pair.between",
+                     fmt::format("\"{}\" and \"{}\" have a joint already", p.name_a, p.name_b));
     if (a == b) findings.error(p.where, "contact_pair", "names the same block or grid twice");
     layout.pair_joint[std::minmax(a, b)] = p.joint;
   }
@@ -187,8 +216,25 @@ Layout make_layout(const Model& model, Findings& findings) {
   if (layout.blocks.empty() || !sound) return layout;
 
   check_overlaps(model, layout, findings);
+  for (const LoadInput& l : model.loads) {
+    if (l.block.empty()) continue;
+    const std::vector<int> loaded = layout.blocks_called(l.block);
+    if (loaded.empty()) unknown_block(layout, l.block, l.where, "load." + l.name + ".block", findings);
+    const auto held = [&](int i) {
+      const BlockKind kind = layout.blocks[static_cast<size_t>(i)].kind;
+      return kind == BlockKind::kFixed || kind == BlockKind::kDriven;
+    };
+    if (!loaded.empty() && std::all_of(loaded.begin(), loaded.end(), held))
+      findings.warning(l.where, "load." + l.name + ".block",
+                       fmt::format("\"{}\" is fixed or driven: the load has no effect", l.block));
+  }
   check_monitors(model, layout, findings);
+  check_contradictions(model, layout, findings);
   for (const SupportInput& s : model.supports) {
+    if (!s.block.empty() && layout.blocks_called(s.block).empty()) {
+      unknown_block(layout, s.block, s.where_block, "support." + s.name + ".block", findings);
+      continue;
+    }
     if (corners_of_support(layout, s).empty())
       findings.error(
           s.where, "support." + s.name,
@@ -208,6 +254,11 @@ std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {
     if (contains(layout.blocks[i].polygon, point, tolerance)) list.push_back(static_cast<int>(i));
   }
   return list;
+}
+
+int block_of_point(const Layout& layout, Vec2 point) {
+  const std::vector<int> blocks = blocks_at(layout, point, kPointShare * model_size(layout));
+  return blocks.empty() ? -1 : blocks.front();
 }
 
 std::vector<SupportedCorner> corners_of_support(const Layout& layout, const SupportInput& support) {

@@ -43,6 +43,9 @@ Layout make_layout(const Model& model, Findings& findings);
 /// Blocks whose polygon holds `point` (boundary included, within `tolerance` [m]).
 std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance);
 
+/// The block that a point monitor follows: the first that holds `point`; -1 when none does.
+int block_of_point(const Layout& layout, Vec2 point);
+
 /// Corner `vertex` of block `block`, held by a support.
 struct SupportedCorner {
   int block = 0;

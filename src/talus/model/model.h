@@ -27,6 +27,19 @@ struct JointProperty {
   double friction_angle = 0;    // [rad]
   double cohesion = 0;          // [Pa]
   double tensile_strength = 0;  // [Pa]
+  double normal_stiffness = 0;  // kn [Pa/m], 0 = hard
+  double shear_stiffness = 0;   // ks [Pa/m], 0 = hard
+  double restitution = -1;      // ratio of normal velocities, -1 = as the scheme gives (theory 7.1)
+};
+
+enum class ContactLaw { kExact, kSmoothed };
+
+struct ContactInput {
+  ContactLaw law = ContactLaw::kExact;
+  double alpha = 0.2;          // damping of compliant rows: 0 none, 1 backward Euler
+  double slop = 1e-7;          // overlap of hard contacts left uncorrected, share of the smaller block's size
+  double smoothing_force = 1;  // epsilon_1 of the smoothed law [N]
+  double smoothing_slip = 6e-8;  // epsilon_2 [m]
 };
 
 /// A quantity over time: linear between points, held outside.
@@ -87,6 +100,7 @@ struct SupportInput {
   bool is_edge = false;
   Vec2 from, to;      // the segment; the point when is_edge is false
   std::string block;  // "" = any
+  Where where_block;
   Motion x, y;
   Where where;
 };
@@ -101,10 +115,14 @@ struct LoadInput {
 
 enum class JacobianKind { kAnalytic, kDifference };
 
+enum class SolverKind { kNewton, kGaussSeidel };
+
 struct SolverInput {
+  SolverKind method = SolverKind::kNewton;
   JacobianKind jacobian = JacobianKind::kAnalytic;
-  double tolerance = 1e-10;  // share of the smallest block's size
+  double tolerance = 1e-8;  // share of the smallest block's size
   int max_iterations = 60;
+  int max_sweeps = 20000;
   bool stop_on_failure = true;
 };
 
@@ -142,6 +160,8 @@ struct OutputInput {
 struct Model {
   std::string file, title, hash;
   std::string text;  // the file as read, byte for byte, with the overrides as closing comments
+  bool shapes_readable =
+      false;  // every block and grid has its polygon: the layout can be checked in spite of errors
   double thickness = 1;
   Plane plane = Plane::kStrain;
   Inertia inertia = Inertia::kConsistent;
@@ -156,6 +176,7 @@ struct Model {
   std::vector<ContactPairInput> contact_pairs;
   std::vector<SupportInput> supports;
   std::vector<LoadInput> loads;
+  ContactInput contact;
   SolverInput solver;
   std::vector<StageInput> stages;
   std::vector<MonitorInput> monitors;

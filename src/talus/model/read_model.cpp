@@ -23,6 +23,7 @@ class ModelReader {
   void read() {
     check_section_names();
     if (!read_top()) return;
+    model_.shapes_readable = true;
     read_general();
     read_materials();
     read_joints();
@@ -146,18 +147,6 @@ class ModelReader {
     return i;
   }
 
-  // A block of a grid ("bar[3,0]") is known only when the grid is divided: checked with the layout.
-  void refer_block_or_grid(const std::string& name, const Where& where, const std::string& path) {
-    if (name.find('[') != std::string::npos) return;
-    struct Named {
-      std::string name;
-    };
-    std::vector<Named> all;
-    for (const auto& b : model_.blocks) all.push_back({b.name});
-    for (const auto& g : model_.grids) all.push_back({g.name});
-    refer_name(name, where, path, all, "block or grid");
-  }
-
   void claim_name(const Fields& f, std::set<std::string>& used, const std::string& what) {
     if (!f.has("name")) return;
     const std::string name = f.get<std::string>("name");
@@ -173,6 +162,13 @@ class ModelReader {
     const MotionText m = f.get<MotionText>(key);
     Motion out;
     out.kind = static_cast<Motion::Kind>(m.kind);
+    const int given = index_of(model_.histories, m.history);
+    if (m.kind == MotionText::kDisplacement && given >= 0 &&
+        model_.histories[static_cast<size_t>(given)].value_at(0) != 0)
+      findings_.error(f.where(key), f.path_of(key),
+                      fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
+                                  m.history, model_.histories[static_cast<size_t>(given)].value_at(0)),
+                      "let it begin at 0");
     if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
       out.history = refer_name(m.history, f.where(key), f.path_of(key), model_.histories, "history");
     return out;
@@ -183,6 +179,35 @@ class ModelReader {
            : s == "fixed"  ? BlockKind::kFixed
            : s == "driven" ? BlockKind::kDriven
                            : BlockKind::kDeformable;
+  }
+
+  // What is allowed but hardly meant.
+  void warn_unlikely() {
+    for (size_t i = 0; i < model_.materials.size(); ++i) {
+      const Material& m = model_.materials[i];
+      const Where& where = material_where_[i];
+      if (m.young > 0 && m.young < 1e5)
+        findings_.warning(where, "material." + m.name + ".young",
+                          fmt::format("{:g} Pa is softer than rubber", m.young),
+                          "is a unit missing, as in \"5 GPa\"?");
+      if (m.density < 100 || m.density > 25000)
+        findings_.warning(where, "material." + m.name + ".density",
+                          fmt::format("{:g} kg/m3 is no density of stone or steel", m.density),
+                          "is a unit missing, as in \"2.7 t/m3\"?");
+    }
+    std::set<int> used{model_.default_joint};
+    for (const ContactPairInput& c : model_.contact_pairs) used.insert(c.joint);
+    for (const GridInput& g : model_.grids) used.insert(g.joint);
+    for (size_t i = 0; i < model_.joints.size(); ++i) {
+      if (used.count(static_cast<int>(i))) continue;
+      findings_.warning(
+          joint_where_[i], "joint." + model_.joints[i].name, "is used by nothing",
+          model_.default_joint < 0
+              ? fmt::format(
+                    "contacts without a joint are frictionless; for all of them: [contact] joint = \"{}\"",
+                    model_.joints[i].name)
+              : "name it in [contact], a [[contact_pair]] or a [[grid]]");
+    }
   }
 
   // --- content ---
@@ -219,6 +244,7 @@ class ModelReader {
       m.young = f.get("young", f.given("young") ? 0 : m.young);
       m.poisson = f.get("poisson", f.given("poisson") ? 0 : m.poisson);
       model_.materials.push_back(m);
+      material_where_.push_back(f.where());
     });
   }
 
@@ -241,13 +267,22 @@ class ModelReader {
       j.friction_angle = f.get("friction_angle", 0.0);
       j.cohesion = f.get("cohesion", 0.0);
       j.tensile_strength = f.get("tensile_strength", 0.0);
-      for (const char* key : {"friction_angle", "cohesion", "tensile_strength"}) {
+      j.normal_stiffness = f.get("normal_stiffness", 0.0);
+      j.shear_stiffness = f.get("shear_stiffness", 0.0);
+      j.restitution = f.get("restitution", -1.0);
+      if (f.given("restitution") && (j.normal_stiffness > 0 || j.cohesion > 0 || j.tensile_strength > 0))
+        findings_.error(f.where("restitution"), f.path_of("restitution"),
+                        "is only for hard joints without strength",
+                        "leave out the stiffness and the strengths");
+      for (const char* key : {"friction_angle", "cohesion", "tensile_strength", "normal_stiffness",
+                              "shear_stiffness", "restitution"}) {
         if (j.bonded && f.given(key))
           findings_.error(f.where(key), f.path_of(key),
                           "has no meaning for a bonded joint, which never breaks",
                           "leave it out, or make the joint kind = \"frictional\"");
       }
       model_.joints.push_back(j);
+      joint_where_.push_back(f.where());
     });
   }
 
@@ -256,6 +291,10 @@ class ModelReader {
       History h;
       h.name = name;
       const bool table = f.given("time") || f.given("value"), formula = f.given("expression");
+      for (const char* key : {"duration", "samples"})
+        if (table && !formula && f.given(key))
+          findings_.error(f.where(key), f.path_of(key), "belongs to an expression; this history is a table",
+                          "leave it out");
       if (table == formula) {
         findings_.error(f.where(), f.path(), table ? "has both a table and an expression" : "is empty",
                         "give time and value, or expression and duration");
@@ -310,6 +349,7 @@ class ModelReader {
       BlockInput b;
       b.name = f.get<std::string>("name");
       b.polygon = f.get<std::vector<Vec2>>("polygon");
+      if (!f.has("polygon") || !f.has("name")) model_.shapes_readable = false;
       b.where = f.given("polygon") ? f.where("polygon") : f.where();
       b.material = refer(f, "material", model_.materials, "material");
       b.kind = block_kind(f.get<std::string>("kind"));
@@ -346,6 +386,8 @@ class ModelReader {
       g.name = f.get<std::string>("name");
       g.min = f.get<Vec2>("min");
       g.max = f.get<Vec2>("max", {1, 1});
+      for (const char* key : {"name", "min", "max", "cells"})
+        if (!f.has(key)) model_.shapes_readable = false;
       const auto cells = f.get<std::array<int, 2>>("cells", {1, 1});
       g.columns = cells[0], g.rows = cells[1];
       g.pattern = f.get<std::string>("pattern") == "crossed_triangles" ? GridPattern::kCrossedTriangles
@@ -355,8 +397,13 @@ class ModelReader {
       g.kind = block_kind(f.get<std::string>("kind"));
       g.velocity = f.get<Vec2>("velocity");
       g.where = f.where();
-      if (f.has("min") && f.has("max") && !(g.min.x < g.max.x && g.min.y < g.max.y))
+      if (g.kind == BlockKind::kFixed && f.given("velocity"))
+        findings_.error(f.where("velocity"), f.path_of("velocity"), "has no meaning for fixed blocks",
+                        "leave it out");
+      if (f.has("min") && f.has("max") && !(g.min.x < g.max.x && g.min.y < g.max.y)) {
         findings_.error(f.where("max"), f.path_of("max"), "must lie above and to the right of min");
+        model_.shapes_readable = false;
+      }
       if (static_cast<double>(g.columns) * g.rows > 1e7)
         findings_.error(f.where("cells"), f.path_of("cells"), "makes more than ten million cells");
       model_.grids.push_back(g);
@@ -366,13 +413,21 @@ class ModelReader {
   void read_contact() {
     const Fields f = read_table("contact");
     model_.default_joint = refer(f, "joint", model_.joints, "joint");
+    ContactInput& contact = model_.contact;
+    contact.law = f.get<std::string>("law") == "smoothed" ? ContactLaw::kSmoothed : ContactLaw::kExact;
+    contact.alpha = f.get("alpha", contact.alpha);
+    contact.slop = f.get("slop", contact.slop);
+    contact.smoothing_force = f.get("smoothing_force", contact.smoothing_force);
+    contact.smoothing_slip = f.get("smoothing_slip", contact.smoothing_slip);
+    for (const char* key : {"smoothing_force", "smoothing_slip"})
+      if (f.given(key) && contact.law == ContactLaw::kExact)
+        findings_.error(f.where(key), f.path_of(key), "belongs to law = \"smoothed\"");
     for_list("contact_pair", [this](const Fields& p) {
       ContactPairInput c;
       const auto names = p.get<std::vector<std::string>>("between");
       if (names.size() == 2) c.name_a = names[0], c.name_b = names[1];
-      for (const std::string& n : names) refer_block_or_grid(n, p.where("between"), p.path_of("between"));
       c.joint = refer(p, "joint", model_.joints, "joint");
-      c.where = p.where();
+      c.where = p.where("between");
       model_.contact_pairs.push_back(c);
     });
   }
@@ -384,6 +439,7 @@ class ModelReader {
       SupportInput s;
       s.name = f.get<std::string>("name");
       s.where = f.where();
+      s.where_block = f.where("block");
       if (f.given("point") == f.given("edge")) {
         findings_.error(f.where(), f.path(),
                         f.given("point") ? "has both point and edge" : "has neither point nor edge",
@@ -400,7 +456,6 @@ class ModelReader {
       }
       if (f.has("block")) {
         s.block = f.get<std::string>("block");
-        refer_block_or_grid(s.block, f.where("block"), f.path_of("block"));
       }
       s.x = motion(f, "x");
       s.y = motion(f, "y");
@@ -416,14 +471,13 @@ class ModelReader {
       claim_name(f, used, "load");
       LoadInput l;
       l.name = f.get<std::string>("name");
-      l.where = f.where();
+      l.where = f.given("block") ? f.where("block") : f.where();
       l.history_x = refer(f, "acceleration_x", model_.histories, "history");
       l.history_y = refer(f, "acceleration_y", model_.histories, "history");
       if (!f.given("acceleration_x") && !f.given("acceleration_y"))
         findings_.error(f.where(), f.path(), "has no effect", "give acceleration_x or acceleration_y");
       if (f.has("block")) {
         l.block = f.get<std::string>("block");
-        refer_block_or_grid(l.block, f.where("block"), f.path_of("block"));
       }
       model_.loads.push_back(l);
     });
@@ -433,7 +487,13 @@ class ModelReader {
     const Fields f = read_table("solver");
     model_.solver.jacobian =
         f.get<std::string>("jacobian") == "difference" ? JacobianKind::kDifference : JacobianKind::kAnalytic;
-    model_.solver.tolerance = f.get("tolerance", 1e-10);
+    model_.solver.method =
+        f.get<std::string>("method") == "gauss_seidel" ? SolverKind::kGaussSeidel : SolverKind::kNewton;
+    model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
+    if (model_.solver.method == SolverKind::kGaussSeidel && model_.contact.law == ContactLaw::kSmoothed)
+      findings_.error(f.where("method"), f.path_of("method"), "gauss_seidel solves the exact law only",
+                      "use method = \"newton\" with contact.law = \"smoothed\"");
+    model_.solver.tolerance = f.get("tolerance", 1e-8);
     model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
     model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";
   }
@@ -501,9 +561,9 @@ class ModelReader {
         refer(f, "support", model_.supports, "support");
       } else {
         m.kind = MonitorKind::kContact;
+        m.where = f.where("contact");
         const auto names = f.get<std::vector<std::string>>("contact");
         if (names.size() == 2) m.target_a = names[0], m.target_b = names[1];
-        for (const std::string& n : names) refer_block_or_grid(n, f.where("contact"), f.path_of("contact"));
       }
       model_.monitors.push_back(m);
     });
@@ -520,6 +580,7 @@ class ModelReader {
   Model& model_;
   Findings& findings_;
   std::set<std::string> block_names_, incomplete_;
+  std::vector<Where> material_where_, joint_where_;
 };
 
 }  // namespace

@@ -103,7 +103,24 @@ std::vector<SectionSpec> build_schema() {
          .dimension = D::kStress,
          .range = kNonNegative,
          .default_text = "\"0 Pa\"",
-         .doc = "Tensile strength of faces that touch at the start."}}},
+         .doc = "Tensile strength of faces that touch at the start."},
+        {.name = "normal_stiffness",
+         .dimension = D::kStiffness,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa/m\"",
+         .doc = "Elastic stiffness kn of the joint per area; 0: hard. Give it to natural rock joints: forces "
+                "are then "
+                "unique. It costs no time step."},
+        {.name = "shear_stiffness",
+         .dimension = D::kStiffness,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa/m\"",
+         .doc = "Elastic stiffness ks along the joint per area; 0: hard."},
+        {.name = "restitution",
+         .range = {.min = 0, .max = 1},
+         .doc = "Ratio of the normal velocities after and before a touch; none: what the scheme gives "
+                "(docs/theory.md "
+                "7.1). Only for hard joints."}}},
 
       {"history",
        SectionShape::kNamed,
@@ -231,7 +248,32 @@ std::vector<SectionSpec> build_schema() {
        {{.name = "joint",
          .type = K::kName,
          .refers_to = "joint",
-         .doc = "Joint of all pairs of blocks without their own; none: hard and frictionless."}}},
+         .doc = "Joint of all pairs of blocks without their own; none: hard and frictionless."},
+        {.name = "law",
+         .type = K::kChoice,
+         .default_text = "\"exact\"",
+         .choices = {"exact", "smoothed"},
+         .doc = "`exact`: the contact law. `smoothed`: the paper's approximation (its eqs 26-29 with units "
+                "corrected), "
+                "for comparison only: its friction creeps."},
+        {.name = "alpha",
+         .range = {.min = 0, .max = 1},
+         .default_text = "0.2",
+         .doc = "Numerical damping of joints with stiffness: 0 loses nothing, 1 is backward Euler."},
+        {.name = "slop",
+         .range = {.min = 0, .max = 1e-2},
+         .default_text = "1e-7",
+         .doc = "Overlap of hard contacts that is left uncorrected, as share of the smaller block's size."},
+        {.name = "smoothing_force",
+         .dimension = D::kForce,
+         .range = kPositive,
+         .default_text = "\"1 N\"",
+         .doc = "Width of the smoothed normal law."},
+        {.name = "smoothing_slip",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .default_text = "\"6e-8 m\"",
+         .doc = "Width of the smoothed friction law: slip per step at which half of the friction acts."}}},
 
       {"contact_pair",
        SectionShape::kList,
@@ -265,7 +307,8 @@ std::vector<SectionSpec> build_schema() {
 
       {"load",
        SectionShape::kList,
-       "A body force on blocks, as an acceleration added to gravity.",
+       "A body force on blocks, as an acceleration added to gravity. In static stages it stands at its value "
+       "of t = 0 on the clock of the histories.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
         {.name = "acceleration_x",
          .type = K::kName,
@@ -285,8 +328,10 @@ std::vector<SectionSpec> build_schema() {
        {{.name = "method",
          .type = K::kChoice,
          .default_text = "\"newton\"",
-         .choices = {"newton"},
-         .doc = "Newton's method, semismooth, per island of touching blocks."},
+         .choices = {"newton", "gauss_seidel"},
+         .doc = "`newton`: semismooth, per island of touching blocks. `gauss_seidel`: projected, point by "
+                "point. A step "
+                "that one does not solve is tried by the other."},
         {.name = "jacobian",
          .type = K::kChoice,
          .default_text = "\"analytic\"",
@@ -295,13 +340,18 @@ std::vector<SectionSpec> build_schema() {
                 "only)."},
         {.name = "tolerance",
          .range = {.min = 0, .max = 1e-2, .min_open = true},
-         .default_text = "1e-10",
+         .default_text = "1e-8",
          .doc = "Largest contact error of a step, as share of the smallest block's size."},
         {.name = "max_iterations",
          .type = K::kInteger,
          .range = {.min = 1, .max = 10000},
          .default_text = "60",
          .doc = "Most Newton iterations of a step."},
+        {.name = "max_sweeps",
+         .type = K::kInteger,
+         .range = {.min = 1, .max = 1e7},
+         .default_text = "20000",
+         .doc = "Most Gauss-Seidel sweeps of a step."},
         {.name = "on_failure",
          .type = K::kChoice,
          .default_text = "\"stop\"",
@@ -394,7 +444,8 @@ std::vector<SectionSpec> build_schema() {
          .dimension = D::kTime,
          .range = kNonNegative,
          .default_text = "\"0 s\"",
-         .doc = "Spacing of the rows of histories.csv; 0: every step."},
+         .doc = "Spacing of the rows of histories.csv; 0: every step. Rows are values of single steps, not "
+                "means: faster motion is aliased, impulses stay exact."},
         {.name = "steps_interval",
          .dimension = D::kTime,
          .range = kNonNegative,
@@ -580,7 +631,7 @@ std::string schema_markdown() {
     out += "\n";
   }
   out += "### Units\n\n| quantity | units (SI first) |\n|---|---|\n";
-  for (int d = static_cast<int>(D::kLength); d <= static_cast<int>(D::kForce); ++d) {
+  for (int d = static_cast<int>(D::kLength); d <= static_cast<int>(D::kStiffness); ++d) {
     const std::string text = describe(static_cast<D>(d));
     const size_t open = text.find(" (");
     out += fmt::format("| {} | {} |\n", text.substr(0, open), text.substr(open + 2, text.size() - open - 3));

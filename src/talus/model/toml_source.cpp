@@ -139,8 +139,11 @@ TomlSource parse_toml(const std::string& text, const std::vector<std::string>& o
     source.root = toml::parse(text + "\n");
   } catch (const toml::parse_error& e) {
     const auto at = e.source().begin;
+    const std::string_view text_of = e.description();
+    const bool open_text = text_of.find("unescaped control characters") != std::string_view::npos;
     findings.error({static_cast<int>(at.line), static_cast<int>(at.column), ""}, "",
-                   fmt::format("syntax: {}", e.description()));
+                   fmt::format("syntax: {}", text_of),
+                   open_text ? "a closing quote is missing before the end of the line" : "");
     return source;
   }
   for (const std::string& item : overrides) apply_override(item, source, findings);

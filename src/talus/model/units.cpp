@@ -31,6 +31,7 @@ constexpr DimensionName kNames[] = {
     {Dimension::kDensity, "a density"},
     {Dimension::kStress, "a stress"},
     {Dimension::kForce, "a force"},
+    {Dimension::kStiffness, "a stiffness per area"},
 };
 
 std::string_view trim(std::string_view s) {
@@ -89,6 +90,9 @@ const std::vector<Unit>& all_units() {
       {"N", D::kForce, 1},
       {"kN", D::kForce, 1e3},
       {"MN", D::kForce, 1e6},
+      {"Pa/m", D::kStiffness, 1},
+      {"MPa/m", D::kStiffness, 1e6},
+      {"GPa/m", D::kStiffness, 1e9},
   };
   return units;
 }

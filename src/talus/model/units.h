@@ -19,6 +19,7 @@ enum class Dimension {
   kDensity,
   kStress,
   kForce,
+  kStiffness,
 };
 
 struct Unit {

@@ -102,16 +102,18 @@ void CsvWriter::check(bool ok) const {
 const std::vector<double>& CsvTable::column(const std::string& name) const {
   const auto exact = std::find(columns.begin(), columns.end(), name);
   if (exact != columns.end()) return values[static_cast<size_t>(exact - columns.begin())];
-  const std::vector<double>* found = nullptr;
+  std::vector<std::string> matches;
+  size_t at = 0;
   for (size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].rfind(name, 0) == 0) {
-      if (found)
-        throw FileError(fmt::format("more than one column begins with \"{}\": {}", name, join_or(columns)));
-      found = &values[i];
-    }
+    if (columns[i].rfind(name, 0) != 0) continue;
+    matches.push_back(columns[i]);
+    at = i;
   }
-  if (!found) throw FileError(fmt::format("there is no column \"{}\"; there is {}", name, join_or(columns)));
-  return *found;
+  if (matches.size() > 1)
+    throw FileError(fmt::format("more than one column begins with \"{}\": {}", name, join_or(matches)));
+  if (matches.empty())
+    throw FileError(fmt::format("there is no column \"{}\"; there is {}", name, join_or(columns)));
+  return values[at];
 }
 
 CsvTable read_csv(const fs::path& path) {

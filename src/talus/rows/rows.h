@@ -10,8 +10,9 @@
 
 namespace talus {
 
-/// Residual of a row: e = u + bias + compliance p, with u the relative velocity along it at the end of the
-/// kick. Inside the bounds of p, e = 0; at the lower bound e >= 0; at the upper bound e <= 0.
+/// Residual of a row: e = u + bias + compliance p (+ cross p of the partner), with u the relative velocity
+/// along it at the end of the kick. Inside the bounds of p, e = 0; at the lower bound e >= 0; at the upper
+/// bound e <= 0.
 struct Row {
   double lower = -std::numeric_limits<double>::infinity();  // of the impulse p [N s]
   double upper = std::numeric_limits<double>::infinity();
@@ -29,6 +30,8 @@ struct PointRows {
   bool cone = false;               // the tangential bounds are -+ max(0, cohesion + friction p_n) instead
   double friction = 0;             // tan of the friction angle
   double cohesion = 0;             // [N s]
+  int partner = -1;          // index in the row set of the other end of the same compliant face, -1: none
+  double cross[2] = {0, 0};  // compliance with the partner's impulse [1/kg]
 };
 
 using Impulse = std::array<double, 2>;  // normal, tangential [N s]

@@ -34,6 +34,7 @@ std::vector<std::string> step_columns() {
           "largest island [points]",
           "iterations",
           "contact error [m]",
+          "drift [m]",
           "failed steps",
           "unbalanced",
           "broken faces",
@@ -43,6 +44,7 @@ std::vector<std::string> step_columns() {
           "load work [J]",
           "support work [J]",
           "bond work [J]",
+          "joint work [J]",
           "contact closing work [J]",
           "friction work [J]",
           "damping work [J]",
@@ -62,6 +64,7 @@ std::vector<double> step_row(const Instant& i) {
           static_cast<double>(r.solve.largest_island),
           static_cast<double>(r.solve.iterations),
           r.error.worst,
+          r.drift,
           r.failed ? 1.0 : 0.0,
           r.unbalanced,
           static_cast<double>(broken),
@@ -71,6 +74,7 @@ std::vector<double> step_row(const Instant& i) {
           e.work.loads,
           e.work.supports,
           e.work.bonds,
+          e.work.joints,
           e.work.contact_closing,
           e.work.friction,
           e.work.damping,
@@ -80,12 +84,10 @@ std::vector<double> step_row(const Instant& i) {
 Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::move(sink)) {
   columns_.push_back("t [s]");
   const BlockSet& blocks = scene.blocks;
-  double least = blocks.size[0];
-  for (const double s : blocks.size) least = std::min(least, s);
   for (const MonitorInput& m : scene.model.monitors) {
     switch (m.kind) {
       case MonitorKind::kPoint: {
-        const int block = blocks_at(scene.layout, m.point, 1e-6 * least).front();
+        const int block = block_of_point(scene.layout, m.point);
         points_.emplace_back(block, m.point - blocks.centroid[static_cast<size_t>(block)]);
         add_columns(m.name,
                     {"displacement_x [m]", "displacement_y [m]", "velocity_x [m/s]", "velocity_y [m/s]"});

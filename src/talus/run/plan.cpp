@@ -13,6 +13,7 @@ namespace talus {
 namespace {
 
 constexpr double kWarnClampShare = 0.03;
+constexpr double kMostSteps = 1e12;
 
 // Measured sizes of one cell or item in result files [bytes], from runs of the examples.
 constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 120, kVtkFile = 1700;
@@ -29,7 +30,7 @@ double median_step(const BlockSet& blocks) {
 
 int64_t rows_of(double duration, int64_t steps, double interval) {
   if (interval <= 0) return steps;
-  return std::min<int64_t>(steps, static_cast<int64_t>(duration / interval));
+  return static_cast<int64_t>(std::min(static_cast<double>(steps), duration / interval));
 }
 
 }  // namespace
@@ -54,6 +55,13 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
       findings.error(stage.where, path + ".time_step",
                      "\"auto\" needs a deformable block; this model has none",
                      "give a time_step, for example \"0.1 ms\"");
+      wanted = stage.duration;
+    }
+    if (stage.duration / wanted > kMostSteps) {
+      findings.error(std::isnan(stage.time_step) ? stage.where : stage.where_step, path + ".time_step",
+                     fmt::format("{:.3g} s makes {:.3g} steps, more than {:g}", wanted,
+                                 stage.duration / wanted, kMostSteps),
+                     "is a unit missing?");
       wanted = stage.duration;
     }
     plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));

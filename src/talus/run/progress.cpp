@@ -49,10 +49,14 @@ void Progress::show(const Instant& instant, double now) {
   const auto left = static_cast<double>(instant.plan.steps - stage_step_);
   const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
   const double share = 100 * static_cast<double>(stage_step_) / static_cast<double>(instant.plan.steps);
-  const std::string line = fmt::format(
-      "  {}: t = {:.4g} s ({:.0f} %), {:.0f} steps/s, {} to go, worst contact error {:.1e} m{}", s.name,
-      instant.state.time, share, rate, readable_seconds(left / rate), worst_error_,
-      s.kind == StageKind::kStatic ? fmt::format(", unbalanced {:.1e}", instant.report.unbalanced) : "");
+  const std::string line =
+      fmt::format("  {}: t = {:.4g} s ({:.0f} %), {:.0f} steps/s, {}{} to go, worst contact error {:.1e} m{}",
+                  s.name, instant.state.time, share, rate, s.kind == StageKind::kStatic ? "at most " : "",
+                  readable_seconds(left / rate), worst_error_,
+                  s.kind == StageKind::kStatic
+                      ? fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}",
+                                    instant.report.unbalanced, instant.report.speed_left, s.unbalanced)
+                      : "");
   fmt::print(out_, "{}{}{}", terminal_ ? "\r" : "", line, terminal_ ? "\x1b[K" : "\n");
   std::fflush(out_);
   line_open_ = terminal_;
@@ -77,8 +81,11 @@ std::string closing_text(const Scene& scene, const RunResult& r, const std::stri
         r.worst_error, r.worst_error_time, r.failed_steps, r.steps,
         static_cast<double>(r.iterations) / static_cast<double>(r.steps), r.most_iterations);
     out += fmt::format(
-        "  energy ledger   {:.2e} of its largest term left over ({:.3g} J); closing contacts took {:.4g} J\n",
-        r.closure(), r.largest_energy, -r.energy.work.contact_closing);
+        "  energy ledger   {:.2e} of its largest term ({:.3g} J) left over, {}; closing contacts took {:.4g} "
+        "J\n",
+        r.closure(), r.largest_energy,
+        r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
+        0.0 - r.energy.work.contact_closing);
   }
   for (const StageResult& s : r.stages) {
     if (s.plan.clamped > 0)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "talus/base/version.h"
@@ -20,7 +21,7 @@ double wall_now() {
 bool is_due(double time, double dt, double interval, double& next) {
   if (interval <= 0) return true;
   if (time < next - 1e-6 * dt) return false;
-  while (next <= time + 1e-6 * dt) next += interval;
+  next = (std::floor((time + 1e-6 * dt) / interval) + 1) * interval;
   return true;
 }
 
@@ -85,9 +86,9 @@ void Recorder::at(const Instant& i) {
 }
 
 void Recorder::record_step(const Instant& i) {
-  // columns in which the worst since the last row counts: islands, island size, iterations, error; failures
-  // add up
-  constexpr size_t kFirstWorst = 4, kLastWorst = 7, kFailed = 8;
+  // columns in which the worst since the last row counts: islands, island size, iterations, error, drift;
+  // failures add up
+  constexpr size_t kFirstWorst = 4, kLastWorst = 8, kFailed = 9;
   std::vector<double> row = step_row(i);
   if (!worst_.empty()) {
     for (size_t c = kFirstWorst; c <= kLastWorst; ++c) row[c] = std::max(row[c], worst_[c]);
@@ -165,6 +166,8 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
       {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
       {"contact_solves", r.steps},
       {"failed_steps", r.failed_steps},
+      {"second_solver_steps", r.second_solver_steps},
+      {"drift_deepest [m]", r.deepest_drift},
       {"iterations_mean",
        r.steps > 0 ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0},
       {"iterations_most", r.most_iterations},
@@ -178,6 +181,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                      {"load_work", e.work.loads},
                      {"support_work", e.work.supports},
                      {"bond_work", e.work.bonds},
+                     {"joint_work", e.work.joints},
                      {"contact_closing_work", e.work.contact_closing},
                      {"friction_work", e.work.friction},
                      {"damping_work", e.work.damping},

@@ -20,10 +20,11 @@ struct StageResult {
 
 struct RunResult {
   std::vector<StageResult> stages;
-  int64_t steps = 0, failed_steps = 0, iterations = 0;
+  int64_t steps = 0, failed_steps = 0, second_solver_steps = 0, iterations = 0;
   int most_contacts = 0, most_iterations = 0, candidate_rebuilds = 0;
   double worst_error = 0, worst_error_time = 0;  // [m], [s]
   std::string worst_error_row;
+  double deepest_drift = 0;                          // [m] overlap of hard contacts
   Energy energy;                                     // at the end
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;

@@ -21,7 +21,9 @@ ContactError contact_error(const BlockSet& blocks, const RowSet& set, const std:
         w += scale *
              dot(d, influence(blocks, static_cast<size_t>(point.block_b), point.arm_b, point.arm_b) * d);
       const double p = set.impulse[i][static_cast<size_t>(k)];
-      const double e = u[static_cast<size_t>(k)] + point.row[k].bias + point.row[k].compliance * p;
+      double e = u[static_cast<size_t>(k)] + point.row[k].bias + point.row[k].compliance * p;
+      if (point.partner >= 0)
+        e += point.cross[k] * set.impulse[static_cast<size_t>(point.partner)][static_cast<size_t>(k)];
       const double lower = k == 1 && point.cone
                                ? -std::max(0.0, point.cohesion + point.friction * set.impulse[i][0])
                                : point.row[k].lower;

@@ -1,6 +1,7 @@
 #include "talus/solve/contact_problem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 namespace talus {
@@ -37,12 +38,42 @@ std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::Vec
   return states;
 }
 
+// Whether the smoothing applies: contacts, not ties, supports or faces with strength.
+bool is_smoothed(const PointRows& p) { return p.cone && p.row[0].lower == 0 && p.cohesion == 0; }
+
+constexpr double kTwoOverPi = 2 / 3.14159265358979323846;
+
+Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::VectorXd& p,
+                                  const Eigen::VectorXd& e) {
+  Eigen::VectorXd h(problem.size());
+  const std::vector<RowState> states = row_states(problem, p, e);
+  for (Eigen::Index r = 0; r < h.size(); ++r) {
+    const PointRows& rows = problem.rows[static_cast<size_t>(r / 2)];
+    const RowState& s = states[static_cast<size_t>(r)];
+    const double w = problem.diagonal[r];
+    if (!is_smoothed(rows)) {
+      h[r] = s.free ? e[r] : w * (p[r] - s.held_at);
+    } else if (r % 2 == 0) {
+      const double a = e[r] / w, b = p[r], eps = problem.smoothing.impulse;
+      h[r] = w * (std::min(a, b) - eps * std::log1p(std::exp(-std::abs(a - b) / eps)));
+    } else {
+      // slip of this step: the anchor of the exact law does not exist here
+      const double slip = e[r] - rows.row[1].bias;
+      h[r] = w * (p[r] + kTwoOverPi * rows.friction * std::max(p[r - 1], 0.0) *
+                             std::atan(slip / problem.smoothing.velocity));
+    }
+  }
+  return h;
+}
+
 }  // namespace
 
 ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const std::vector<int>& points,
                              const std::vector<BlockRate>& rate, double scale) {
   ContactProblem problem;
   problem.point = points;
+  std::unordered_map<int, int> local_of;  // looked up only, never walked: its order does not matter
+  for (size_t i = 0; i < points.size(); ++i) local_of[points[i]] = static_cast<int>(i);
   std::vector<std::pair<int, Side>> sides;  // (block, side), sorted by block: a fixed order of sums
   for (size_t i = 0; i < points.size(); ++i) {
     const PointRows& p = set.points[static_cast<size_t>(points[i])];
@@ -82,6 +113,7 @@ ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const st
       const int row = static_cast<int>(2 * i) + k;
       problem.velocity_free[row] = u[static_cast<size_t>(k)] + p.row[k].bias;
       entries.emplace_back(row, row, p.row[k].compliance);
+      if (p.partner >= 0) entries.emplace_back(row, 2 * local_of.at(p.partner) + k, p.cross[k]);
     }
   }
   problem.influence.resize(n, n);
@@ -92,6 +124,7 @@ ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const st
 
 Eigen::VectorXd residual(const ContactProblem& problem, const Eigen::VectorXd& p) {
   const Eigen::VectorXd e = problem.influence * p + problem.velocity_free;
+  if (problem.smoothing.on) return residual_smoothed(problem, p, e);
   const std::vector<RowState> states = row_states(problem, p, e);
   Eigen::VectorXd h(problem.size());
   for (Eigen::Index r = 0; r < h.size(); ++r) {
@@ -116,6 +149,44 @@ SparseMatrix jacobian(const ContactProblem& problem, const std::vector<RowState>
     } else {
       entries.emplace_back(row, row, problem.diagonal[row]);
       if (s.slope != 0) entries.emplace_back(row, row - 1, -problem.diagonal[row] * s.slope);
+    }
+  }
+  SparseMatrix j(problem.size(), problem.size());
+  j.setFromTriplets(entries.begin(), entries.end());
+  return j;
+}
+
+SparseMatrix jacobian_smoothed(const ContactProblem& problem, const Eigen::VectorXd& p) {
+  const Eigen::VectorXd e = problem.influence * p + problem.velocity_free;
+  const std::vector<RowState> states = row_states(problem, p, e);
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add_row = [&](int row, double factor) {
+    for (SparseMatrix::InnerIterator it(problem.influence, row); it; ++it)
+      entries.emplace_back(row, static_cast<int>(it.col()), factor * it.value());
+  };
+  for (int row = 0; row < problem.size(); ++row) {
+    const PointRows& rows = problem.rows[static_cast<size_t>(row / 2)];
+    const double w = problem.diagonal[row];
+    const RowState& s = states[static_cast<size_t>(row)];
+    if (!is_smoothed(rows)) {
+      if (s.free) {
+        add_row(row, 1);
+      } else {
+        entries.emplace_back(row, row, w);
+        if (s.slope != 0) entries.emplace_back(row, row - 1, -w * s.slope);
+      }
+    } else if (row % 2 == 0) {
+      // share of a in the smoothed minimum: 1 / (1 + exp((a - b) / eps))
+      const double x = (e[row] / w - p[row]) / problem.smoothing.impulse;
+      const double share = x > 0 ? std::exp(-x) / (1 + std::exp(-x)) : 1 / (1 + std::exp(x));
+      add_row(row, share);
+      entries.emplace_back(row, row, w * (1 - share));
+    } else {
+      const double slip = (e[row] - rows.row[1].bias) / problem.smoothing.velocity;
+      const double press = std::max(p[row - 1], 0.0);
+      entries.emplace_back(row, row, w);
+      if (press > 0) entries.emplace_back(row, row - 1, w * kTwoOverPi * rows.friction * std::atan(slip));
+      add_row(row, w * kTwoOverPi * rows.friction * press / (1 + slip * slip) / problem.smoothing.velocity);
     }
   }
   SparseMatrix j(problem.size(), problem.size());

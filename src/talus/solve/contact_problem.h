@@ -11,6 +11,15 @@ namespace talus {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+/// The paper's smoothing of contact rows (its eqs 26, 27, units corrected): normal law
+/// min(a, b) - eps log1p(exp(-|a - b| / eps)) of a = e / Wii and b = p, friction p_t = -(2/pi) mu p_n
+/// atan(u_t / width).
+struct Smoothing {
+  bool on = false;
+  double impulse = 0;   // epsilon_1 over the kick [N s]
+  double velocity = 0;  // epsilon_2 per step [m/s]
+};
+
 /// Rows 2 i and 2 i + 1 are the normal and tangential row of point `point[i]` of the row set.
 struct ContactProblem {
   std::vector<int> point;       // [n] indices into the row set
@@ -18,6 +27,8 @@ struct ContactProblem {
   SparseMatrix influence;       // W = H M^-1 H^T scaled, plus the compliance on the diagonal [2n x 2n] [1/kg]
   Eigen::VectorXd velocity_free;  // e at p = 0: H v* + bias [2n] [m/s]
   Eigen::VectorXd diagonal;       // of `influence` [2n] [1/kg]
+
+  Smoothing smoothing;
 
   int size() const { return static_cast<int>(2 * rows.size()); }
 };
@@ -42,6 +53,9 @@ std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::Vec
 
 /// Analytic Jacobian of `residual` (one of its generalised Jacobians where it has a kink).
 SparseMatrix jacobian(const ContactProblem& problem, const std::vector<RowState>& states);
+
+/// Jacobian of `residual` of the smoothed law.
+SparseMatrix jacobian_smoothed(const ContactProblem& problem, const Eigen::VectorXd& p);
 
 /// The same by forward differences, column by column (eq. 30 of the paper). Dense; cost 2n residuals.
 /// @param h  increment [N s]

@@ -23,7 +23,9 @@ class Direction {
  public:
   explicit Direction(const ContactProblem& problem) : problem_(problem) {}
 
-  bool solve(const std::vector<RowState>& states, const Eigen::VectorXd& h, Eigen::VectorXd& d) const {
+  bool solve(const std::vector<RowState>& states, const Eigen::VectorXd& p, const Eigen::VectorXd& h,
+             Eigen::VectorXd& d) const {
+    if (problem_.smoothing.on) return solve_smoothed(p, h, d);
     const bool slides =
         std::any_of(states.begin(), states.end(), [](const RowState& s) { return s.slope != 0; });
     return slides ? solve_general(states, h, d) : solve_symmetric(states, h, d);
@@ -93,6 +95,16 @@ class Direction {
     return d.allFinite();
   }
 
+  bool solve_smoothed(const Eigen::VectorXd& p, const Eigen::VectorXd& h, Eigen::VectorXd& d) const {
+    Eigen::SparseMatrix<double> a = jacobian_smoothed(problem_, p);
+    for (int r = 0; r < problem_.size(); ++r) a.coeffRef(r, r) += kRegularisation * problem_.diagonal[r];
+    a.makeCompressed();
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(a);
+    if (factor.info() != Eigen::Success) return false;
+    d = factor.solve(-h);
+    return d.allFinite();
+  }
+
   const ContactProblem& problem_;
 };
 
@@ -111,6 +123,8 @@ int solve_island(const ContactProblem& problem, const SolverInput& options, doub
                  Eigen::VectorXd& p) {
   const Direction direction(problem);
   Eigen::VectorXd h = residual(problem, p), d;
+  Eigen::VectorXd best = p;
+  double best_left = h.lpNorm<Eigen::Infinity>();
   for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
     // at least one iteration: a first guess that happens to be good enough would make the accuracy of a step
     // depend on the scale of the problem
@@ -118,8 +132,11 @@ int solve_island(const ContactProblem& problem, const SolverInput& options, doub
     if ((iteration > 0 && left <= tolerance) || left == 0) return iteration;
     const bool solved = options.jacobian == JacobianKind::kDifference
                             ? direction_by_differences(problem, p, h, d)
-                            : direction.solve(row_states(problem, p), h, d);
-    if (!solved) return -iteration - 1;
+                            : direction.solve(row_states(problem, p), p, h, d);
+    if (!solved) {
+      p = best;
+      return -iteration - 1;
+    }
 
     // line search: halve until the residual falls. At a kink no step may fall; the full step then moves on to
     // the next piece of the piecewise linear system, where the search starts afresh.
@@ -136,7 +153,9 @@ int solve_island(const ContactProblem& problem, const SolverInput& options, doub
       }
     }
     p = full_p, h = full_h;
+    if (const double now = h.lpNorm<Eigen::Infinity>(); now < best_left) best = p, best_left = now;
   }
+  p = best;
   return -options.max_iterations - 1;
 }
 
@@ -175,10 +194,12 @@ std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet&
 }
 
 SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
-                         const SolverInput& options, double tolerance, RowSet& set) {
+                         const SolverInput& options, double tolerance, RowSet& set,
+                         const Smoothing& smoothing) {
   SolveReport report;
   for (const std::vector<int>& points : find_islands(blocks, set)) {
-    const ContactProblem problem = build_problem(blocks, set, points, rate, scale);
+    ContactProblem problem = build_problem(blocks, set, points, rate, scale);
+    problem.smoothing = smoothing;
     Eigen::VectorXd p(problem.size());
     for (size_t i = 0; i < points.size(); ++i) {
       const Impulse& guess = set.impulse[static_cast<size_t>(points[i])];

@@ -3,7 +3,7 @@
 // Semismooth: the Jacobian of the exact law, with a line search. Theory: docs/theory.md section 5.
 
 #include "talus/model/model.h"
-#include "talus/rows/rows.h"
+#include "talus/solve/contact_problem.h"
 
 namespace talus {
 
@@ -22,7 +22,9 @@ std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet&
 /// @param rate       v*, rates without the rows
 /// @param scale      factor on M^-1
 /// @param tolerance  residual at which to stop [m/s]
+/// @param smoothing  of the law, off by default
 SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
-                         const SolverInput& options, double tolerance, RowSet& set);
+                         const SolverInput& options, double tolerance, RowSet& set,
+                         const Smoothing& smoothing = {});
 
 }  // namespace talus

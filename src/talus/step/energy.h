@@ -5,9 +5,9 @@
 
 namespace talus {
 
-/// Energies at a time step [J]. kinetic is 1/2 v- M v+ with the velocities half a step before and after: with
-/// it central differences conserve energy exactly in linear motion. It may be negative in the one step of an
-/// impact.
+/// Energies at a time step [J]. kinetic is that half a step ago plus the work of this kick that came before
+/// now; with equal steps 1/2 v- M v+, which central differences conserve exactly, with the strain energy, in
+/// linear motion. It may be negative in the one step of an impact.
 struct Energy {
   double kinetic = 0, strain = 0;
   double gravity = 0;    // work done by gravity since the start
@@ -18,8 +18,10 @@ struct Energy {
   double largest() const;
 };
 
-/// Kinetic, strain and gravity of freely moving blocks.
-Energy energy_now(const BlockSet& blocks, Vec2 gravity, const State& state,
-                  const std::vector<BlockRate>& before, const std::vector<BlockRate>& after);
+/// Strain energy and work of gravity of freely moving blocks; the rest of the result is zero.
+Energy energy_now(const BlockSet& blocks, Vec2 gravity, const State& state);
+
+/// Kinetic energy of freely moving blocks at these rates [J].
+double kinetic_energy(const BlockSet& blocks, const std::vector<BlockRate>& rate);
 
 }  // namespace talus

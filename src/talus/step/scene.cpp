@@ -20,8 +20,7 @@ State start_state(const Scene& scene) {
   state.bond_force.resize(2 * scene.bonds.faces.size());
   state.face.resize(scene.bonds.faces.size());
   state.support_force.resize(scene.supported.size());
-  const Energy start = energy_now(scene.blocks, scene.model.gravity, state, state.rate, state.rate);
-  state.energy_start = start.kinetic + start.strain - start.gravity;
+  state.energy_start = kinetic_energy(scene.blocks, state.rate);
   return state;
 }
 

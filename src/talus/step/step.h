@@ -7,6 +7,7 @@
 
 #include "talus/contact/contact_rows.h"
 #include "talus/solve/contact_error.h"
+#include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
 #include "talus/step/energy.h"
 #include "talus/step/scene.h"
@@ -31,9 +32,12 @@ struct StepReport {
   int closed = 0;    // of them, with a force
   SolveReport solve;
   ContactError error;
-  std::string worst;      // name of the row with the worst error
-  bool failed = false;    // error above the tolerance
-  double unbalanced = 0;  // largest unbalanced force of a block / mean force on blocks
+  std::string worst;           // name of the row with the worst error
+  bool failed = false;         // error above the tolerance
+  bool second_solver = false;  // the other solver was asked
+  double drift = 0;            // deepest overlap of hard contacts before the step [m]
+  double unbalanced = 0;       // largest unbalanced force of a block / mean force on blocks
+  double speed_left = 0;       // static stages: velocity as share of its peak in the stage (set by run/)
   Energy energy;
   int broken_faces = 0;  // in the drift that follows
 };

@@ -207,8 +207,9 @@ TEST_CASE("the moment clamp raises what is needed and nothing else") {
         continue;
       }
       CHECK(stable_step_of(before, i) < dt);
-      CHECK(stable_step_of(after, i) == relative(dt / 0.9, 1e-9));  // a tenth of room  // fits, and no more than that
-      if (i <= 2) CHECK(e[1] == relative(e0[1], 1e-12));      // the long direction fits already
+      CHECK(stable_step_of(after, i) ==
+            relative(dt / 0.9, 1e-9));                    // a tenth of room  // fits, and no more than that
+      if (i <= 2) CHECK(e[1] == relative(e0[1], 1e-12));  // the long direction fits already
       // the principal directions stay: old and new commute
       const Mat2 left = s * s0 - s0 * s;
       CHECK(std::abs(left.xy) <= 1e-12 * e[1] * e0[1]);

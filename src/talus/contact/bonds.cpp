@@ -12,7 +12,7 @@ constexpr double kTouching = 1e-6;
 
 // A face breaks when the running mean of its forces reaches this share of the limit: the mean of forces that
 // are cut off at the limit comes to the limit only in infinite time.
-constexpr double kAtLimit = 0.9999;
+constexpr double kAtLimit = 0.99999;
 
 bool has_strength(const std::vector<JointProperty>& joints, int joint) {
   if (joint < 0) return false;

@@ -109,10 +109,9 @@ void remember_contacts(const std::vector<ContactPoint>& contacts, const RowSet& 
     double elastic = p.row[1].compliance * impulse[1];
     if (p.partner >= 0) elastic += p.cross[1] * rows.impulse[static_cast<size_t>(p.partner)][1];
     m.stretch = -elastic * timing.dt / position_factor(timing.alpha);
-    const double limit = bounds_of(p, 1, impulse[0]).upper;
-    const bool slides = std::abs(impulse[1]) >= limit * (1 - 1e-12);
+    const bool slid = slides(p, impulse);
     const ContactMemory* before = recall(state, m.key);
-    m.anchor = slides                                  ? std::nan("")
+    m.anchor = slid                                    ? std::nan("")
                : before && !std::isnan(before->anchor) ? before->anchor
                                                        : contacts[i].slip - (before ? before->stretch : 0);
     memory.push_back(m);

@@ -3,6 +3,7 @@
 // bias; it knows no joint, support or bolt. Theory: docs/theory.md section 4.
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -52,6 +53,13 @@ inline Bounds bounds_of(const PointRows& p, int k, double p_n) {
   if (k == 0 || !p.cone) return {p.row[k].lower, p.row[k].upper};
   const double limit = p.cohesion + p.friction * p_n;
   return limit > 0 ? Bounds{-limit, limit} : Bounds{0, 0};
+}
+
+/// Whether the tangential impulse sits on its cone. Solvers put it there to some digits only; a contact that
+/// sticks so close to its limit may be taken for sliding, which changes nothing but the place of its anchor.
+inline bool slides(const PointRows& p, const Impulse& impulse) {
+  const double limit = bounds_of(p, 1, impulse[0]).upper;
+  return std::abs(impulse[1]) >= limit * (1 - 1e-8);
 }
 
 /// Velocity change of block i per unit impulse: at acting arm `at`, by an impulse at acting arm `from`

@@ -118,6 +118,18 @@ bool direction_by_differences(const ContactProblem& problem, const Eigen::Vector
   return d.allFinite();
 }
 
+// Puts rows that are held at a bound exactly there: an open contact has no force, not a force of round-off,
+// and what slides is on its cone.
+void settle_on_bounds(const ContactProblem& problem, Eigen::VectorXd& p) {
+  const std::vector<RowState> states = row_states(problem, p);
+  for (Eigen::Index r = 0; r < p.size(); ++r) {
+    if (states[static_cast<size_t>(r)].free) continue;
+    const auto k = static_cast<int>(r % 2);
+    const Bounds b = bounds_of(problem.rows[static_cast<size_t>(r / 2)], k, p[r - k]);
+    p[r] = std::abs(p[r] - b.lower) < std::abs(p[r] - b.upper) ? b.lower : b.upper;
+  }
+}
+
 // One island; returns the iterations used, negative when the residual stayed above the tolerance.
 int solve_island(const ContactProblem& problem, const SolverInput& options, double tolerance,
                  Eigen::VectorXd& p) {
@@ -206,6 +218,7 @@ SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& r
       p[static_cast<Eigen::Index>(2 * i)] = guess[0], p[static_cast<Eigen::Index>(2 * i) + 1] = guess[1];
     }
     const int iterations = solve_island(problem, options, tolerance, p);
+    if (iterations >= 0 && !smoothing.on) settle_on_bounds(problem, p);
     if (iterations < 0) report.converged = false;
     for (size_t i = 0; i < points.size(); ++i) {
       const auto r = static_cast<Eigen::Index>(2 * i);

@@ -212,10 +212,9 @@ class Kick {
         w.before.*cause += 0.5 * impulse[k] * u0[k];
         w.after.*cause += 0.5 * impulse[k] * u1[k];
       };
-      const bool slides = std::abs(impulse[1]) >= bounds_of(p, 1, impulse[0]).upper * (1 - 1e-12);
       if (r < work_.first_support && p.row[0].compliance + p.row[1].compliance > 0) {
         add(0, p.row[0].compliance > 0 ? &WorkDone::joints : &WorkDone::contact_closing);
-        add(1, slides ? &WorkDone::friction : &WorkDone::joints);
+        add(1, slides(p, impulse) ? &WorkDone::friction : &WorkDone::joints);
         if (impulse[0] != 0 || impulse[1] != 0) ++report_.closed;
       } else if (r < work_.first_contact) {
         add(0, &WorkDone::bonds), add(1, &WorkDone::bonds);

@@ -14,6 +14,7 @@
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/model/toml_source.h"
+#include "talus/run/problem_file.h"
 #include "talus/run/progress.h"
 #include "talus/talus.h"
 
@@ -76,13 +77,14 @@ int check(const ModelArguments& args) {
   return talus::kExitOk;
 }
 
-int run(const ModelArguments& args, const std::string& folder, bool force, bool quiet) {
+int run(const ModelArguments& args, const std::string& folder, bool force, bool quiet, int64_t dump_step) {
   const std::string text = talus::read_text_file(args.file);
   talus::Findings findings(args.file, text);
   talus::PreparedRun prepared = prepare(args, findings, text);
   talus::open_result_folder(folder, force);
 
   talus::Recorder recorder(prepared.scene, folder);
+  recorder.dump_step(dump_step);
   talus::State state = talus::start_state(prepared.scene);
   std::FILE* out = quiet ? std::fopen("/dev/null", "w") : stdout;
   talus::Progress progress(recorder, out, isatty(fileno(out)) != 0);
@@ -98,6 +100,20 @@ int run(const ModelArguments& args, const std::string& folder, bool force, bool 
   return result.interrupted ? talus::kExitInterrupted : talus::kExitOk;
 }
 
+int replay(const std::string& file, const std::string& method, double tolerance) {
+  talus::SolverInput options;
+  options.method = method == "newton" ? talus::SolverKind::kNewton : talus::SolverKind::kGaussSeidel;
+  const talus::Replay r = talus::replay_problem(file, options, tolerance);
+  fmt::print("{}: {} points on {} blocks, {} islands (largest {})\n", file, r.points, r.blocks,
+             r.solve.islands, r.solve.largest_island);
+  fmt::print("  {:<14} {} iterations, contact error {:.3e} m\n", method, r.solve.iterations, r.error.worst);
+  double normal = 0, shear = 0;
+  for (const talus::Impulse& p : r.rows.impulse) normal += p[0], shear += std::abs(p[1]);
+  fmt::print("  impulses       normal {:.12g} N s in all, tangential {:.12g} N s in magnitude\n", normal,
+             shear);
+  return r.error.worst <= tolerance ? talus::kExitOk : talus::kExitNumerical;
+}
+
 int run_command(int argc, char** argv) {
   CLI::App app(
       "talus: blocks that move, slip and break under dynamic load, with contact forces found exactly");
@@ -111,11 +127,14 @@ int run_command(int argc, char** argv) {
   ModelArguments model;
   std::string folder;
   bool force = false, quiet = false, json = false;
+  int64_t dump_step = -1;
   CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
   add_model_arguments(*run_verb, model);
   run_verb->add_option("-o,--output", folder, "folder for the results")->required();
   run_verb->add_flag("--force", force, "replace the results of an earlier run in that folder");
   run_verb->add_flag("-q,--quiet", quiet, "say nothing but errors");
+  run_verb->add_option("--dump-step", dump_step,
+                       "also write the contact equations of this step, as step_N.json, for talus replay");
   run_verb->footer(
       "Example: talus run examples/impact_bar/impact_bar.toml -o out/bar --set grid.bar.cells=[20,1]");
 
@@ -129,10 +148,23 @@ int run_command(int argc, char** argv) {
       app.add_subcommand("plot", "draw histories of one or more result folders as SVG and PNG");
   talus::app::add_plot_arguments(*plot_verb, plot);
 
+  std::string problem, method = "newton";
+  double tolerance = 1e-9;
+  CLI::App* replay_verb =
+      app.add_subcommand("replay", "solve the contact equations of one step again, with either solver");
+  replay_verb->add_option("FILE", problem, "step_N.json from a result folder")->required();
+  replay_verb->add_option("--method", method, "solver")
+      ->check(CLI::IsMember({"newton", "gauss_seidel"}))
+      ->capture_default_str();
+  replay_verb->add_option("--tolerance", tolerance, "largest contact error [m]")->capture_default_str();
+  replay_verb->footer(
+      "Example: talus run model.toml -o out/m --dump-step 100 && talus replay out/m/step_100.json --method "
+      "gauss_seidel");
+
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
-  const std::vector<std::string> verbs{"run", "check", "plot", "schema"};
+  const std::vector<std::string> verbs{"run", "check", "plot", "replay", "schema"};
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
     fmt::print(
@@ -145,8 +177,9 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? talus::kExitOk : talus::kExitUsage;
   }
-  if (*run_verb) return run(model, folder, force, quiet);
+  if (*run_verb) return run(model, folder, force, quiet, dump_step);
   if (*check_verb) return check(model);
+  if (*replay_verb) return replay(problem, method, tolerance);
   if (*plot_verb) return talus::app::plot_command(plot);
   fmt::print("{}", json ? talus::schema_json() : talus::schema_markdown());
   return talus::kExitOk;

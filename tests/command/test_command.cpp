@@ -59,7 +59,7 @@ bool has(const std::string& text, const std::string& part) {
 TEST_CASE("command: help, version and wrong usage") {
   const Folder f;
   CHECK(shell(f, "$talus --help").code == 0);
-  for (const char* verb : {"run", "check", "plot", "schema"}) {
+  for (const char* verb : {"run", "check", "plot", "replay", "schema"}) {
     const Outcome o = shell(f, fmt::format("$talus {} --help", verb));
     CHECK(o.code == 0);
     if (std::string(verb) != "schema") has(o.text, "Example: talus");
@@ -244,4 +244,32 @@ TEST_CASE("command: plot draws a column, several runs, and names what is missing
   CHECK(wrong.code == 4);
   has(wrong.text, "there is no column \"impact.nothing\"; there is t [s], impact.force_x [N]");
   has(shell(f, "$talus plot nowhere").text, "nowhere/histories.csv: cannot be read");
+}
+
+TEST_CASE("command: one step is dumped and replayed by either solver") {
+  const Folder f;
+  const std::string out = (f / "out").string();
+  CHECK(shell(f, fmt::format("$talus run {} -o {} -q --dump-step 20", kBar, out)).code == 0);
+  const Outcome newton = shell(f, fmt::format("$talus replay {}/step_20.json", out)),
+                sweeps = shell(
+                    f, fmt::format("$talus replay {}/step_20.json --method gauss_seidel --tolerance 1e-12",
+                                   out));
+  CHECK(newton.code == 0);
+  CHECK(sweeps.code == 0);
+  const auto normal = [](const Outcome& o) { return std::stod(o.text.substr(o.text.find("normal ") + 7)); };
+  CHECK(normal(sweeps) ==
+        doctest::Approx(normal(newton)).epsilon(1e-6));  // the bar's rows are independent: unique
+  const Outcome wrong = shell(f, fmt::format("$talus replay {}/summary.json", out));
+  CHECK(wrong.code == 4);
+  has(wrong.text, "is no step written by talus run --dump-step");
+}
+
+TEST_CASE("command: a failed step is named, written and can be replayed") {
+  const Folder f;
+  const std::string out = (f / "out").string();
+  const Outcome o = shell(f, fmt::format("$talus run {} -o {} --set solver.tolerance=1e-30", kBar, out));
+  CHECK(o.code == 5);
+  has(o.text, "the contact equations were not solved");
+  has(o.text, "worst at");
+  CHECK(fs::exists(out + "/step_0.json"));
 }

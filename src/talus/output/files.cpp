@@ -67,6 +67,8 @@ void open_result_folder(const fs::path& folder, bool force) {
     for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log"})
       fs::remove(folder / name, ec);
     for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
+    for (const auto& entry : fs::directory_iterator(folder, ec))
+      if (entry.path().filename().string().rfind("step_", 0) == 0) fs::remove(entry.path(), ec);
   }
   fs::create_directories(folder, ec);
   if (ec) fail(folder, "created", ec.value());

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/version.h"
+#include "talus/run/problem_file.h"
 
 namespace talus {
 
@@ -76,6 +77,11 @@ void Recorder::at(const Instant& i) {
   const double t = i.state.time, dt = i.plan.dt;
   histories_.at(i, is_due(t, dt, out.history_interval, next_history_) || i.last);
   record_step(i);
+  const bool failure = i.report.failed && !dumped_failure_;
+  if (failure || i.state.step == dump_step_) {
+    write_file(folder_ / fmt::format("step_{}.json", i.state.step), problem_text(i));
+    dumped_failure_ = dumped_failure_ || failure;
+  }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
   if (frame || i.stage_start || i.last) write_frame(i);
   if (wall_now() - last_flush_ > 1) {

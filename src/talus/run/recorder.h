@@ -19,6 +19,9 @@ class Recorder : public Observer {
 
   void at(const Instant& instant) override;
 
+  /// Also writes the contact equations of this step as step_N.json. A failed step is always written.
+  void dump_step(int64_t step) { dump_step_ = step; }
+
   /// Writes waiting rows and summary.json. To be called also when the run failed or was interrupted.
   void finish(const RunResult& result, const std::vector<std::string>& overrides, const Findings& findings);
 
@@ -34,6 +37,8 @@ class Recorder : public Observer {
   double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
   std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0;
+  int64_t dump_step_ = -1;
+  bool dumped_failure_ = false;
 };
 
 /// Text of summary.json.

@@ -64,9 +64,9 @@ class Runner {
         break;
       }
       StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
-      note(report);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report);
       observer_.at({scene_, state_, work_, report, plan, index, n == 0, false});
+      note(report);  // after the observers: a step that ends the run is seen too
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
       drift(scene_, settings_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_,
             report);

@@ -139,12 +139,14 @@ class Kick {
   // The chosen solver, then, where its result misses the tolerance, the other; the better of the two stays.
   void solve() {
     const SolverKind first = scene_.model.solver.method;
-    const std::vector<Impulse> guess = work_.rows.impulse;
+    work_.guess = work_.rows.impulse;
+    work_.rate_free = rate_free_;
+    work_.mobility_scale = scale_;
     solve_by(first);
     if (!report_.failed || scene_.model.contact.law == ContactLaw::kSmoothed) return;
     const StepReport kept = report_;
     const std::vector<Impulse> kept_impulse = work_.rows.impulse;
-    work_.rows.impulse = guess;
+    work_.rows.impulse = work_.guess;
     solve_by(first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton);
     report_.second_solver = true;
     if (report_.error.worst <= kept.error.worst || std::isnan(kept.error.worst)) return;

@@ -53,6 +53,9 @@ struct StepWork {
   std::vector<BlockRate> rate_now;  // mean of before and after: velocities at this instant
   double dt_kick = 0;               // over which the impulses act
   KickWork work;
+  std::vector<BlockRate> rate_free;  // rates as they would be without rows
+  std::vector<Impulse> guess;        // of all rows
+  double mobility_scale = 1;         // factor on the inverse masses (mass-proportional damping)
 };
 
 /// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.

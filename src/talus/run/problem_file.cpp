@@ -1,0 +1,145 @@
+#include "talus/run/problem_file.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/error.h"
+#include "talus/model/toml_source.h"
+
+namespace talus {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kFormat = 1;
+const char* const kKinds[] = {"deformable", "rigid", "fixed", "driven"};
+
+// JSON knows no infinity: an open bound is null.
+ordered_json bound(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
+double bound(const ordered_json& j, double open) { return j.is_null() ? open : j.get<double>(); }
+
+ordered_json vec(Vec2 v) { return {v.x, v.y}; }
+Vec2 vec(const ordered_json& j) { return {j.at(0), j.at(1)}; }
+ordered_json mat(const Mat2& m) { return {m.xx, m.xy, m.yx, m.yy}; }
+Mat2 mat(const ordered_json& j) { return {j.at(0), j.at(1), j.at(2), j.at(3)}; }
+
+ordered_json point_json(const PointRows& p, const Impulse& guess) {
+  ordered_json rows = ordered_json::array();
+  for (int k = 0; k < 2; ++k) {
+    rows.push_back({{"lower", bound(p.row[k].lower)},
+                    {"upper", bound(p.row[k].upper)},
+                    {"bias", p.row[k].bias},
+                    {"compliance", p.row[k].compliance},
+                    {"cross", p.cross[k]}});
+  }
+  return {{"a", p.block_a},
+          {"b", p.block_b},
+          {"arm_a", vec(p.arm_a)},
+          {"arm_b", vec(p.arm_b)},
+          {"normal", vec(p.normal)},
+          {"rows", rows},
+          {"cone", p.cone},
+          {"friction", p.friction},
+          {"cohesion", p.cohesion},
+          {"partner", p.partner},
+          {"guess", {guess[0], guess[1]}}};
+}
+
+PointRows read_point(const ordered_json& j) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  PointRows p;
+  p.block_a = j.at("a"), p.block_b = j.at("b");
+  p.arm_a = vec(j.at("arm_a")), p.arm_b = vec(j.at("arm_b")), p.normal = vec(j.at("normal"));
+  for (size_t k = 0; k < 2; ++k) {
+    const ordered_json& r = j.at("rows").at(k);
+    p.row[k] = {bound(r.at("lower"), -infinity), bound(r.at("upper"), infinity), r.at("bias"),
+                r.at("compliance")};
+    p.cross[k] = r.at("cross");
+  }
+  p.cone = j.at("cone"), p.friction = j.at("friction"), p.cohesion = j.at("cohesion"),
+  p.partner = j.at("partner");
+  return p;
+}
+
+// A block set that knows what solvers ask of it: kinds and inverse masses.
+BlockSet read_blocks(const ordered_json& list, std::vector<BlockRate>& rate) {
+  BlockSet set;
+  for (const ordered_json& j : list) {
+    const std::string kind = j.at("kind");
+    const auto at = std::find(std::begin(kKinds), std::end(kKinds), kind);
+    if (at == std::end(kKinds)) throw std::runtime_error("unknown kind of block " + kind);
+    ++set.count;
+    set.kind.push_back(static_cast<BlockKind>(at - std::begin(kKinds)));
+    set.mass.push_back(j.at("mass"));
+    set.inertia_inverse.push_back(mat(j.at("inertia_inverse")));
+    set.polar_inertia.push_back(j.at("polar_inertia"));
+    rate.push_back({vec(j.at("velocity")), mat(j.at("gradient_rate"))});
+  }
+  return set;
+}
+
+}  // namespace
+
+std::string problem_text(const Instant& i) {
+  const BlockSet& b = i.scene.blocks;
+  ordered_json j = {{"talus_problem", kFormat}, {"title", i.scene.model.title},
+                    {"t [s]", i.state.time},    {"step", i.state.step},
+                    {"dt [s]", i.plan.dt},      {"mobility_scale", i.work.mobility_scale}};
+  j["blocks"] = ordered_json::array();
+  for (size_t k = 0; k < static_cast<size_t>(b.count); ++k) {
+    j["blocks"].push_back({{"name", b.name[k]},
+                           {"kind", kKinds[static_cast<int>(b.kind[k])]},
+                           {"mass", b.mass[k]},
+                           {"inertia_inverse", mat(b.inertia_inverse[k])},
+                           {"polar_inertia", b.polar_inertia[k]},
+                           {"velocity", vec(i.work.rate_free[k].a)},
+                           {"gradient_rate", mat(i.work.rate_free[k].G)}});
+  }
+  j["points"] = ordered_json::array();
+  for (size_t r = 0; r < i.work.rows.points.size(); ++r)
+    j["points"].push_back(point_json(i.work.rows.points[r], i.work.guess[r]));
+  return j.dump(1) + "\n";
+}
+
+Replay replay_problem(const std::filesystem::path& file, const SolverInput& options, double tolerance) {
+  const std::string text = read_text_file(file);
+  Replay replay;
+  try {
+    const ordered_json j = ordered_json::parse(text);
+    if (j.at("talus_problem") != kFormat) throw std::runtime_error("its format is not 1");
+    std::vector<BlockRate> rate;
+    const BlockSet blocks = read_blocks(j.at("blocks"), rate);
+    for (const ordered_json& p : j.at("points"))
+      replay.rows.add(read_point(p), {p.at("guess").at(0), p.at("guess").at(1)});
+    const auto points = static_cast<int>(replay.rows.points.size());
+    for (const PointRows& p : replay.rows.points)
+      if (p.block_a < 0 || p.block_a >= blocks.count || p.block_b >= blocks.count || p.partner >= points)
+        throw std::runtime_error("a point names a block or partner that is not there");
+    const double dt = j.at("dt [s]"), scale = j.at("mobility_scale");
+    replay.points = points, replay.blocks = blocks.count;
+    if (options.method == SolverKind::kNewton)
+      replay.solve = solve_newton(blocks, rate, scale, options, 0.1 * tolerance / dt, replay.rows);
+    else
+      replay.solve = solve_gauss_seidel(blocks, rate, scale, options, 0.1 * tolerance, dt, replay.rows);
+    for (size_t r = 0; r < replay.rows.points.size(); ++r) {
+      const PointRows& p = replay.rows.points[r];
+      for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
+        if (block < 0) continue;
+        const auto k = static_cast<size_t>(block);
+        const BlockRate v = accelerate(blocks, k, scale * impulse_on(p, replay.rows.impulse[r], sign));
+        rate[k].a += v.a;
+        rate[k].G += v.G;
+      }
+    }
+    replay.error = contact_error(blocks, replay.rows, rate, scale, dt);
+  } catch (const std::exception& e) {
+    throw FileError(
+        fmt::format("{}: is no step written by talus run --dump-step: {}", file.string(), e.what()));
+  }
+  return replay;
+}
+
+}  // namespace talus

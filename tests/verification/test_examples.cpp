@@ -122,3 +122,76 @@ TEST_CASE("example creeping_block: the smoothed friction law creeps, the faster 
   check_below("creeping_block with the exact law, slip [m]",
               std::abs(exact.column("block.displacement_x").back()), 1e-9, 1e-12);
 }
+
+TEST_CASE("example incline: slip after 1 s") {
+  const CaseResult r = run_example("incline");
+  const double t = M_PI / 180, exact = 0.5 * 9.81 * (std::sin(30 * t) - std::tan(15 * t) * std::cos(30 * t));
+  // the file gives coordinates to 1e-9 m
+  check_close("incline slip after 1 s [m]",
+              std::hypot(r.column("block.displacement_x").back(), r.column("block.displacement_y").back()),
+              exact, 1e-6, 1e-8);
+}
+
+TEST_CASE("example rocking_block: first impact") {
+  const CaseResult r = run_example("rocking_block");
+  const auto &t = r.column("t [s]"), &x = r.column("top.displacement_x");
+  // upright when the top has moved back by its tilt, 1.9 m sin 7.02 deg - 0.25 (1 - cos): from there on it
+  // leans over the other corner
+  const double upright =
+      0.25 - (0.25 * std::cos(0.5 * std::atan(0.25)) - 1.9 * std::sin(0.5 * std::atan(0.25)));
+  size_t i = 0;
+  while (i < x.size() && x[i] < upright) ++i;
+  REQUIRE(i < x.size());
+  check_close("rocking_block first impact [s]", t[i], 0.4938, 1e-2, 3e-3);
+  check_below("rocking_block energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+TEST_CASE("example arch: the springings carry the weight and the same thrust") {
+  const CaseResult r = run_example("arch");
+  const double area = 15 * 0.5 * std::sin(M_PI / 15) * (5.375 * 5.375 - 4.625 * 4.625);
+  const double half = 0.5 * area * 2400 * 9.81;
+  check_close("arch left springing [N]", r.column("left.force_y").back(), half, 1e-4, 1e-5);
+  check_close("arch right springing [N]", r.column("right.force_y").back(), half, 1e-4, 1e-5);
+  check_close("arch thrust left and right [N]", r.column("left.force_x").back(),
+              -r.column("right.force_x").back(), 1e-4, 1e-5);
+  CHECK(r.run.stages[0].at_rest);
+  check_below("arch energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+// Long runs are left out where the sanitizers make them ten times longer.
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("example dominoes: all ten fall") {
+  const CaseResult r = run_example("dominoes");
+  for (int i = 1; i <= 10; ++i) CHECK(r.column(fmt::format("top_{}.displacement_x", i)).back() > 0.025);
+  CHECK(r.column("top_10.displacement_x").back() > 0.045);
+  check_below("dominoes energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+TEST_CASE("example pile: no stone inside another, comes to rest, the same bits twice") {
+  std::vector<double> bits[2];
+  for (std::vector<double>& run : bits) {
+    double beyond = 0, beyond_step = 0;  // deepest overlap as share of the slop: at frames, at any step
+    const CaseResult r = run_example("pile", [&](const Instant& i) {
+      const bool frame = i.state.step % 250 == 0;
+      for (const ContactPoint& c : i.work.contacts) {
+        const double size = std::min(i.scene.blocks.size[static_cast<size_t>(c.key.block_a)],
+                                     i.scene.blocks.size[static_cast<size_t>(c.key.block_b)]);
+        const double share = -c.gap / (i.scene.model.contact.slop * size);
+        beyond_step = std::max(beyond_step, share);
+        if (frame) beyond = std::max(beyond, share);
+      }
+    });
+    // the tolerance of a step, 1e-4 x 0.1 of the smallest stone, may come on top of the slop
+    check_below("pile deepest overlap at a frame / stated slop", beyond, 1.1, 1);
+    // in the step of an impact also the turning of the edge, 1/2 (dt spin)^2 of the arm, and of corner past
+    // corner
+    check_below("pile deepest overlap at any step / stated slop", beyond_step, 2, 1);
+    check_below("pile kinetic energy at the end / energy of the fall",
+                r.run.energy.kinetic / r.run.energy.gravity, 1e-6, 1e-9);
+    check_below("pile energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+    for (const Vec2 d : r.state.displacement) run.push_back(d.x), run.push_back(d.y);
+    run.insert(run.end(), r.state.angle.begin(), r.state.angle.end());
+  }
+  CHECK(bits[0] == bits[1]);
+}
+#endif

@@ -88,22 +88,29 @@ void corners_over_edges(const BlockSet& blocks, const State& s, int a, int b, do
       // that has gone slightly into both sides of the notch is still held by both
       const double before = is_convex(blocks, s, b, e) ? same : margin;
       const double beyond = is_convex(blocks, s, b, (e + 1) % nb) ? same : margin;
-      if (std::abs(c.gap) > margin || c.along * c.length < -before || (c.along - 1) * c.length > beyond)
-        continue;
+      if (std::abs(c.gap) > margin) continue;
+      const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
+      const Vec2 b0 = blocks.corner(b, e), b1 = blocks.corner(b, (e + 1) % nb);
+      const double along = std::clamp(c.along, 0.0, 1.0);
+      const Vec2 foot = b0 + along * (b1 - b0);
+      const Vec2 u = velocity_at(s.rate[ia], acting_arm(blocks, s, ia, blocks.corner(a, v))) -
+                     velocity_at(s.rate[ib], acting_arm(blocks, s, ib, foot));
+      const double expected = c.gap + look_ahead * dot(c.normal, u);
+      const bool above = c.along * c.length >= -before && (c.along - 1) * c.length <= beyond;
+      // a corner that comes past the end of an edge and would be inside the block after the look-ahead:
+      // corner runs into corner
+      const double along_then = c.along + look_ahead * dot(turn_left(c.normal), u) / c.length;
+      const bool comes_in = c.gap > -same && expected < 0 && along_then >= 0 && along_then <= 1;
+      if (!above && !comes_in) continue;
       if (!may_enter(blocks, s, a, v, c.normal)) continue;
       Hit hit;
       hit.point.key = {a, v, b, e};
       hit.point.normal = c.normal;
       hit.point.arm_a = blocks.corner(a, v);
-      const Vec2 b0 = blocks.corner(b, e), b1 = blocks.corner(b, (e + 1) % nb);
-      const double along = std::clamp(c.along, 0.0, 1.0);
-      hit.point.arm_b = b0 + along * (b1 - b0);
+      hit.point.arm_b = foot;
       hit.point.gap = c.gap;
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
-      const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
-      const Vec2 va = velocity_at(s.rate[ia], acting_arm(blocks, s, ia, hit.point.arm_a));
-      const Vec2 vb = velocity_at(s.rate[ib], acting_arm(blocks, s, ib, hit.point.arm_b));
-      hit.expected = c.gap + look_ahead * dot(c.normal, va - vb);
+      hit.expected = expected;
       if (c.along * c.length < same) hit.at_corner = e;
       if ((1 - c.along) * c.length < same) hit.at_corner = (e + 1) % nb;
       if (hit.at_corner >= 0 && c.gap > same && is_flush(blocks, s, a, v, b, e, hit.at_corner, same))

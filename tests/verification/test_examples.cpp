@@ -170,22 +170,25 @@ TEST_CASE("example dominoes: all ten fall") {
 TEST_CASE("example pile: no stone inside another, comes to rest, the same bits twice") {
   std::vector<double> bits[2];
   for (std::vector<double>& run : bits) {
-    double beyond = 0, beyond_step = 0;  // deepest overlap as share of the slop: at frames, at any step
+    double beyond = 0;  // deepest overlap as share of the allowed one, at any step
     const CaseResult r = run_example("pile", [&](const Instant& i) {
-      const bool frame = i.state.step % 250 == 0;
+      const double least = *std::min_element(i.scene.blocks.size.begin(), i.scene.blocks.size.end());
+      // the arc that a corner or an edge leaves its tangent by in a step: 1/2 (dt spin)^2 of the arm
+      // (theory 3.3)
+      const auto arc = [&](int block) {
+        const double turn = i.plan.dt * i.work.rate_before[static_cast<size_t>(block)].G.yx;
+        return 0.5 * turn * turn * i.scene.blocks.size[static_cast<size_t>(block)];
+      };
       for (const ContactPoint& c : i.work.contacts) {
-        const double size = std::min(i.scene.blocks.size[static_cast<size_t>(c.key.block_a)],
-                                     i.scene.blocks.size[static_cast<size_t>(c.key.block_b)]);
-        const double share = -c.gap / (i.scene.model.contact.slop * size);
-        beyond_step = std::max(beyond_step, share);
-        if (frame) beyond = std::max(beyond, share);
+        const int a = c.key.block_a, b = c.key.block_b;
+        const double size = std::min(i.scene.blocks.size[static_cast<size_t>(a)],
+                                     i.scene.blocks.size[static_cast<size_t>(b)]);
+        const double allowed =
+            i.scene.model.contact.slop * size + i.scene.model.solver.tolerance * least + arc(a) + arc(b);
+        beyond = std::max(beyond, -c.gap / allowed);
       }
     });
-    // the tolerance of a step, 1e-4 x 0.1 of the smallest stone, may come on top of the slop
-    check_below("pile deepest overlap at a frame / stated slop", beyond, 1.1, 1);
-    // in the step of an impact also the turning of the edge, 1/2 (dt spin)^2 of the arm, and of corner past
-    // corner
-    check_below("pile deepest overlap at any step / stated slop", beyond_step, 2, 1);
+    check_below("pile deepest overlap / (slop + tolerance + arc of the step)", beyond, 1, 0.9);
     check_below("pile kinetic energy at the end / energy of the fall",
                 r.run.energy.kinetic / r.run.energy.gravity, 1e-6, 1e-9);
     check_below("pile energy left over / largest term", r.run.closure(), 1e-2, 1e-3);

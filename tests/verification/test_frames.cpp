@@ -145,10 +145,25 @@ TEST_CASE("frames: a model turned by 37 degrees or moved by 1 km gives the same 
     }
     INFO("worst column: ", where);
     check_below(fmt::format("frames: {}, largest difference of any column", name), worst, 1e-6, 1e-9);
-    check_close(fmt::format("frames: {}, kinetic energy at the end", name), r.run.energy.kinetic,
-                base.run.energy.kinetic, 1e-6, 1e-9);
-    check_close(fmt::format("frames: {}, friction work", name), r.run.energy.work.friction,
-                base.run.energy.work.friction, 1e-6, 1e-9);
+    // the physical numbers of summary.json; solver errors and what the ledger leaves over are round-off in
+    // each frame
+    const Energy &e = r.run.energy, &f = base.run.energy;
+    const std::pair<double, double> numbers[] = {{e.kinetic, f.kinetic},
+                                                 {e.strain, f.strain},
+                                                 {e.gravity, f.gravity},
+                                                 {e.work.joints, f.work.joints},
+                                                 {e.work.friction, f.work.friction},
+                                                 {e.work.damping, f.work.damping},
+                                                 {e.work.contact_closing, f.work.contact_closing},
+                                                 {r.run.largest_energy, base.run.largest_energy},
+                                                 {r.run.deepest_drift, base.run.deepest_drift}};
+    double worst_number = 0;
+    for (const auto& [here, there] : numbers)
+      if (there != 0) worst_number = std::max(worst_number, std::abs(here / there - 1));
+    check_below(fmt::format("frames: {}, largest difference of a number of summary.json", name), worst_number,
+                1e-6, 1e-9);
+    CHECK(r.run.steps == base.run.steps);
+    CHECK(r.run.broken_faces == base.run.broken_faces);
     CHECK(r.run.most_contacts == base.run.most_contacts);
   }
   check_below("frames: energy left over / largest term", base.run.closure(), 1e-2, 1e-3);

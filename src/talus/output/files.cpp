@@ -64,7 +64,8 @@ void open_result_folder(const fs::path& folder, bool force) {
           fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
                       "Give another folder",
                       folder.string()));
-    for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log"})
+    for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
+                             "blocks_start.svg", "blocks_end.svg"})
       fs::remove(folder / name, ec);
     for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
     for (const auto& entry : fs::directory_iterator(folder, ec))

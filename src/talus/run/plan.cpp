@@ -123,7 +123,8 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   const double frame = kVtkCorner * corners + kVtkBlock * p.blocks + kVtkContact * points + 2 * kVtkFile;
   p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +
                          static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
-             frame * static_cast<double>(p.frames) + 5000;
+             frame * static_cast<double>(p.frames) + 5000 +
+             2 * (900 + 50 * corners + 60.0 * p.blocks);  // tables, frames, summary, two pictures
   // blocks, state, candidates; per point its row, memory and about 16 x 2 entries of W, its factor and copies
   p.memory = 900.0 * p.blocks + 32 * corners + points * (400 + 2 * 32 * 16 * 6);
   return p;

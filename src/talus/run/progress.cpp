@@ -98,7 +98,9 @@ std::string closing_text(const Scene& scene, const RunResult& r, const std::stri
   if (r.broken_faces > 0)
     out += fmt::format("  broken          {} of {} glued faces\n", r.broken_faces, scene.bonds.faces.size());
   out += fmt::format(
-      "  results         {}: summary.json, histories.csv, steps.csv, fields/blocks.pvd (ParaView)\n", folder);
+      "  results         {}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "
+      "(ParaView)\n",
+      folder);
   return out;
 }
 

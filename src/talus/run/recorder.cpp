@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/version.h"
+#include "talus/output/picture.h"
 #include "talus/run/problem_file.h"
 
 namespace talus {
@@ -84,6 +85,9 @@ void Recorder::at(const Instant& i) {
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
   if (frame || i.stage_start || i.last) write_frame(i);
+  if (i.stage_start && i.stage == 0)
+    write_file(folder_ / "blocks_start.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title));
+  if (i.last) write_file(folder_ / "blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title));
   if (wall_now() - last_flush_ > 1) {
     history_file_.flush();
     steps_file_.flush();

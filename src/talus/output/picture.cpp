@@ -1,0 +1,88 @@
+#include "talus/output/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace talus {
+
+namespace {
+
+constexpr double kWidth = 900, kMargin = 20, kHead = 40, kFoot = 40, kTallest = 1200;  // px
+
+// Colours that stay apart for colour-blind readers and in grey.
+const char* fill_of(BlockKind kind) {
+  switch (kind) {
+    case BlockKind::kDeformable:
+      return "#9ecae1";
+    case BlockKind::kRigid:
+      return "#f0d9a8";
+    case BlockKind::kFixed:
+      return "#8c8c8c";
+    case BlockKind::kDriven:
+      return "#b8b0c8";
+  }
+  return "none";
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+// A round length of about a fifth of the width.
+double bar_length(double width) {
+  const double step = std::pow(10, std::floor(std::log10(0.2 * width)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * step <= 0.25 * width) return factor * step;
+  return step;
+}
+
+}  // namespace
+
+std::string blocks_svg(const BlockSet& blocks, const State& state, const std::string& title) {
+  // places relative to the first block: no digits are lost far from the origin
+  std::vector<Vec2> corner;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    for (int v = 0; v < blocks.vertex_count(i); ++v)
+      corner.push_back((blocks.centroid[k] - blocks.centroid[0]) + offset_now(state, k, blocks.corner(i, v)));
+  }
+  const Box box = bounding_box(corner);
+  const double wide = std::max(box.max.x - box.min.x, 1e-300), high = box.max.y - box.min.y;
+  const double scale = std::min((kWidth - 2 * kMargin) / wide, high > 0 ? kTallest / high : 1e300);
+  const double height = kHead + scale * high + kFoot;
+
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} "
+      "{1:.0f}\" "
+      "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+      "<text x=\"{2}\" y=\"24\" font-weight=\"bold\">{3}</text>\n"
+      "<text x=\"{4}\" y=\"24\" text-anchor=\"end\">t = {5:.6g} s</text>\n",
+      kWidth, height, kMargin, escaped(title), kWidth - kMargin, state.time);
+  out += "<g stroke=\"#333333\" stroke-width=\"0.7\" stroke-linejoin=\"round\">\n";
+  size_t at = 0;
+  for (int i = 0; i < blocks.count; ++i) {
+    out += fmt::format("<polygon fill=\"{}\" points=\"", fill_of(blocks.kind[static_cast<size_t>(i)]));
+    for (int v = 0; v < blocks.vertex_count(i); ++v, ++at)
+      out += fmt::format("{:.2f},{:.2f} ", kMargin + scale * (corner[at].x - box.min.x),
+                         kHead + scale * (box.max.y - corner[at].y));
+    out += fmt::format("\"><title>{}</title></polygon>\n", escaped(blocks.name[static_cast<size_t>(i)]));
+  }
+  const double bar = bar_length((kWidth - 2 * kMargin) / scale), y = height - 14;
+  out += fmt::format(
+      "</g>\n<path d=\"M{0} {1:.1f}h{2:.2f}\" stroke=\"black\" stroke-width=\"3\"/>\n<text x=\"{3:.1f}\" "
+      "y=\"{4:.1f}\">{5:g} m</text>\n</svg>\n",
+      kMargin, y, scale * bar, kMargin + scale * bar + 8, y + 4, bar);
+  return out;
+}
+
+}  // namespace talus

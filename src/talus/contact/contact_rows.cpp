@@ -31,7 +31,7 @@ constexpr double kCornerLength = 0.02;
 // slop.
 double hard_bias(double gap, double slop, double dt) {
   if (gap >= 0) return gap / dt;
-  return std::min(gap + slop, 0.0) / dt;
+  return std::min(gap + 0.5 * slop, 0.0) / dt;
 }
 
 }  // namespace

@@ -9,16 +9,16 @@
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
-#include "talus/model/read_section.h"
+#include "talus/model/section_reader.h"
 
 namespace talus {
 
 namespace {
 
-class ModelReader {
+class ModelReader : private SectionReader {
  public:
   ModelReader(const TomlSource& source, Model& model, Findings& findings)
-      : source_(source), model_(model), findings_(findings) {}
+      : SectionReader(source, findings), model_(model) {}
 
   void read() {
     check_section_names();
@@ -63,101 +63,6 @@ class ModelReader {
     }
   }
 
-  // The table of a [section]; empty when the file has none. (Never a copy: copies forget their place in the
-  // file.)
-  const toml::table& table_of(const std::string& name, const std::string& form) {
-    static const toml::table none;
-    const toml::node* node = source_.root.get(name);
-    if (!node) return none;
-    if (const toml::table* t = node->as_table()) return *t;
-    findings_.error(where_of(node->source()), name, fmt::format("is written {}", form));
-    return none;
-  }
-
-  Fields read_table(const std::string& name) {
-    const toml::table& t = table_of(name, "[" + name + "]");
-    return read_section(section_spec(name), t, name, where_of(t.source()), source_, findings_);
-  }
-
-  // Calls `use(name, fields)` for every [section.NAME].
-  template <class Use>
-  void for_named(const std::string& section, Use use) {
-    const toml::table& all = table_of(section, fmt::format("[{}.NAME]", section));
-    for (const auto& [key, node] : all) {
-      const std::string path = section + "." + std::string(key.str());
-      const toml::table* t = node.as_table();
-      if (!t) {
-        findings_.error(where_of(key.source()), path, "is not a section",
-                        fmt::format("write [{}.NAME] with a name of your own, then its keys", section));
-        continue;
-      }
-      use(std::string(key.str()),
-          read_section(section_spec(section), *t, path, where_of(key.source()), source_, findings_));
-    }
-  }
-
-  // Calls `use(fields)` for every [[section]].
-  template <class Use>
-  void for_list(const std::string& section, Use use) {
-    const toml::node* node = source_.root.get(section);
-    if (!node) return;
-    const toml::array* list = node->as_array();
-    if (!list || !node->is_array_of_tables()) {
-      findings_.error(where_of(node->source()), section,
-                      fmt::format("is a list: write [[{}]] with double brackets", section));
-      return;
-    }
-    int index = 0;
-    for (const toml::node& entry : *list) {
-      const toml::table& t = *entry.as_table();
-      const std::string name = t["name"].value_or(std::to_string(index++));
-      use(read_section(section_spec(section), t, section + "." + name, where_of(t.source()), source_,
-                       findings_));
-    }
-  }
-
-  // --- names ---
-
-  template <class List>
-  static int index_of(const List& list, const std::string& name) {
-    for (size_t i = 0; i < list.size(); ++i)
-      if (list[i].name == name) return static_cast<int>(i);
-    return -1;
-  }
-
-  template <class List>
-  int refer(const Fields& f, std::string_view key, const List& list, const std::string& what) {
-    if (!f.has(key)) return -1;
-    return refer_name(f.get<std::string>(key), f.where(key), f.path_of(key), list, what);
-  }
-
-  template <class List>
-  int refer_name(const std::string& name, const Where& where, const std::string& path, const List& list,
-                 const std::string& what) {
-    const int i = index_of(list, name);
-    if (i < 0) {
-      std::vector<std::string> names;
-      for (const auto& item : list) names.push_back(item.name);
-      const std::string near = closest_name(name, names);
-      findings_.error(where, path, fmt::format("there is no {} called \"{}\"", what, name),
-                      !near.empty()   ? fmt::format("did you mean \"{}\"?", near)
-                      : names.empty() ? fmt::format("the file defines no {}", what)
-                                      : fmt::format("there is {}", join_or(names)));
-    }
-    return i;
-  }
-
-  void claim_name(const Fields& f, std::set<std::string>& used, const std::string& what) {
-    if (!f.has("name")) return;
-    const std::string name = f.get<std::string>("name");
-    if (name.empty() || name.find_first_of(".,\"\n[]") != std::string::npos)
-      findings_.error(f.where("name"), f.path_of("name"), fmt::format("\"{}\" is no name", name),
-                      "names are not empty and hold no dot, comma, quote or bracket");
-    if (!used.insert(name).second)
-      findings_.error(f.where("name"), f.path_of("name"),
-                      fmt::format("a second {} is called \"{}\"", what, name));
-  }
-
   Motion motion(const Fields& f, std::string_view key) {
     const MotionText m = f.get<MotionText>(key);
     Motion out;
@@ -172,13 +77,6 @@ class ModelReader {
     if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
       out.history = refer_name(m.history, f.where(key), f.path_of(key), model_.histories, "history");
     return out;
-  }
-
-  static BlockKind block_kind(const std::string& s) {
-    return s == "rigid"    ? BlockKind::kRigid
-           : s == "fixed"  ? BlockKind::kFixed
-           : s == "driven" ? BlockKind::kDriven
-                           : BlockKind::kDeformable;
   }
 
   // What is allowed but hardly meant.
@@ -576,9 +474,7 @@ class ModelReader {
     model_.output.field_interval = f.get("field_interval", 0.0);
   }
 
-  const TomlSource& source_;
   Model& model_;
-  Findings& findings_;
   std::set<std::string> block_names_, incomplete_;
   std::vector<Where> material_where_, joint_where_;
 };

@@ -1,0 +1,125 @@
+#pragma once
+// What every part of the model reader needs: the sections of the file one by one, names that refer to
+// something defined elsewhere, names that must be unique.
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+
+#include "talus/base/text.h"
+#include "talus/model/model.h"
+#include "talus/model/read_section.h"
+
+namespace talus {
+
+class SectionReader {
+ public:
+  SectionReader(const TomlSource& source, Findings& findings) : source_(source), findings_(findings) {}
+
+  // The table of a [section]; empty when the file has none. (Never a copy: copies forget their place in the
+  // file.)
+  const toml::table& table_of(const std::string& name, const std::string& form) {
+    static const toml::table none;
+    const toml::node* node = source_.root.get(name);
+    if (!node) return none;
+    if (const toml::table* t = node->as_table()) return *t;
+    findings_.error(where_of(node->source()), name, fmt::format("is written {}", form));
+    return none;
+  }
+
+  Fields read_table(const std::string& name) {
+    const toml::table& t = table_of(name, "[" + name + "]");
+    return read_section(section_spec(name), t, name, where_of(t.source()), source_, findings_);
+  }
+
+  // Calls `use(name, fields)` for every [section.NAME].
+  template <class Use>
+  void for_named(const std::string& section, Use use) {
+    const toml::table& all = table_of(section, fmt::format("[{}.NAME]", section));
+    for (const auto& [key, node] : all) {
+      const std::string path = section + "." + std::string(key.str());
+      const toml::table* t = node.as_table();
+      if (!t) {
+        findings_.error(where_of(key.source()), path, "is not a section",
+                        fmt::format("write [{}.NAME] with a name of your own, then its keys", section));
+        continue;
+      }
+      use(std::string(key.str()),
+          read_section(section_spec(section), *t, path, where_of(key.source()), source_, findings_));
+    }
+  }
+
+  // Calls `use(fields)` for every [[section]].
+  template <class Use>
+  void for_list(const std::string& section, Use use) {
+    const toml::node* node = source_.root.get(section);
+    if (!node) return;
+    const toml::array* list = node->as_array();
+    if (!list || !node->is_array_of_tables()) {
+      findings_.error(where_of(node->source()), section,
+                      fmt::format("is a list: write [[{}]] with double brackets", section));
+      return;
+    }
+    int index = 0;
+    for (const toml::node& entry : *list) {
+      const toml::table& t = *entry.as_table();
+      const std::string name = t["name"].value_or(std::to_string(index++));
+      use(read_section(section_spec(section), t, section + "." + name, where_of(t.source()), source_,
+                       findings_));
+    }
+  }
+
+  template <class List>
+  static int index_of(const List& list, const std::string& name) {
+    for (size_t i = 0; i < list.size(); ++i)
+      if (list[i].name == name) return static_cast<int>(i);
+    return -1;
+  }
+
+  template <class List>
+  int refer(const Fields& f, std::string_view key, const List& list, const std::string& what) {
+    if (!f.has(key)) return -1;
+    return refer_name(f.get<std::string>(key), f.where(key), f.path_of(key), list, what);
+  }
+
+  template <class List>
+  int refer_name(const std::string& name, const Where& where, const std::string& path, const List& list,
+                 const std::string& what) {
+    const int i = index_of(list, name);
+    if (i < 0) {
+      std::vector<std::string> names;
+      for (const auto& item : list) names.push_back(item.name);
+      const std::string near = closest_name(name, names);
+      findings_.error(where, path, fmt::format("there is no {} called \"{}\"", what, name),
+                      !near.empty()   ? fmt::format("did you mean \"{}\"?", near)
+                      : names.empty() ? fmt::format("the file defines no {}", what)
+                                      : fmt::format("there is {}", join_or(names)));
+    }
+    return i;
+  }
+
+  void claim_name(const Fields& f, std::set<std::string>& used, const std::string& what) {
+    if (!f.has("name")) return;
+    const std::string name = f.get<std::string>("name");
+    if (name.empty() || name.find_first_of(".,\"\n[]") != std::string::npos)
+      findings_.error(f.where("name"), f.path_of("name"), fmt::format("\"{}\" is no name", name),
+                      "names are not empty and hold no dot, comma, quote or bracket");
+    if (!used.insert(name).second)
+      findings_.error(f.where("name"), f.path_of("name"),
+                      fmt::format("a second {} is called \"{}\"", what, name));
+  }
+
+  static BlockKind block_kind(const std::string& s) {
+    return s == "rigid"    ? BlockKind::kRigid
+           : s == "fixed"  ? BlockKind::kFixed
+           : s == "driven" ? BlockKind::kDriven
+                           : BlockKind::kDeformable;
+  }
+
+ protected:
+  const TomlSource& source_;
+  Findings& findings_;
+};
+
+}  // namespace talus

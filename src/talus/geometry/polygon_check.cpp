@@ -1,58 +1,13 @@
 #include "talus/geometry/polygon_check.h"
 
 #include <fmt/format.h>
-#include <geos_c.h>
-
-#include <memory>
 #include <stdexcept>
+
+#include "talus/geometry/geos.h"
 
 namespace talus {
 
 namespace {
-
-// One GEOS context and the geometries made in it, released together.
-class Geos {
- public:
-  Geos() : context_(GEOS_init_r()) {
-    // the reason of a failure is asked for where it matters; nothing may be printed behind the user's back
-    GEOSContext_setErrorMessageHandler_r(
-        context_, [](const char*, void*) {}, nullptr);
-    GEOSContext_setNoticeMessageHandler_r(
-        context_, [](const char*, void*) {}, nullptr);
-  }
-  ~Geos() { GEOS_finish_r(context_); }
-  Geos(const Geos&) = delete;
-  Geos& operator=(const Geos&) = delete;
-
-  struct Release {
-    GEOSContextHandle_t context;
-    void operator()(GEOSGeometry* g) const { GEOSGeom_destroy_r(context, g); }
-  };
-  using Handle = std::unique_ptr<GEOSGeometry, Release>;
-
-  Handle own(GEOSGeometry* g) const { return Handle(g, Release{context_}); }
-  GEOSContextHandle_t context() const { return context_; }
-
-  // Coordinates relative to `origin`: far from zero the overlay would lose digits.
-  Handle make_polygon(const Polygon& polygon, Vec2 origin) const {
-    const auto n = static_cast<unsigned>(polygon.size());
-    GEOSCoordSequence* points = GEOSCoordSeq_create_r(context_, n + 1, 2);
-    for (unsigned i = 0; i <= n; ++i) {
-      const Vec2 p = polygon[i % n] - origin;
-      GEOSCoordSeq_setXY_r(context_, points, i, p.x, p.y);
-    }
-    GEOSGeometry* ring = GEOSGeom_createLinearRing_r(context_, points);
-    return own(ring ? GEOSGeom_createPolygon_r(context_, ring, nullptr, 0) : nullptr);
-  }
-
- private:
-  GEOSContextHandle_t context_;
-};
-
-const Geos& geos() {
-  thread_local Geos instance;  // a GEOS context serves one thread
-  return instance;
-}
 
 Vec2 point_of(const GEOSGeometry* point) {
   Vec2 p;

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "talus/geometry/polygon.h"
+#include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
 
 namespace talus {
 
-enum class BlockKind { kDeformable, kRigid, kFixed, kDriven };
 enum class Plane { kStrain, kStress };
 enum class Inertia { kConsistent, kLumped };
 
@@ -99,6 +99,7 @@ struct SupportInput {
   std::string name;
   bool is_edge = false;
   Vec2 from, to;      // the segment; the point when is_edge is false
+  std::string along;  // name of an outline side, opening, fault or joint set: all block edges along it; "" = none
   std::string block;  // "" = any
   Where where_block;
   Motion x, y;
@@ -172,6 +173,15 @@ struct Model {
   std::vector<History> histories;
   std::vector<BlockInput> blocks;
   std::vector<GridInput> grids;
+  CutInput cut;
+  std::vector<RegionInput> regions;
+  std::vector<ArchInput> arches;
+  std::vector<OpeningInput> openings;
+  std::vector<FaultInput> faults;
+  std::vector<MasonryInput> masonry;
+  std::vector<TessellationInput> tessellations;
+  std::vector<JointSetInput> joint_sets;
+  int bonded_joint = -1;   // index of the joint that glues artificial edges (openings kept, sub-division)
   int default_joint = -1;  // -1: hard and frictionless
   std::vector<ContactPairInput> contact_pairs;
   std::vector<SupportInput> supports;

@@ -9,6 +9,7 @@
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
+#include "talus/model/read_cut.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {
@@ -30,6 +31,7 @@ class ModelReader : private SectionReader {
     read_histories();
     read_blocks();
     read_grids();
+    read_cut_sections(source_, block_names_, model_, findings_);
     read_contact();
     read_supports();
     read_loads();
@@ -40,6 +42,9 @@ class ModelReader : private SectionReader {
     for (const BlockInput& b : model_.blocks)
       check_material_of(b.kind, b.material, b.where, "block." + b.name);
     for (const GridInput& g : model_.grids) check_material_of(g.kind, g.material, g.where, "grid." + g.name);
+    for (const RegionInput& r : model_.regions)
+      check_material_of(r.kind, r.material, r.where, "region." + r.name);
+    for (const ArchInput& a : model_.arches) check_material_of(a.kind, a.material, a.where, "arch." + a.name);
   }
 
  private:
@@ -96,7 +101,14 @@ class ModelReader : private SectionReader {
     std::set<int> used{model_.default_joint};
     for (const ContactPairInput& c : model_.contact_pairs) used.insert(c.joint);
     for (const GridInput& g : model_.grids) used.insert(g.joint);
-    for (size_t i = 0; i < model_.joints.size(); ++i) {
+    for (const RegionInput& r : model_.regions) used.insert(r.joint);
+    for (const ArchInput& a : model_.arches) used.insert(a.joint);
+    for (const OpeningInput& o : model_.openings) used.insert(o.joint);
+    for (const FaultInput& x : model_.faults) used.insert(x.joint);
+    for (const MasonryInput& m : model_.masonry) used.insert({m.bed_joint, m.head_joint});
+    for (const TessellationInput& t : model_.tessellations) used.insert(t.joint);
+    for (const JointSetInput& s : model_.joint_sets) used.insert(s.joint);
+    for (size_t i = 0; i < joint_where_.size(); ++i) {
       if (used.count(static_cast<int>(i))) continue;
       findings_.warning(
           joint_where_[i], "joint." + model_.joints[i].name, "is used by nothing",
@@ -104,7 +116,7 @@ class ModelReader : private SectionReader {
               ? fmt::format(
                     "contacts without a joint are frictionless; for all of them: [contact] joint = \"{}\"",
                     model_.joints[i].name)
-              : "name it in [contact], a [[contact_pair]] or a [[grid]]");
+              : "name it in [contact], a [[contact_pair]], a [[grid]] or where the blocks are cut");
     }
   }
 
@@ -338,11 +350,12 @@ class ModelReader : private SectionReader {
       s.name = f.get<std::string>("name");
       s.where = f.where();
       s.where_block = f.where("block");
-      if (f.given("point") == f.given("edge")) {
-        findings_.error(f.where(), f.path(),
-                        f.given("point") ? "has both point and edge" : "has neither point nor edge",
-                        "give point = [x, y] or edge = [[x0, y0], [x1, y1]]");
+      const int places = f.given("point") + f.given("edge") + f.given("along");
+      if (places != 1) {
+        findings_.error(f.where(), f.path(), places > 1 ? "has more than one place" : "has no place",
+                        "give one of point = [x, y], edge = [[x0, y0], [x1, y1]], along = \"NAME\"");
       }
+      s.along = f.get<std::string>("along");
       s.from = s.to = f.get<Vec2>("point");
       if (f.has("edge")) {
         const auto points = f.get<std::vector<Vec2>>("edge");
@@ -424,9 +437,6 @@ class ModelReader : private SectionReader {
         findings_.error(f.where("time_step"), f.path_of("time_step"), "is longer than the stage");
       model_.stages.push_back(s);
     });
-    if (model_.stages.empty())
-      findings_.error({1, 1, ""}, "stage", "the file has no [[stage]]: nothing would be run",
-                      "add [[stage]] with name, kind = \"dynamic\" and duration");
   }
 
   void read_monitors() {

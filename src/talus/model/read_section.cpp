@@ -56,6 +56,10 @@ class ValueReader {
         return numbers(node);
       case KeyType::kNames:
         return names(node);
+      case KeyType::kTexts:
+        return texts(node);
+      case KeyType::kScattered:
+        return wrap(scattered(node));
       case KeyType::kMotion:
         return motion(node);
     }
@@ -171,6 +175,56 @@ class ValueReader {
         std::vector<std::string>{*a->get(0)->value<std::string>(), *a->get(1)->value<std::string>()});
   }
 
+  std::optional<Value> texts(const toml::node& node) const {
+    const toml::array* a = node.as_array();
+    if (!a) return wrong(node, "a list of texts in quotes");
+    std::vector<std::string> list;
+    for (const toml::node& entry : *a) {
+      const auto v = entry.value_exact<std::string>();
+      if (!v) return wrong(entry, "text in quotes");
+      list.push_back(*v);
+    }
+    return Value(list);
+  }
+
+  // A quantity, or a table that says how it scatters.
+  std::optional<Scattered> scattered(const toml::node& node) const {
+    const toml::table* t = node.as_table();
+    if (!t) {
+      const auto v = quantity(node);
+      return v ? std::optional<Scattered>({Scattered::kConstant, *v, 0}) : std::nullopt;
+    }
+    const std::string expected =
+        R"(a quantity, { mean = ..., normal = standard deviation }, { mean = ..., uniform = half width } or )"
+        R"({ exponential = mean })";
+    Scattered s;
+    if (t->size() == 1 && t->contains("exponential")) {
+      const auto mean = quantity(*t->get("exponential"));
+      if (!mean) return {};
+      if (*mean < 0) return tell(*t->get("exponential"), "a mean of exponential scatter cannot be negative");
+      return Scattered{Scattered::kExponential, *mean, *mean};
+    }
+    const bool normal = t->contains("normal");
+    if (t->size() != 2 || !t->contains("mean") || !(normal || t->contains("uniform"))) return wrong(node, expected);
+    const toml::node& spread_node = *t->get(normal ? "normal" : "uniform");
+    const auto mean = quantity(*t->get("mean"));
+    const ValueReader free(without_range(), path_, where_, findings_);
+    const auto spread = free.quantity(spread_node);
+    if (!mean || !spread) return {};
+    if (*spread < 0) return tell(spread_node, "a scatter cannot be negative");
+    const double low = spec_.range.min;
+    if (!normal && std::isfinite(low) && *mean - *spread < low)
+      return tell(spread_node, fmt::format("is wider than the mean: values would go below {}",
+                                           with_unit(low, spec_.dimension)));
+    return Scattered{normal ? Scattered::kNormal : Scattered::kUniform, *mean, *spread};
+  }
+
+  const KeySpec& without_range() const {
+    unlimited_ = spec_;
+    unlimited_.range = {};
+    return unlimited_;
+  }
+
   std::optional<Value> motion(const toml::node& node) const {
     const std::string expected =
         R"("fixed", "free", { velocity = "HISTORY" } or { displacement = "HISTORY" })";
@@ -192,6 +246,7 @@ class ValueReader {
   }
 
   const KeySpec& spec_;
+  mutable KeySpec unlimited_;
   const std::string path_;
   const Where where_;
   Findings& findings_;

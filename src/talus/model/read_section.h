@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "talus/base/vec2.h"
+#include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
 #include "talus/model/schema.h"
 #include "talus/model/toml_source.h"
@@ -20,7 +21,7 @@ struct MotionText {
 };
 
 using Value = std::variant<bool, int64_t, double, std::string, Vec2, std::array<int, 2>, std::vector<Vec2>,
-                           std::vector<double>, std::vector<std::string>, MotionText>;
+                           std::vector<double>, std::vector<std::string>, MotionText, Scattered>;
 
 /// The values of one section, in SI, defaults filled in. A key that was wrong is absent, and a finding tells
 /// why.

@@ -39,6 +39,10 @@ std::string_view type_text(const KeySpec& k) {
       return "list of [x, y]";
     case K::kNumbers:
       return "list of numbers";
+    case K::kTexts:
+      return "list of texts";
+    case K::kScattered:
+      return "quantity or scatter";
     case K::kMotion:
       return "motion";
   }
@@ -120,6 +124,20 @@ std::string json_type(const KeySpec& k) {
       return array(array(quantity, two), R"(, "minItems": 2)");
     case K::kNumbers:
       return array(R"("type": "number")", R"(, "minItems": 2)");
+    case K::kTexts:
+      return array(R"("type": "string")", "");
+    case K::kScattered: {
+      const auto table = [&](const std::string& one, const std::string& two_keys) {
+        return fmt::format(
+            R"({{"type": "object", "additionalProperties": false, "properties": {{{}}}, "required": [{}]}})", one,
+            two_keys);
+      };
+      const std::string number = "{" + quantity + "}";
+      return fmt::format(R"("oneOf": [{{{}}}, {}, {}, {}])", quantity + json_range(k.range),
+                         table(R"("mean": )" + number + R"(, "normal": )" + number, R"("mean", "normal")"),
+                         table(R"("mean": )" + number + R"(, "uniform": )" + number, R"("mean", "uniform")"),
+                         table(R"("exponential": )" + number, R"("exponential")"));
+    }
     case K::kMotion:
       return R"("oneOf": [{"enum": ["fixed", "free"]}, {"type": "object", "additionalProperties": false, )"
              R"("properties": {"velocity": {"type": "string"}, "displacement": {"type": "string"}}, )"

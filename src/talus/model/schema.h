@@ -24,6 +24,8 @@ enum class KeyType {
   kIntegers,  // [nx, ny]
   kPoints,    // list of [x, y]
   kNumbers,   // list of plain numbers
+  kTexts,     // list of texts, any number
+  kScattered,  // quantity, { mean, normal }, { mean, uniform } or { exponential }
   kMotion,    // "fixed", "free", { velocity = "history" } or { displacement = "history" }
 };
 

@@ -22,6 +22,7 @@ struct DimensionName {
 constexpr DimensionName kNames[] = {
     {Dimension::kNone, "a plain number"},
     {Dimension::kLength, "a length"},
+    {Dimension::kArea, "an area"},
     {Dimension::kTime, "a time"},
     {Dimension::kVelocity, "a velocity"},
     {Dimension::kAcceleration, "an acceleration"},
@@ -62,6 +63,8 @@ const std::vector<Unit>& all_units() {
       {"mm", D::kLength, 1e-3},
       {"cm", D::kLength, 1e-2},
       {"km", D::kLength, 1e3},
+      {"m2", D::kArea, 1},
+      {"cm2", D::kArea, 1e-4},
       {"s", D::kTime, 1},
       {"ms", D::kTime, 1e-3},
       {"us", D::kTime, 1e-6},

@@ -10,6 +10,7 @@ namespace talus {
 enum class Dimension {
   kNone,
   kLength,
+  kArea,
   kTime,
   kVelocity,
   kAcceleration,

@@ -159,6 +159,9 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides, Findings& findings) {
   PreparedRun run;
   Model model = read_model(file, text, overrides, findings);
+  if (model.stages.empty())
+    findings.error({1, 1, ""}, "stage", "the file has no [[stage]]: nothing would be run",
+                   "add [[stage]] with name, kind = \"dynamic\" and duration");
   if (!model.shapes_readable) findings.throw_if_errors();
   Layout layout = make_layout(model, findings);
   findings.throw_if_errors();

@@ -1,0 +1,226 @@
+#include "talus/geometry/arrangement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "talus/geometry/geos.h"
+
+namespace talus {
+
+namespace {
+
+// Noding moves a line by less than one cell of the grid.
+constexpr double kMoved = 1.5;
+
+using Node = std::array<int64_t, 2>;  // in cells of the grid
+
+struct NodeHash {
+  size_t operator()(const Node& n) const {
+    const uint64_t x = static_cast<uint64_t>(n[0]) * 0x9E3779B97F4A7C15ULL;
+    const uint64_t y = static_cast<uint64_t>(n[1]) * 0xC2B2AE3D27D4EB4FULL;
+    return static_cast<size_t>((x ^ (x >> 29)) + (y ^ (y >> 31)));
+  }
+};
+
+// Lines by the squares of a coarse grid that they pass through.
+class LineIndex {
+ public:
+  LineIndex(const std::vector<Polyline>& lines, double cell, double reach)
+      : lines_(lines), cell_(cell), reach_(reach) {
+    for (size_t l = 0; l < lines.size(); ++l)
+      for (size_t k = 0; k + 1 < lines[l].size(); ++k) add(static_cast<int>(l), static_cast<int>(k));
+    std::sort(entries_.begin(), entries_.end());
+    entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
+  }
+
+  // The first line that passes both points within reach, -1 when none does.
+  int first_along(Vec2 a, Vec2 b) const {
+    const Node square = square_of(0.5 * (a + b));
+    auto it = std::lower_bound(entries_.begin(), entries_.end(), Entry{square, -1, -1});
+    for (; it != entries_.end() && it->square == square; ++it) {
+      const Polyline& line = lines_[static_cast<size_t>(it->line)];
+      const Vec2 p = line[static_cast<size_t>(it->part)], q = line[static_cast<size_t>(it->part) + 1];
+      if (distance_to_segment(a, p, q) <= reach_ && distance_to_segment(b, p, q) <= reach_) return it->line;
+    }
+    return -1;
+  }
+
+ private:
+  struct Entry {
+    Node square;
+    int line, part;
+    auto operator<=>(const Entry&) const = default;
+  };
+
+  Node square_of(Vec2 p) const {
+    return {static_cast<int64_t>(std::floor(p.x / cell_)), static_cast<int64_t>(std::floor(p.y / cell_))};
+  }
+
+  // in pieces no longer than a square, so that few squares are touched in vain
+  void add(int line, int part) {
+    const Polyline& l = lines_[static_cast<size_t>(line)];
+    const Vec2 p = l[static_cast<size_t>(part)], q = l[static_cast<size_t>(part) + 1];
+    const auto pieces = static_cast<int64_t>(std::ceil(norm(q - p) / cell_)) + 1;
+    for (int64_t i = 0; i < pieces; ++i) {
+      const Vec2 a = p + (static_cast<double>(i) / static_cast<double>(pieces)) * (q - p);
+      const Vec2 b = p + (static_cast<double>(i + 1) / static_cast<double>(pieces)) * (q - p);
+      const Vec2 r{2 * reach_, 2 * reach_};
+      const Node lo = square_of(Vec2{std::min(a.x, b.x), std::min(a.y, b.y)} - r);
+      const Node hi = square_of(Vec2{std::max(a.x, b.x), std::max(a.y, b.y)} + r);
+      for (int64_t x = lo[0]; x <= hi[0]; ++x)
+        for (int64_t y = lo[1]; y <= hi[1]; ++y) entries_.push_back({{x, y}, line, part});
+    }
+  }
+
+  const std::vector<Polyline>& lines_;
+  double cell_, reach_;
+  std::vector<Entry> entries_;
+};
+
+struct Noded {
+  std::vector<Polygon> rings;               // counter-clockwise, without the closing corner
+  std::vector<std::vector<Polyline>> holed;
+  std::vector<Polyline> dead_ends;
+};
+
+void for_parts(const GEOSGeometry* collection, const auto& use) {
+  const GEOSContextHandle_t context = geos().context();
+  const int n = GEOSGetNumGeometries_r(context, collection);
+  for (int i = 0; i < n; ++i) use(GEOSGetGeometryN_r(context, collection, i));
+}
+
+Polygon open_ring(const GEOSGeometry* ring) {
+  Polygon corners = geos().corners_of(ring);
+  corners.pop_back();
+  return corners;
+}
+
+// Noding and polygonizing, in coordinates relative to `origin`.
+Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 origin) {
+  const GEOSContextHandle_t context = geos().context();
+  const auto input = geos().make_lines(lines, origin);
+  const auto noded = geos().own(input ? GEOSUnaryUnionPrec_r(context, input.get(), grid) : nullptr);
+  if (!noded) throw std::runtime_error("noding of the joints failed");
+  GEOSGeometry *cuts = nullptr, *dangles = nullptr, *invalid = nullptr;
+  const auto faces = geos().own(GEOSPolygonize_full_r(context, noded.get(), &cuts, &dangles, &invalid));
+  const auto own_cuts = geos().own(cuts), own_dangles = geos().own(dangles), own_invalid = geos().own(invalid);
+  if (!faces) throw std::runtime_error("collecting the faces between the joints failed");
+  if (invalid && GEOSGetNumGeometries_r(context, invalid) > 0)
+    throw std::runtime_error(fmt::format("{} faces between the joints are not simple",
+                                         GEOSGetNumGeometries_r(context, invalid)));
+  Noded out;
+  for_parts(faces.get(), [&](const GEOSGeometry* polygon) {
+    Polygon outer = open_ring(GEOSGetExteriorRing_r(context, polygon));
+    const int holes = GEOSGetNumInteriorRings_r(context, polygon);
+    if (holes > 0) {
+      std::vector<Polyline> rings{outer};
+      for (int h = 0; h < holes; ++h) rings.push_back(open_ring(GEOSGetInteriorRingN_r(context, polygon, h)));
+      out.holed.push_back(std::move(rings));
+      return;
+    }
+    if (signed_area(outer) < 0) std::reverse(outer.begin(), outer.end());
+    out.rings.push_back(std::move(outer));
+  });
+  for (const GEOSGeometry* list : {own_cuts.get(), own_dangles.get()})
+    if (list) for_parts(list, [&](const GEOSGeometry* line) { out.dead_ends.push_back(geos().corners_of(line)); });
+  return out;
+}
+
+bool lower_left(Vec2 a, Vec2 b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
+
+}  // namespace
+
+double grid_width(double extent, double wanted) {
+  const double limit = std::isnan(wanted) ? std::min(0x1p-20, 1e-8 * extent) : wanted;
+  return std::exp2(std::floor(std::log2(limit)));
+}
+
+Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin) {
+  Arrangement out;
+  out.grid = grid;
+  if (lines.empty()) return out;
+  Noded noded = node_and_polygonize(lines, grid, origin);
+
+  // faces in an order that depends on their places only
+  for (Polygon& ring : noded.rings)
+    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), lower_left), ring.end());
+  std::sort(noded.rings.begin(), noded.rings.end(), [](const Polygon& a, const Polygon& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), lower_left);
+  });
+
+  // points and edges by number
+  std::unordered_map<Node, int, NodeHash> number_of;
+  std::unordered_map<Node, int, NodeHash> edge_of;
+  const auto point_number = [&](Vec2 p) {
+    const Node node{std::llround(p.x / grid), std::llround(p.y / grid)};
+    const auto [it, fresh] = number_of.try_emplace(node, static_cast<int>(out.point.size()));
+    if (fresh) out.point.push_back(p);
+    return it->second;
+  };
+  double total = 0;
+  for (const Polygon& ring : noded.rings) {
+    Arrangement::Face face;
+    for (const Vec2 p : ring) face.point.push_back(point_number(p));
+    const int f = static_cast<int>(out.face.size());
+    for (size_t k = 0; k < face.point.size(); ++k) {
+      const int a = face.point[k], b = face.point[(k + 1) % face.point.size()];
+      const auto [it, fresh] = edge_of.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(out.edge.size()));
+      if (fresh) {
+        out.edge.push_back({std::min(a, b), std::max(a, b)});
+        out.edge_face.push_back({-1, -1});
+        total += norm(ring[(k + 1) % ring.size()] - ring[k]);
+      }
+      int& side = out.edge_face[static_cast<size_t>(it->second)][a < b ? 0 : 1];
+      if (side >= 0) throw std::runtime_error("two faces between the joints overlap");
+      side = f;
+      face.edge.push_back(it->second);
+    }
+    out.face.push_back(std::move(face));
+  }
+
+  // the line along each edge
+  std::vector<Polyline> local = lines;
+  for (Polyline& l : local)
+    for (Vec2& p : l) p -= origin;
+  const double cell = std::max(total / static_cast<double>(std::max<size_t>(out.edge.size(), 1)), 4 * grid);
+  const LineIndex index(local, cell, kMoved * grid);
+  for (const auto& [a, b] : out.edge) {
+    const Vec2 p = out.point[static_cast<size_t>(a)], q = out.point[static_cast<size_t>(b)];
+    out.edge_source.push_back(index.first_along(p, q));
+    if (out.edge_source.back() < 0)
+      throw std::runtime_error(fmt::format("no joint runs along the edge from ({:.9g}, {:.9g}) to ({:.9g}, {:.9g})",
+                                           p.x + origin.x, p.y + origin.y, q.x + origin.x, q.y + origin.y));
+  }
+
+  for (Vec2& p : out.point) p += origin;
+  out.dead_ends = std::move(noded.dead_ends);
+  out.rings_of_holed = std::move(noded.holed);
+  for (Polyline& l : out.dead_ends)
+    for (Vec2& p : l) p += origin;
+  for (auto& rings : out.rings_of_holed)
+    for (Polyline& ring : rings)
+      for (Vec2& p : ring) p += origin;
+  return out;
+}
+
+Vec2 interior_point(const Polygon& polygon) {
+  const double y = polygon_moments(polygon).centroid.y;
+  std::vector<double> crossing;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    if ((a.y > y) != (b.y > y)) crossing.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+  }
+  std::sort(crossing.begin(), crossing.end());
+  Vec2 best{polygon[0].x, y};
+  double widest = -1;
+  for (size_t i = 0; i + 1 < crossing.size(); i += 2)
+    if (crossing[i + 1] - crossing[i] > widest)
+      widest = crossing[i + 1] - crossing[i], best.x = 0.5 * (crossing[i] + crossing[i + 1]);
+  return best;
+}
+
+}  // namespace talus

@@ -1,0 +1,347 @@
+#include "talus/model/read_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "talus/geometry/polygon_check.h"
+#include "talus/geometry/shapes.h"
+#include "talus/model/section_reader.h"
+
+namespace talus {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// Most blocks that one region may be divided into on purpose.
+constexpr double kMostCells = 1e7;
+
+class CutReader : private SectionReader {
+ public:
+  CutReader(const TomlSource& source, std::set<std::string>& block_names, Model& model, Findings& findings)
+      : SectionReader(source, findings), model_(model), block_names_(block_names) {}
+
+  void read() {
+    read_cut();
+    read_regions();
+    read_arches();
+    read_openings();
+    read_faults();
+    read_masonry();
+    read_tessellations();
+    read_joint_sets();
+    check_use();
+  }
+
+ private:
+  // --- names ---
+
+  // Names that supports may follow: each stands for one source of block edges.
+  void claim_trace_name(const Fields& f, const std::string& what) { claim_name(f, trace_names_, what); }
+
+  int region(const Fields& f) { return refer(f, "region", model_.regions, "region"); }
+  int joint(const Fields& f, std::string_view key = "joint") {
+    return refer(f, key, model_.joints, "joint");
+  }
+  int material(const Fields& f) { return refer(f, "material", model_.materials, "material"); }
+
+  void incomplete() { model_.shapes_readable = false; }
+
+  // A polygon that must be simple; wrong ones are told and keep the cutter from starting.
+  void check_polygon(const Fields& f, std::string_view key, const Polygon& polygon) {
+    const std::string defect = polygon_defect(polygon);
+    if (defect.empty()) return;
+    findings_.error(f.where(key), f.path_of(key), defect);
+    incomplete();
+  }
+
+  // --- sections ---
+
+  void read_cut() {
+    const Fields f = read_table("cut");
+    CutInput& c = model_.cut;
+    c.where = f.where();
+    c.section_azimuth = f.get("section_azimuth", c.section_azimuth);
+    c.seed = static_cast<uint64_t>(f.get<int64_t>("seed", 1));
+    c.grid = f.get("grid", c.grid);
+    const auto policy = f.get<std::string>("slivers");
+    c.slivers = policy == "delete" ? SliverPolicy::kDelete
+                : policy == "keep" ? SliverPolicy::kKeep
+                                   : SliverPolicy::kMerge;
+    c.sliver_area = f.get("sliver_area", 0.0);
+    c.sliver_width = f.get("sliver_width", 0.0);
+    c.sliver_area_share = f.get("sliver_area_share", 0.0);
+    c.sliver_width_share = f.get("sliver_width_share", 0.0);
+    c.blocks_file = f.get<std::string>("blocks");
+    c.where_file = f.where("blocks");
+    if (f.given("blocks") && c.blocks_file.empty())
+      findings_.error(f.where("blocks"), f.path_of("blocks"), "is empty", "name a file that talus cut has written");
+  }
+
+  void read_regions() {
+    for_list("region", [this](const Fields& f) {
+      claim_name(f, block_names_, "block, grid or region");
+      RegionInput r;
+      r.name = f.get<std::string>("name");
+      r.where = f.where();
+      r.polygon = f.get<std::vector<Vec2>>("polygon");
+      if (f.has("polygon"))
+        check_polygon(f, "polygon", r.polygon);
+      else
+        incomplete();
+      r.sides = f.get<std::vector<std::string>>("sides");
+      if (f.has("sides") && r.sides.size() != r.polygon.size()) {
+        findings_.error(f.where("sides"), f.path_of("sides"),
+                        fmt::format("has {} names for {} edges", r.sides.size(), r.polygon.size()),
+                        "give one name per edge, the first for the edge from the first to the second corner");
+      }
+      for (size_t i = r.sides.size(); i < r.polygon.size(); ++i)
+        r.sides.push_back(fmt::format("{}-{}", r.name, i + 1));
+      for (const std::string& side : r.sides) {
+        if (side.empty() || side.find_first_of(".,\"\n[]") != std::string::npos)
+          findings_.error(f.where("sides"), f.path_of("sides"), fmt::format("\"{}\" is no name", side),
+                          "names are not empty and hold no dot, comma, quote or bracket");
+        side_names_.insert(side);
+      }
+      r.material = material(f);
+      r.joint = joint(f);
+      r.kind = block_kind(f.get<std::string>("kind"));
+      model_.regions.push_back(std::move(r));
+    });
+  }
+
+  void read_arches() {
+    for_list("arch", [this](const Fields& f) {
+      claim_name(f, block_names_, "block, grid or region");
+      claim_trace_name(f, "source of joints");
+      ArchInput a;
+      a.name = f.get<std::string>("name");
+      a.where = f.where();
+      a.center = f.get<Vec2>("center");
+      a.radius = f.get("radius", 1.0);
+      a.thickness = f.get("thickness", 1.0);
+      a.from = f.get("from", 0.0);
+      a.to = f.get("to", 1.0);
+      a.voussoirs = static_cast<int>(f.get<int64_t>("voussoirs", 1));
+      for (const char* key : {"name", "center", "radius", "thickness", "voussoirs"})
+        if (!f.has(key)) incomplete();
+      if (!(a.to > a.from) || a.to - a.from > kTurn * (1 - 1e-9)) {
+        findings_.error(f.where("to"), f.path_of("to"), "must be larger than from, by less than a full turn");
+        incomplete();
+      } else if ((a.to - a.from) / a.voussoirs > 0.5 * kTurn * (1 - 1e-9)) {
+        findings_.error(f.where("voussoirs"), f.path_of("voussoirs"), "each must span less than 180 deg",
+                        "give more of them");
+        incomplete();
+      }
+      a.material = material(f);
+      a.joint = joint(f);
+      a.kind = block_kind(f.get<std::string>("kind"));
+      for (const char* side : {"intrados", "extrados", "start", "end"}) side_names_.insert(a.name + "-" + side);
+      model_.arches.push_back(a);
+    });
+  }
+
+  void read_openings() {
+    for_list("opening", [this](const Fields& f) {
+      claim_name(f, block_names_, "block, grid, region or opening");
+      claim_trace_name(f, "source of joints");
+      OpeningInput o;
+      o.name = f.get<std::string>("name");
+      o.where = f.where();
+      const auto shape = f.get<std::string>("shape");
+      const auto segments = static_cast<int>(f.get<int64_t>("segments", 32));
+      o.shape = shape == "circle"      ? OpeningShape::kCircle
+                : shape == "horseshoe" ? OpeningShape::kHorseshoe
+                                       : OpeningShape::kPolygon;
+      if (f.has("shape") && has_only(f, shape)) {
+        if (o.shape == OpeningShape::kPolygon) {
+          o.polygon = f.get<std::vector<Vec2>>("polygon");
+          check_polygon(f, "polygon", o.polygon);
+        } else if (o.shape == OpeningShape::kCircle) {
+          o.polygon = circle_polygon(f.get<Vec2>("center"), f.get("diameter", 1.0), segments);
+        } else if (f.get("height", 1.0) < 0.5 * f.get("width", 1.0)) {
+          findings_.error(f.where("height"), f.path_of("height"), "is less than half the width",
+                          "the half circle alone is half the width high");
+          incomplete();
+        } else {
+          o.polygon =
+              horseshoe_polygon(f.get<Vec2>("center"), f.get("width", 1.0), f.get("height", 1.0), segments);
+        }
+      }
+      o.kept = f.get<std::string>("rock") == "kept";
+      o.joint = joint(f);
+      if (!o.kept && f.given("joint"))
+        findings_.error(f.where("joint"), f.path_of("joint"), "needs rock = \"kept\": removed rock has no joint");
+      if (o.polygon.empty()) incomplete();
+      model_.openings.push_back(std::move(o));
+    });
+  }
+
+  // Whether the opening gives the keys of its shape and no others.
+  bool has_only(const Fields& f, const std::string& shape) {
+    const std::vector<std::string> needed = shape == "circle" ? std::vector<std::string>{"center", "diameter"}
+                                            : shape == "horseshoe"
+                                                ? std::vector<std::string>{"center", "width", "height"}
+                                                : std::vector<std::string>{"polygon"};
+    bool sound = true;
+    for (const std::string key : {"center", "diameter", "width", "height", "polygon", "segments"}) {
+      const bool belongs = std::find(needed.begin(), needed.end(), key) != needed.end() ||
+                           (key == "segments" && shape != "polygon");
+      if (!belongs && f.given(key)) {
+        findings_.error(f.where(key), f.path_of(key), fmt::format("does not belong to shape = \"{}\"", shape));
+        sound = false;
+      }
+    }
+    for (const std::string& key : needed) {
+      if (!f.given(key))
+        findings_.error(f.where(), f.path_of(key), fmt::format("is missing for shape = \"{}\"", shape));
+      sound = sound && f.has(key);
+    }
+    return sound;
+  }
+
+  void read_faults() {
+    for_list("fault", [this](const Fields& f) {
+      claim_trace_name(f, "source of joints");
+      FaultInput fault;
+      fault.name = f.get<std::string>("name");
+      fault.where = f.where();
+      fault.points = f.get<std::vector<Vec2>>("points");
+      if (f.has("points") && fault.points.size() < 2)
+        findings_.error(f.where("points"), f.path_of("points"), "needs two points or more");
+      fault.joint = joint(f);
+      if (!f.has("points") || fault.points.size() < 2) incomplete();
+      model_.faults.push_back(std::move(fault));
+    });
+  }
+
+  void read_masonry() {
+    for_list("masonry", [this](const Fields& f) {
+      claim_trace_name(f, "source of joints");
+      MasonryInput m;
+      m.name = f.get<std::string>("name");
+      m.where = f.where();
+      m.region = region(f);
+      m.length = f.get("length", 1.0);
+      m.height = f.get("height", 1.0);
+      m.overlap = f.get("overlap", m.overlap);
+      m.origin = f.get<Vec2>("origin");
+      m.bed_joint = joint(f, "bed_joint");
+      m.head_joint = joint(f, "head_joint");
+      side_names_.insert({m.name + "-bed", m.name + "-head"});
+      check_cells(f, "length", m.region, m.length * m.height);
+      model_.masonry.push_back(m);
+    });
+  }
+
+  void read_tessellations() {
+    for_list("tessellation", [this](const Fields& f) {
+      claim_trace_name(f, "source of joints");
+      TessellationInput t;
+      t.name = f.get<std::string>("name");
+      t.where = f.where();
+      t.region = region(f);
+      t.triangles = f.get<std::string>("cells") == "triangles";
+      t.size = f.get("size", 1.0);
+      t.irregularity = f.get("irregularity", 0.0);
+      t.joint = joint(f);
+      check_cells(f, "size", t.region, t.size * t.size);
+      model_.tessellations.push_back(t);
+    });
+  }
+
+  // A region of known size must not be divided into more cells than any machine takes.
+  void check_cells(const Fields& f, std::string_view key, int region, double cell) {
+    if (region < 0) return incomplete();
+    const Polygon& polygon = model_.regions[static_cast<size_t>(region)].polygon;
+    if (polygon.empty()) return;
+    const double cells = std::abs(signed_area(polygon)) / cell;
+    if (cells <= kMostCells) return;
+    findings_.error(f.where(key), f.path_of(key), fmt::format("makes about {:.2g} cells, more than {:g}", cells, kMostCells),
+                    "is a unit missing?");
+    incomplete();
+  }
+
+  void read_joint_sets() {
+    for_list("joint_set", [this](const Fields& f) {
+      claim_trace_name(f, "source of joints");
+      JointSetInput s;
+      s.name = f.get<std::string>("name");
+      s.where = f.where();
+      s.where_spacing = f.where("spacing");
+      s.in_space = f.given("dip") || f.given("dip_direction");
+      if (f.given("angle") == s.in_space)
+        findings_.error(f.where(), f.path(),
+                        s.in_space ? "has both angle and dip" : "has no direction",
+                        "give angle, or dip and dip_direction");
+      s.angle = f.get<Scattered>("angle");
+      s.dip = f.get("dip", 0.0);
+      s.dip_direction = f.get("dip_direction", 0.0);
+      s.fisher = f.get("fisher", 0.0);
+      if (s.in_space && !(f.given("dip") && f.given("dip_direction")))
+        findings_.error(f.where(), f.path(), f.given("dip") ? "has no dip_direction" : "has no dip",
+                        "an orientation in space needs both");
+      if (s.in_space && !std::isfinite(model_.cut.section_azimuth))
+        findings_.error(f.where("dip"), f.path_of("dip"), "needs the direction of the section",
+                        "give section_azimuth in [cut]");
+      if (!s.in_space && f.given("fisher"))
+        findings_.error(f.where("fisher"), f.path_of("fisher"), "belongs to dip and dip_direction",
+                        "an angle scatters by itself: angle = { mean = ..., normal = ... }");
+      s.spacing = f.get<Scattered>("spacing", {Scattered::kConstant, 1, 0});
+      s.trace_length = f.get<Scattered>("trace_length");
+      s.gap = f.get<Scattered>("gap");
+      for (const char* key : {"gap", "start"})
+        if (f.given(key) && !f.given("trace_length"))
+          findings_.error(f.where(key), f.path_of(key), "has no meaning for a through-going set",
+                          "give trace_length");
+      s.origin = f.get<Vec2>("origin");
+      s.offset = f.get<Scattered>("offset");
+      s.start = f.get<Scattered>("start");
+      s.region = region(f);
+      s.joint = joint(f);
+      if (!f.has("spacing") || (s.in_space && !std::isfinite(model_.cut.section_azimuth)) ||
+          (f.given("region") && s.region < 0))
+        incomplete();
+      model_.joint_sets.push_back(s);
+    });
+  }
+
+  // Sections that would have nothing to work on, and names that stand for two things.
+  void check_use() {
+    const bool divides = !model_.joint_sets.empty() || !model_.faults.empty() || !model_.openings.empty() ||
+                         model_.cut.where.line > 0;
+    if (divides && model_.regions.empty() && model_.arches.empty() && source_.root.get("region") == nullptr) {
+      const Where where = !model_.joint_sets.empty() ? model_.joint_sets[0].where
+                          : !model_.faults.empty()   ? model_.faults[0].where
+                          : !model_.openings.empty() ? model_.openings[0].where
+                                                     : model_.cut.where;
+      findings_.error(where, "region", "the file has no [[region]]: there is nothing to cut",
+                      "give the outline of the rock as [[region]] with name, polygon and material");
+      incomplete();
+    }
+    for (const std::string& side : side_names_)
+      if (trace_names_.count(side))
+        findings_.error(model_.cut.where, side, "is the name of a side and of a source of joints",
+                        "supports follow these names: they must differ");
+    if (model_.regions.empty() && model_.arches.empty()) return;
+    JointProperty glue;
+    glue.name = "(glued)";
+    glue.bonded = true;
+    model_.bonded_joint = static_cast<int>(model_.joints.size());
+    model_.joints.push_back(glue);
+  }
+
+  Model& model_;
+  std::set<std::string>& block_names_;
+  std::set<std::string> trace_names_, side_names_;
+};
+
+}  // namespace
+
+void read_cut_sections(const TomlSource& source, std::set<std::string>& block_names, Model& model,
+                       Findings& findings) {
+  CutReader(source, block_names, model, findings).read();
+}
+
+}  // namespace talus

@@ -1,0 +1,150 @@
+#include "talus/cut/traces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "talus/cut/joint_set.h"
+#include "talus/cut/tessellate.h"
+
+namespace talus {
+
+namespace {
+
+class TraceMaker {
+ public:
+  TraceMaker(const Model& model, const RegionMap& regions, Findings& findings)
+      : model_(model), regions_(regions), findings_(findings) {}
+
+  TraceSet make() {
+    add_openings();
+    add_sides();
+    add_faults();
+    add_masonry();
+    add_arches();
+    add_tessellations();
+    add_joint_sets();
+    return std::move(out_);
+  }
+
+ private:
+  int origin(const std::string& name, OriginKind kind, int joint) {
+    const auto [it, fresh] = origin_of_.try_emplace({kind, name}, static_cast<int>(out_.origins.size()));
+    if (fresh) out_.origins.push_back({name, kind, joint});
+    return it->second;
+  }
+
+  // The parts inside the regions; their length.
+  double add_clipped(Vec2 a, Vec2 b, int region, int origin) {
+    double length = 0;
+    for (auto& part : regions_.clip(a, b, region)) {
+      length += norm(part[1] - part[0]);
+      out_.traces.push_back({std::move(part), origin});
+    }
+    return length;
+  }
+
+  void add_ring(const Polygon& ring, int origin, int region = -1) {
+    for (size_t k = 0; k < ring.size(); ++k) add_clipped(ring[k], ring[(k + 1) % ring.size()], region, origin);
+  }
+
+  void add_openings() {
+    for (const OpeningInput& o : model_.openings)
+      add_ring(o.polygon, origin(o.name, OriginKind::kOpening, o.joint >= 0 ? o.joint : model_.bonded_joint));
+  }
+
+  void add_sides() {
+    for (const CutRegion& r : regions_.list()) {
+      for (size_t k = 0; k < r.polygon.size(); ++k)
+        out_.traces.push_back({{r.polygon[k], r.polygon[(k + 1) % r.polygon.size()]},
+                               origin(r.sides[k], OriginKind::kSide, r.joint)});
+    }
+  }
+
+  void add_faults() {
+    for (const FaultInput& f : model_.faults) {
+      const int o = origin(f.name, OriginKind::kFault, f.joint);
+      for (size_t k = 0; k + 1 < f.points.size(); ++k) add_clipped(f.points[k], f.points[k + 1], -1, o);
+    }
+  }
+
+  void add_masonry() {
+    for (const MasonryInput& m : model_.masonry) {
+      const int beds = origin(m.name + "-bed", OriginKind::kMasonry, m.bed_joint);
+      const int heads = origin(m.name + "-head", OriginKind::kMasonry, m.head_joint);
+      const Box box = regions_.box(m.region);
+      const auto first_course = static_cast<int64_t>(std::floor((box.min.y - m.origin.y) / m.height));
+      const auto last_course = static_cast<int64_t>(std::ceil((box.max.y - m.origin.y) / m.height));
+      for (int64_t j = first_course; j < last_course; ++j) {
+        const double y0 = m.origin.y + m.height * static_cast<double>(j), y1 = m.origin.y + m.height * static_cast<double>(j + 1);
+        add_clipped({box.min.x, y0}, {box.max.x, y0}, m.region, beds);
+        const double x0 = m.origin.x + (j % 2 != 0 ? m.overlap * m.length : 0);
+        const auto last = static_cast<int64_t>(std::ceil((box.max.x - x0) / m.length));
+        for (auto i = static_cast<int64_t>(std::floor((box.min.x - x0) / m.length)); i <= last; ++i) {
+          const double x = x0 + m.length * static_cast<double>(i);
+          add_clipped({x, y0}, {x, y1}, m.region, heads);
+        }
+      }
+    }
+  }
+
+  void add_arches() {
+    for (size_t a = 0; a < model_.arches.size(); ++a) {
+      const ArchInput& arch = model_.arches[a];
+      const int o = origin(arch.name, OriginKind::kArch, arch.joint);
+      const Polygon ring = arch_polygon(arch);
+      // joint i runs from the intrados to the extrados: corners are shared to the last bit
+      for (int i = 1; i < arch.voussoirs; ++i)
+        out_.traces.push_back({{ring[static_cast<size_t>(arch.voussoirs - i)],
+                                ring[static_cast<size_t>(arch.voussoirs + 1 + i)]},
+                               o});
+    }
+  }
+
+  void add_tessellations() {
+    for (const TessellationInput& t : model_.tessellations) {
+      const int o = origin(t.name, OriginKind::kTessellation, t.joint >= 0 ? t.joint : model_.bonded_joint);
+      const Polygon& polygon = regions_.list()[static_cast<size_t>(t.region)].polygon;
+      for (const auto& [a, b] : tessellate(t, polygon, model_.cut.seed)) add_clipped(a, b, t.region, o);
+    }
+  }
+
+  void add_joint_sets() {
+    for (const JointSetInput& set : model_.joint_sets) {
+      const int o = origin(set.name, OriginKind::kJointSet, set.joint);
+      const Box box = regions_.box(set.region);
+      JointSetNote note = describe(set, model_.cut.section_azimuth);
+      const std::string defect = joint_set_defect(set, note, box);
+      if (!defect.empty()) {
+        findings_.error(set.where_spacing, "joint_set." + set.name, defect);
+        continue;
+      }
+      for (const auto& [a, b] : joint_set_lines(set, note, model_.cut, box)) {
+        const double length = add_clipped(a, b, set.region, o);
+        note.length += length;
+        note.traces += length > 0;
+      }
+      if (note.traces == 0)
+        findings_.warning(set.where, "joint_set." + set.name, "has no joint in the regions",
+                          "its spacing may be wider than they are, or its origin far away with few traces");
+      out_.joint_sets.push_back(note);
+    }
+  }
+
+  const Model& model_;
+  const RegionMap& regions_;
+  Findings& findings_;
+  TraceSet out_;
+  std::map<std::pair<OriginKind, std::string>, int> origin_of_;
+};
+
+}  // namespace
+
+TraceSet make_traces(const Model& model, const RegionMap& regions, Findings& findings) {
+  return TraceMaker(model, regions, findings).make();
+}
+
+}  // namespace talus

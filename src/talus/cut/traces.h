@@ -1,0 +1,37 @@
+#pragma once
+// The lines that divide the regions, from everything the model names: outlines, openings, faults, masonry,
+// tessellations and joint sets. Theory: docs/theory.md section 8.
+
+#include <string>
+#include <vector>
+
+#include "talus/cut/joint_set.h"
+#include "talus/cut/regions.h"
+
+namespace talus {
+
+enum class OriginKind { kOpening, kSide, kFault, kMasonry, kArch, kTessellation, kJointSet, kConstruction };
+
+/// What a block edge comes from.
+struct Origin {
+  std::string name;
+  OriginKind kind = OriginKind::kSide;
+  int joint = -1;  // -1: that of the region
+};
+
+struct Trace {
+  std::vector<Vec2> line;  // [m]
+  int origin = 0;
+};
+
+struct TraceSet {
+  std::vector<Origin> origins;
+  std::vector<Trace> traces;  // most important first: where two coincide the first names the edge
+  std::vector<JointSetNote> joint_sets;
+};
+
+/// All traces of the model, clipped to the regions. Sets that make no sense (parallel to the section, millions of
+/// traces) are findings.
+TraceSet make_traces(const Model& model, const RegionMap& regions, Findings& findings);
+
+}  // namespace talus

@@ -9,8 +9,6 @@
 
 namespace talus {
 
-using Polyline = std::vector<Vec2>;
-
 struct Arrangement {
   struct Face {
     std::vector<int> point;  // corners, counter-clockwise

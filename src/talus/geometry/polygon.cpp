@@ -47,6 +47,12 @@ double distance_to_segment(Vec2 point, Vec2 a, Vec2 b) {
   return norm(point - a - s * along);
 }
 
+double polygon_width(const PolygonMoments& moments) {
+  const Mat2& m = moments.second;
+  const double s1 = 0.5 * (m.xx + m.yy) + std::hypot(0.5 * (m.xx - m.yy), m.xy);
+  return std::sqrt(12 * std::max(det(m) / s1, 0.0) / moments.area);
+}
+
 bool contains(std::span<const Vec2> polygon, Vec2 point, double tolerance) {
   bool inside = false;
   for (size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {

@@ -10,6 +10,7 @@
 namespace talus {
 
 using Polygon = std::vector<Vec2>;  // vertices in order, the last joins the first, [m]
+using Polyline = std::vector<Vec2>;  // vertices from end to end, [m]
 
 /// Signed area [m2]; > 0 for counter-clockwise order.
 double signed_area(std::span<const Vec2> polygon);
@@ -24,6 +25,9 @@ struct PolygonMoments {
 /// Coordinates far from the origin lose nothing: all integrals are taken from the first vertex.
 /// @pre area is not zero
 PolygonMoments polygon_moments(std::span<const Vec2> polygon);
+
+/// Width [m] of the rectangle with the same area and the same smaller second moment: sqrt(12 s2 / area).
+double polygon_width(const PolygonMoments& moments);
 
 /// Whether `point` lies inside the polygon or within `tolerance` [m] of its boundary.
 bool contains(std::span<const Vec2> polygon, Vec2 point, double tolerance = 0);

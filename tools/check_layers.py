@@ -21,7 +21,7 @@ ALLOWED = {
     "step": "base geometry model cut blocks rows contact supports solve",
     "output": "base geometry model cut blocks",
     "run": "base geometry model cut blocks rows contact supports solve step output",
-    "plot": "base output",
+    "plot": "base geometry model cut output",
 }
 
 

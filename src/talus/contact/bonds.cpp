@@ -21,9 +21,9 @@ bool has_strength(const std::vector<JointProperty>& joints, int joint) {
 }
 
 // Overlaps of antiparallel edges of two blocks in contact, as faces.
-void add_faces(const BlockSet& blocks, int a, int b, std::vector<BondFace>& faces) {
+void add_faces(const BlockSet& blocks, int a, int b, double touching, std::vector<BondFace>& faces) {
   const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
-  const double near = kTouching * std::min(blocks.size[ia], blocks.size[ib]);
+  const double near = std::max(touching, kTouching * std::min(blocks.size[ia], blocks.size[ib]));
   const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
   for (int eb = 0; eb < blocks.vertex_count(b); ++eb) {
     const Vec2 b0 = blocks.corner(b, eb), b1 = blocks.corner(b, (eb + 1) % blocks.vertex_count(b));
@@ -37,7 +37,7 @@ void add_faces(const BlockSet& blocks, int a, int b, std::vector<BondFace>& face
       const double from = std::max(dot(along, r1), 0.0), to = std::min(dot(along, r0), length_b);
       if (to - from <= near) continue;
       BondFace face;
-      face.block_a = a, face.block_b = b, face.edge_b = eb;
+      face.block_a = a, face.block_b = b, face.edge_a = ea, face.edge_b = eb;
       face.length = to - from;
       for (int end = 0; end < 2; ++end) {
         const double s = end == 0 ? from : to;
@@ -60,7 +60,7 @@ void tie_around_corners(const Layout& layout, const BlockSet& blocks,
   }
   const auto touches = [&](int block, Vec2 point) {
     return contains(layout.blocks[static_cast<size_t>(block)].polygon, point,
-                    kTouching * blocks.size[static_cast<size_t>(block)]);
+                    std::max(layout.touching, kTouching * blocks.size[static_cast<size_t>(block)]));
   };
   std::vector<std::pair<int, int>> joined;
   for (const auto& [a, b] : pairs) {
@@ -83,6 +83,16 @@ void tie_around_corners(const Layout& layout, const BlockSet& blocks,
   std::sort(bonds.tied.begin(), bonds.tied.end());
 }
 
+bool has_edge_joints(const Layout& layout, int block) {
+  return !layout.blocks[static_cast<size_t>(block)].edge_joint.empty();
+}
+
+bool has_bonded_edge(const Model& model, const Layout& layout, int block) {
+  for (const int j : layout.blocks[static_cast<size_t>(block)].edge_joint)
+    if (j >= 0 && model.joints[static_cast<size_t>(j)].bonded) return true;
+  return false;
+}
+
 double transit_time(const Model& model, const BlockSet& blocks, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return 0;
@@ -99,21 +109,26 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
   // near enough for the largest pair; each pair is then judged by its own size
   const double largest = *std::max_element(blocks.size.begin(), blocks.size.end());
   std::vector<std::pair<int, int>> without_face;
-  for (const auto& [a, b] : close_pairs(boxes, kTouching * largest)) {
+  for (const auto& [a, b] : close_pairs(boxes, std::max(layout.touching, kTouching * largest))) {
     if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
-    const int joint =
-        layout.joint_between(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
-    if (!has_strength(model.joints, joint)) continue;
-    const size_t first = bonds.faces.size();
-    add_faces(blocks, a, b, bonds.faces);
-    for (size_t f = first; f < bonds.faces.size(); ++f) {
-      bonds.faces[f].joint = joint;
-      bonds.faces[f].unbreakable = model.joints[static_cast<size_t>(joint)].bonded;
-      bonds.faces[f].memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
+    const int pair = layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
+    const bool by_edges = pair == Layout::kNoPair && has_edge_joints(layout, a) && has_edge_joints(layout, b);
+    const int whole = pair == Layout::kNoPair ? layout.default_joint : pair;
+    if (!by_edges && !has_strength(model.joints, whole)) continue;
+    const bool may_be_tied = by_edges ? has_bonded_edge(model, layout, a) && has_bonded_edge(model, layout, b)
+                                      : model.joints[static_cast<size_t>(whole)].bonded;
+    std::vector<BondFace> faces;
+    add_faces(blocks, a, b, layout.touching, faces);
+    bool all_bonded = !faces.empty();
+    for (BondFace& face : faces) {
+      face.joint = layout.joint_at(a, face.edge_a, b, face.edge_b);
+      face.unbreakable = face.joint >= 0 && model.joints[static_cast<size_t>(face.joint)].bonded;
+      face.memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
+      all_bonded = all_bonded && face.unbreakable;
+      if (has_strength(model.joints, face.joint)) bonds.faces.push_back(face);
     }
-    const bool bonded = model.joints[static_cast<size_t>(joint)].bonded;
-    if (bonded && bonds.faces.size() > first) bonds.tied.emplace_back(a, b);
-    if (bonded && bonds.faces.size() == first) without_face.emplace_back(a, b);
+    if (all_bonded) bonds.tied.emplace_back(a, b);
+    if (faces.empty() && may_be_tied) without_face.emplace_back(a, b);
   }
   tie_around_corners(layout, blocks, without_face, bonds);
   return bonds;

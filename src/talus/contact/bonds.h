@@ -13,6 +13,7 @@ namespace talus {
 
 struct BondFace {
   int block_a = -1, block_b = -1;
+  int edge_a = -1;
   int edge_b = -1;          // its outward normal is the normal of the face
   Vec2 arm_a[2], arm_b[2];  // reference arms of the two ends, on a and on b
   double length = 0;        // [m]

@@ -192,6 +192,8 @@ void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits)
           hits[j].point.length += 0.5 * length;
           hits[i].point.partner = hits[j].point.key;
           hits[j].point.partner = hits[i].point.key;
+          for (Hit* h : {&hits[i], &hits[j]})
+            h->point.edge_a = h->point.key.block_a < h->point.key.block_b ? p.edge_lo : p.edge_hi;
         }
       }
     }

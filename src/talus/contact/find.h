@@ -16,6 +16,7 @@ struct ContactPoint {
   double gap = 0;      // [m] > 0 apart
   double slip = 0;     // [m] position of the foot along the tangent (the normal turned clockwise)
   double length = 0;   // [m] tributary length: half the face it ends, 0 for a corner alone
+  int edge_a = -1;     // a's edge in that face, -1 when there is none
   ContactKey partner;  // the other end of that face; block_a = -1 when there is none
 };
 

@@ -6,6 +6,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/text.h"
+#include "talus/cut/blocks_file.h"
 #include "talus/geometry/polygon_check.h"
 
 namespace talus {
@@ -27,6 +28,7 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
   const auto add = [&](std::string name, Polygon polygon) {
     BlockShape b;
     b.name = std::move(name);
+    b.id = static_cast<int>(layout.blocks.size());
     b.group = group;
     b.polygon = std::move(polygon);
     b.material = g.material;
@@ -49,21 +51,80 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
   }
 }
 
-void check_overlaps(const Model& model, const Layout& layout, Findings& findings) {
+// A corner is flat when it lies within a cell of the grid on the line between the corners kept beside it, and the
+// edges on both sides have one origin.
+void add_cut_block(const Cut& cut, const CutBlock& block, const Model& model, BlockShape& out) {
+  const size_t n = block.point.size();
+  const auto place = [&](size_t k) { return cut.point[static_cast<size_t>(block.point[k % n])]; };
+  const auto origin = [&](size_t k) { return cut.edge_origin[static_cast<size_t>(block.edge[k % n])]; };
+  // between corners k0 and k1 (exclusive) all lie on the chord
+  const auto straight = [&](size_t k0, size_t k1) {
+    for (size_t k = k0 + 1; k < k1; ++k)
+      if (distance_to_segment(place(k), place(k0), place(k1)) > cut.grid) return false;
+    return true;
+  };
+  const auto turns = [&](size_t k) {
+    return origin(k) != origin(k + n - 1) || !straight(k + n - 1, k + n + 1);
+  };
+  size_t first = 0;
+  while (first < n && !turns(first)) ++first;
+  if (first == n) first = 0;
+  std::vector<size_t> kept{first};
+  for (size_t k = first + 1; k < first + n; ++k) {
+    const bool one_origin = origin(k) == origin(k - 1);
+    if (!one_origin || !straight(kept.back(), k + 1)) kept.push_back(k);
+  }
+  if (kept.size() < 3) {
+    kept.clear();
+    for (size_t k = 0; k < n; ++k) kept.push_back(k);
+  }
+  const CutRegion& region = cut.regions[static_cast<size_t>(block.region)];
+  for (const size_t k : kept) {
+    out.polygon.push_back(place(k));
+    out.edge_origin.push_back(origin(k));
+    const int own = cut.origins[static_cast<size_t>(origin(k))].joint;
+    out.edge_joint.push_back(own >= 0 ? own : region.joint >= 0 ? region.joint : model.default_joint);
+  }
+  out.material = region.material;
+  out.kind = region.kind;
+}
+
+void add_cut(const Model& model, const Cut& cut, Layout& layout) {
+  layout.first_cut_group = static_cast<int>(layout.groups.size());
+  layout.touching = 2 * cut.grid;
+  for (const Origin& o : cut.origins) layout.origins.push_back(o.name);
+  const auto add_group = [&](const std::string& name, const Where& where) {
+    layout.groups.push_back(name);
+    layout.group_where.push_back(where);
+  };
+  for (const RegionInput& r : model.regions) add_group(r.name, r.where);
+  for (const ArchInput& a : model.arches) add_group(a.name, a.where);
+  for (const OpeningInput& o : model.openings) add_group(o.name, o.where);
+  const int first_id = static_cast<int>(layout.blocks.size());
+  for (const CutBlock& b : cut.blocks) {
+    BlockShape shape;
+    shape.name = cut.name(b);
+    shape.id = first_id + b.id;
+    shape.group = layout.first_cut_group +
+                  (b.opening >= 0 ? static_cast<int>(cut.regions.size()) + b.opening : b.region);
+    add_cut_block(cut, b, model, shape);
+    layout.blocks.push_back(std::move(shape));
+  }
+}
+
+void check_overlaps(const Layout& layout, Findings& findings) {
   std::vector<Box> boxes;
   for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
-  const int own_blocks = static_cast<int>(model.blocks.size());
-  const auto where = [&](const BlockShape& b) {
-    return b.group < own_blocks ? model.blocks[static_cast<size_t>(b.group)].where
-                                : model.grids[static_cast<size_t>(b.group - own_blocks)].where;
-  };
   for (const auto& [i, j] : close_pairs(boxes, 0)) {
     const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
-    if (a.group == b.group) continue;  // cells of one grid share their corners exactly
+    const bool cut_a = a.group >= layout.first_cut_group, cut_b = b.group >= layout.first_cut_group;
+    if (a.group == b.group || (cut_a && cut_b)) continue;  // these share their corners exactly
     const Overlap overlap = polygon_overlap(a.polygon, b.polygon);
     const double smaller = std::min(signed_area(a.polygon), signed_area(b.polygon));
-    if (overlap.area <= kOverlapShare * smaller) continue;
-    findings.error(where(b), b.name,
+    // sides of cut blocks lie on the grid, not exactly where they were drawn
+    const double rounding = cut_a || cut_b ? layout.touching * norm(boxes[static_cast<size_t>(j)].max - boxes[static_cast<size_t>(j)].min) : 0;
+    if (overlap.area <= kOverlapShare * smaller + rounding) continue;
+    findings.error(layout.group_where[static_cast<size_t>(b.group)], b.name,
                    fmt::format("overlaps \"{}\" by {:.3g} m2 around ({:.6g}, {:.6g})", a.name, overlap.area,
                                overlap.at.x, overlap.at.y),
                    "blocks may touch but not share area; move or trim one of them");
@@ -109,7 +170,7 @@ void unknown_block(const Layout& layout, const std::string& name, const Where& w
   std::vector<std::string> names = layout.groups;
   for (const BlockShape& b : layout.blocks) names.push_back(b.name);
   const std::string near = closest_name(name, names);
-  findings.error(where, path, fmt::format("there is no block or grid called \"{}\"", name),
+  findings.error(where, path, fmt::format("there is no block, grid or region called \"{}\"", name),
                  near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
 }
 
@@ -133,7 +194,7 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
       const std::vector<int> called = layout.blocks_called(m.target_a);
       if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);
       if (called.size() > 1)
-        findings.error(m.where, path, fmt::format("\"{}\" is a grid, not one block", m.target_a),
+        findings.error(m.where, path, fmt::format("\"{}\" is {} blocks, not one", m.target_a, called.size()),
                        fmt::format("name one of its blocks, for example \"{}\"",
                                    layout.blocks[static_cast<size_t>(called[0])].name));
     }
@@ -149,9 +210,20 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
 
 }  // namespace
 
-int Layout::joint_between(int group_a, int group_b) const {
+int Layout::joint_of_pair(int group_a, int group_b) const {
   const auto it = pair_joint.find(std::minmax(group_a, group_b));
-  return it == pair_joint.end() ? default_joint : it->second;
+  return it == pair_joint.end() ? kNoPair : it->second;
+}
+
+int Layout::joint_at(int block_a, int edge_a, int block_b, int edge_b) const {
+  const BlockShape &a = blocks[static_cast<size_t>(block_a)], &b = blocks[static_cast<size_t>(block_b)];
+  const int pair = joint_of_pair(a.group, b.group);
+  if (pair != kNoPair) return pair;
+  const auto own = [](const BlockShape& shape, int edge) { return edge >= 0 && !shape.edge_joint.empty(); };
+  const bool has_a = own(a, edge_a), has_b = own(b, edge_b);
+  if (has_a && (!has_b || block_a < block_b)) return a.edge_joint[static_cast<size_t>(edge_a)];
+  if (has_b) return b.edge_joint[static_cast<size_t>(edge_b)];
+  return default_joint;
 }
 
 int Layout::find_group(const std::string& name) const {
@@ -168,31 +240,42 @@ std::vector<int> Layout::blocks_called(const std::string& name) const {
 }
 
 Layout make_layout(const Model& model, Findings& findings) {
+  return make_layout(model, cut_or_read(model, findings), findings);
+}
+
+Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   Layout layout;
   layout.default_joint = model.default_joint;
   bool sound = true;
   for (const BlockInput& in : model.blocks) {
     layout.groups.push_back(in.name);
+    layout.group_where.push_back(in.where);
     const std::string defect = polygon_defect(in.polygon);
     if (!defect.empty()) {
       findings.error(in.where, "block." + in.name + ".polygon", defect);
       sound = false;
       continue;
     }
-    BlockShape b{in.name,     static_cast<int>(layout.groups.size()) - 1,
-                 in.polygon,  in.material,
-                 in.kind,     in.velocity,
-                 in.spin,     in.motion_x,
-                 in.motion_y, in.motion_rotation};
+    BlockShape b;
+    b.name = in.name;
+    b.id = static_cast<int>(layout.blocks.size());
+    b.group = static_cast<int>(layout.groups.size()) - 1;
+    b.polygon = in.polygon;
+    b.material = in.material;
+    b.kind = in.kind;
+    b.velocity = in.velocity, b.spin = in.spin;
+    b.motion_x = in.motion_x, b.motion_y = in.motion_y, b.motion_rotation = in.motion_rotation;
     if (signed_area(b.polygon) < 0) std::reverse(b.polygon.begin(), b.polygon.end());
     layout.blocks.push_back(std::move(b));
   }
   for (const GridInput& g : model.grids) {
     layout.groups.push_back(g.name);
+    layout.group_where.push_back(g.where);
     const int group = static_cast<int>(layout.groups.size()) - 1;
     add_grid(g, group, layout);
     layout.pair_joint[{group, group}] = g.joint;
   }
+  add_cut(model, cut, layout);
   for (const ContactPairInput& p : model.contact_pairs) {
     const int a = layout.find_group(p.name_a), b = layout.find_group(p.name_b);
     if (a < 0 || b < 0) {
@@ -201,21 +284,21 @@ Layout make_layout(const Model& model, Findings& findings) {
         unknown_block(layout, name, p.where, "contact_pair.between", findings);
         continue;
       }
-      findings.error(p.where, "contact_pair.between", fmt::format("\"{}\" is one block of a grid", name),
-                     "a joint belongs to whole grids or blocks: name the grid");
+      findings.error(p.where, "contact_pair.between", fmt::format("\"{}\" is one block of several", name),
+                     "a joint belongs to whole groups: name the grid or region");
       continue;
     }
     if (layout.pair_joint.count(std::minmax(a, b)) && a != b)
       findings.error(p.where, "contact_pair.between",
                      fmt::format("\"{}\" and \"{}\" have a joint already", p.name_a, p.name_b));
-    if (a == b) findings.error(p.where, "contact_pair", "names the same block or grid twice");
+    if (a == b) findings.error(p.where, "contact_pair", "names the same group twice");
     layout.pair_joint[std::minmax(a, b)] = p.joint;
   }
   if (layout.blocks.empty() && sound)
-    findings.error({1, 1, ""}, "block", "the model has no block", "add a [[block]] or a [[grid]]");
+    findings.error({1, 1, ""}, "block", "the model has no block", "add a [[block]], a [[grid]] or a [[region]]");
   if (layout.blocks.empty() || !sound) return layout;
 
-  check_overlaps(model, layout, findings);
+  check_overlaps(layout, findings);
   for (const LoadInput& l : model.loads) {
     if (l.block.empty()) continue;
     const std::vector<int> loaded = layout.blocks_called(l.block);
@@ -231,6 +314,16 @@ Layout make_layout(const Model& model, Findings& findings) {
   check_monitors(model, layout, findings);
   check_contradictions(model, layout, findings);
   for (const SupportInput& s : model.supports) {
+    if (!s.along.empty() &&
+        std::find(layout.origins.begin(), layout.origins.end(), s.along) == layout.origins.end()) {
+      const std::string near = closest_name(s.along, layout.origins);
+      findings.error(s.where, "support." + s.name + ".along",
+                     fmt::format("there is no side, opening, fault or joint set called \"{}\"", s.along),
+                     !near.empty() ? fmt::format("did you mean \"{}\"?", near)
+                     : layout.origins.empty() ? "the file has no [[region]]"
+                                              : fmt::format("there is {}", join_or(layout.origins)));
+      continue;
+    }
     if (!s.block.empty() && layout.blocks_called(s.block).empty()) {
       unknown_block(layout, s.block, s.where_block, "support." + s.name + ".block", findings);
       continue;
@@ -238,10 +331,17 @@ Layout make_layout(const Model& model, Findings& findings) {
     if (corners_of_support(layout, s).empty())
       findings.error(
           s.where, "support." + s.name,
-          s.is_edge ? "no block edge lies on the segment" : "the point lies on no block",
-          s.is_edge ? "give a segment along block edges, corners included" : "give a point of a block");
+          !s.along.empty() ? fmt::format("no block edge is left along \"{}\"", s.along)
+          : s.is_edge      ? "no block edge lies on the segment"
+                           : "the point lies on no block",
+          !s.along.empty() ? "see with talus cut which edges there are"
+          : s.is_edge      ? "give a segment along block edges, corners included" : "give a point of a block");
   }
   return layout;
+}
+
+Cut cut_or_read(const Model& model, Findings& findings) {
+  return model.cut.blocks_file.empty() ? cut_model(model, findings) : read_blocks_file(model, findings);
 }
 
 std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {
@@ -271,6 +371,18 @@ std::vector<SupportedCorner> corners_of_support(const Layout& layout, const Supp
   }
 
   std::vector<SupportedCorner> corners;
+  if (!support.along.empty()) {
+    for (const int i : candidates) {
+      const BlockShape& b = layout.blocks[static_cast<size_t>(i)];
+      const size_t n = b.edge_origin.size();
+      const auto is_along = [&](size_t k) {
+        return layout.origins[static_cast<size_t>(b.edge_origin[k % n])] == support.along;
+      };
+      for (size_t k = 0; k < n; ++k)
+        if (is_along(k) || is_along(k + n - 1)) corners.push_back({i, static_cast<int>(k), b.polygon[k]});
+    }
+    return corners;
+  }
   for (const int i : candidates) {
     const Polygon& polygon = layout.blocks[static_cast<size_t>(i)].polygon;
     const auto on_segment = [&](size_t k) {

@@ -1,43 +1,64 @@
 #pragma once
-// From the model's blocks and grids to the list of block polygons, and the checks that need them all:
-// simple, apart from each other, monitors and supports on a block.
+// From the model's blocks, grids and cut regions to the list of block polygons, and the checks that need them
+// all: simple, apart from each other, monitors and supports on a block.
 
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "talus/cut/cut.h"
 #include "talus/model/model.h"
 
 namespace talus {
 
 struct BlockShape {
   std::string name;
-  int group = 0;    // index of the block or grid it comes from
+  int id = 0;       // number that stays when other blocks are merged or taken out
+  int group = 0;    // index of the block, grid, region or opening it belongs to
   Polygon polygon;  // counter-clockwise
   int material = 0;
   BlockKind kind = BlockKind::kDeformable;
   Vec2 velocity;
   double spin = 0;
   Motion motion_x, motion_y, motion_rotation;
+  std::vector<int> edge_origin;  // [edges] of cut blocks: index into Layout::origins; empty otherwise
+  std::vector<int> edge_joint;   // [edges] of cut blocks: joint along each edge, -1 hard and frictionless
 };
 
 struct Layout {
   std::vector<BlockShape> blocks;
-  std::vector<std::string> groups;                // names of blocks and grids
+  std::vector<std::string> groups;                // names of blocks, grids, regions and kept openings
+  std::vector<Where> group_where;                 // [groups]
+  int first_cut_group = 0;                        // groups from here on were cut together
+  std::vector<std::string> origins;               // what edges of cut blocks come from
+  double touching = 0;  // [m] edges of cut blocks lie this near to each other where they touch
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
 
-  /// Joint between two blocks of these groups; -1: hard and frictionless.
-  int joint_between(int group_a, int group_b) const;
+  /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and frictionless.
+  /// A joint given for the pair goes first; then that of the edge, where two differ that of the lower block; then
+  /// the default.
+  int joint_at(int block_a, int edge_a, int block_b, int edge_b) const;
+  /// Joint given for two groups, or kNoPair.
+  static constexpr int kNoPair = -2;
+  int joint_of_pair(int group_a, int group_b) const;
   /// Index of the group called `name`, -1 when there is none.
   int find_group(const std::string& name) const;
   /// Indices of the blocks of the group, or of the single block, called `name`.
   std::vector<int> blocks_called(const std::string& name) const;
 };
 
-/// Expands grids, turns polygons counter-clockwise, and checks. Everything wrong goes to `findings`.
+/// Cuts the regions of the model, or reads the blocks file that `cut.blocks` names. Everything wrong goes to
+/// `findings`. Throws FileError when that file cannot be read.
+Cut cut_or_read(const Model& model, Findings& findings);
+
+/// Blocks, expanded grids and cut blocks as polygons, counter-clockwise, all checked. Everything wrong goes to
+/// `findings`. Flat corners of cut blocks (to a cell of the grid) are left out: they are no corners.
 /// @pre  read_model found no error
+Layout make_layout(const Model& model, const Cut& cut, Findings& findings);
+
+/// The same, cutting first.
 Layout make_layout(const Model& model, Findings& findings);
 
 /// Blocks whose polygon holds `point` (boundary included, within `tolerance` [m]).

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "talus/cut/joint_set.h"
@@ -20,6 +19,7 @@ class TraceMaker {
       : model_(model), regions_(regions), findings_(findings) {}
 
   TraceSet make() {
+    out_.origins = all_origins(model_, regions_);
     add_openings();
     add_sides();
     add_faults();
@@ -31,10 +31,10 @@ class TraceMaker {
   }
 
  private:
-  int origin(const std::string& name, OriginKind kind, int joint) {
-    const auto [it, fresh] = origin_of_.try_emplace({kind, name}, static_cast<int>(out_.origins.size()));
-    if (fresh) out_.origins.push_back({name, kind, joint});
-    return it->second;
+  int origin(const std::string& name, OriginKind kind) const {
+    size_t i = 0;
+    while (!(out_.origins[i].kind == kind && out_.origins[i].name == name)) ++i;
+    return static_cast<int>(i);
   }
 
   // The parts inside the regions; their length.
@@ -53,28 +53,28 @@ class TraceMaker {
 
   void add_openings() {
     for (const OpeningInput& o : model_.openings)
-      add_ring(o.polygon, origin(o.name, OriginKind::kOpening, o.joint >= 0 ? o.joint : model_.bonded_joint));
+      add_ring(o.polygon, origin(o.name, OriginKind::kOpening));
   }
 
   void add_sides() {
     for (const CutRegion& r : regions_.list()) {
       for (size_t k = 0; k < r.polygon.size(); ++k)
         out_.traces.push_back({{r.polygon[k], r.polygon[(k + 1) % r.polygon.size()]},
-                               origin(r.sides[k], OriginKind::kSide, r.joint)});
+                               origin(r.sides[k], OriginKind::kSide)});
     }
   }
 
   void add_faults() {
     for (const FaultInput& f : model_.faults) {
-      const int o = origin(f.name, OriginKind::kFault, f.joint);
+      const int o = origin(f.name, OriginKind::kFault);
       for (size_t k = 0; k + 1 < f.points.size(); ++k) add_clipped(f.points[k], f.points[k + 1], -1, o);
     }
   }
 
   void add_masonry() {
     for (const MasonryInput& m : model_.masonry) {
-      const int beds = origin(m.name + "-bed", OriginKind::kMasonry, m.bed_joint);
-      const int heads = origin(m.name + "-head", OriginKind::kMasonry, m.head_joint);
+      const int beds = origin(m.name + "-bed", OriginKind::kMasonry);
+      const int heads = origin(m.name + "-head", OriginKind::kMasonry);
       const Box box = regions_.box(m.region);
       const auto first_course = static_cast<int64_t>(std::floor((box.min.y - m.origin.y) / m.height));
       const auto last_course = static_cast<int64_t>(std::ceil((box.max.y - m.origin.y) / m.height));
@@ -94,7 +94,7 @@ class TraceMaker {
   void add_arches() {
     for (size_t a = 0; a < model_.arches.size(); ++a) {
       const ArchInput& arch = model_.arches[a];
-      const int o = origin(arch.name, OriginKind::kArch, arch.joint);
+      const int o = origin(arch.name, OriginKind::kArch);
       const Polygon ring = arch_polygon(arch);
       // joint i runs from the intrados to the extrados: corners are shared to the last bit
       for (int i = 1; i < arch.voussoirs; ++i)
@@ -106,7 +106,7 @@ class TraceMaker {
 
   void add_tessellations() {
     for (const TessellationInput& t : model_.tessellations) {
-      const int o = origin(t.name, OriginKind::kTessellation, t.joint >= 0 ? t.joint : model_.bonded_joint);
+      const int o = origin(t.name, OriginKind::kTessellation);
       const Polygon& polygon = regions_.list()[static_cast<size_t>(t.region)].polygon;
       for (const auto& [a, b] : tessellate(t, polygon, model_.cut.seed)) add_clipped(a, b, t.region, o);
     }
@@ -114,7 +114,7 @@ class TraceMaker {
 
   void add_joint_sets() {
     for (const JointSetInput& set : model_.joint_sets) {
-      const int o = origin(set.name, OriginKind::kJointSet, set.joint);
+      const int o = origin(set.name, OriginKind::kJointSet);
       const Box box = regions_.box(set.region);
       JointSetNote note = describe(set, model_.cut.section_azimuth);
       const std::string defect = joint_set_defect(set, note, box);
@@ -138,10 +138,31 @@ class TraceMaker {
   const RegionMap& regions_;
   Findings& findings_;
   TraceSet out_;
-  std::map<std::pair<OriginKind, std::string>, int> origin_of_;
 };
 
 }  // namespace
+
+std::vector<Origin> all_origins(const Model& model, const RegionMap& regions) {
+  std::vector<Origin> list;
+  const auto glued = [&model](int joint) { return joint >= 0 ? joint : model.bonded_joint; };
+  for (const OpeningInput& o : model.openings) list.push_back({o.name, OriginKind::kOpening, glued(o.joint)});
+  for (const CutRegion& r : regions.list()) {
+    for (const std::string& side : r.sides) {
+      const auto known = [&side](const Origin& o) { return o.kind == OriginKind::kSide && o.name == side; };
+      if (std::none_of(list.begin(), list.end(), known)) list.push_back({side, OriginKind::kSide, r.joint});
+    }
+  }
+  for (const FaultInput& f : model.faults) list.push_back({f.name, OriginKind::kFault, f.joint});
+  for (const MasonryInput& m : model.masonry) {
+    list.push_back({m.name + "-bed", OriginKind::kMasonry, m.bed_joint});
+    list.push_back({m.name + "-head", OriginKind::kMasonry, m.head_joint});
+  }
+  for (const ArchInput& a : model.arches) list.push_back({a.name, OriginKind::kArch, a.joint});
+  for (const TessellationInput& t : model.tessellations)
+    list.push_back({t.name, OriginKind::kTessellation, glued(t.joint)});
+  for (const JointSetInput& s : model.joint_sets) list.push_back({s.name, OriginKind::kJointSet, s.joint});
+  return list;
+}
 
 TraceSet make_traces(const Model& model, const RegionMap& regions, Findings& findings) {
   return TraceMaker(model, regions, findings).make();

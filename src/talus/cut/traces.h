@@ -30,6 +30,9 @@ struct TraceSet {
   std::vector<JointSetNote> joint_sets;
 };
 
+/// Everything that block edges of the model may come from, in the order of their importance.
+std::vector<Origin> all_origins(const Model& model, const RegionMap& regions);
+
 /// All traces of the model, clipped to the regions. Sets that make no sense (parallel to the section, millions of
 /// traces) are findings.
 TraceSet make_traces(const Model& model, const RegionMap& regions, Findings& findings);

@@ -180,7 +180,7 @@ TEST_CASE("wrong input: each kind has its message") {
       {"monitor of unknown block",
        "point = [0.5, 1.5]",
        "block = \"uper\"",
-       {"there is no block or grid called \"uper\"", "did you mean \"upper\"?"}},
+       {"there is no block, grid or region called \"uper\"", "did you mean \"upper\"?"}},
       {"step above the stable limit",
        "duration = \"1 ms\"",
        "duration = \"1 s\"\ntime_step = \"10 ms\"",

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "cut_command.h"
 #include "plot_command.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
@@ -143,6 +144,13 @@ int run_command(int argc, char** argv) {
   add_model_arguments(*check_verb, model);
   check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml");
 
+  CLI::App* cut_verb =
+      app.add_subcommand("cut", "cut regions into blocks: statistics, picture and a blocks file; runs nothing");
+  add_model_arguments(*cut_verb, model);
+  cut_verb->add_option("-o,--output", folder, "folder for the results")->required();
+  cut_verb->add_flag("--force", force, "replace the results in that folder");
+  cut_verb->footer("Example: talus cut examples/tunnel/tunnel.toml -o out/tunnel");
+
   talus::app::PlotArguments plot;
   CLI::App* plot_verb =
       app.add_subcommand("plot", "draw histories of one or more result folders as SVG and PNG");
@@ -164,7 +172,7 @@ int run_command(int argc, char** argv) {
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
-  const std::vector<std::string> verbs{"run", "check", "plot", "replay", "schema"};
+  const std::vector<std::string> verbs{"run", "check", "cut", "plot", "replay", "schema"};
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
     fmt::print(
@@ -179,6 +187,7 @@ int run_command(int argc, char** argv) {
   }
   if (*run_verb) return run(model, folder, force, quiet, dump_step);
   if (*check_verb) return check(model);
+  if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*replay_verb) return replay(problem, method, tolerance);
   if (*plot_verb) return talus::app::plot_command(plot);
   fmt::print("{}", json ? talus::schema_json() : talus::schema_markdown());

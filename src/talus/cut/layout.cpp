@@ -101,13 +101,9 @@ void add_cut(const Model& model, const Cut& cut, Layout& layout) {
   for (const ArchInput& a : model.arches) add_group(a.name, a.where);
   for (const OpeningInput& o : model.openings) add_group(o.name, o.where);
   const int first_id = static_cast<int>(layout.blocks.size());
-  for (const CutBlock& b : cut.blocks) {
-    BlockShape shape;
-    shape.name = cut.name(b);
-    shape.id = first_id + b.id;
-    shape.group = layout.first_cut_group +
-                  (b.opening >= 0 ? static_cast<int>(cut.regions.size()) + b.opening : b.region);
-    add_cut_block(cut, b, model, shape);
+  for (BlockShape& shape : shapes_of(model, cut, cut.blocks)) {
+    shape.id += first_id;
+    shape.group += layout.first_cut_group;
     layout.blocks.push_back(std::move(shape));
   }
 }
@@ -342,6 +338,19 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
 
 Cut cut_or_read(const Model& model, Findings& findings) {
   return model.cut.blocks_file.empty() ? cut_model(model, findings) : read_blocks_file(model, findings);
+}
+
+std::vector<BlockShape> shapes_of(const Model& model, const Cut& cut, const std::vector<CutBlock>& blocks) {
+  std::vector<BlockShape> shapes;
+  for (const CutBlock& b : blocks) {
+    BlockShape shape;
+    shape.name = cut.name(b);
+    shape.id = b.id;
+    shape.group = b.opening >= 0 ? static_cast<int>(cut.regions.size()) + b.opening : b.region;
+    add_cut_block(cut, b, model, shape);
+    shapes.push_back(std::move(shape));
+  }
+  return shapes;
 }
 
 std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {

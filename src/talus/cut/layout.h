@@ -53,8 +53,12 @@ struct Layout {
 /// `findings`. Throws FileError when that file cannot be read.
 Cut cut_or_read(const Model& model, Findings& findings);
 
+/// Polygons of blocks of a cut, flat corners (to a cell of the grid) left out: they are no corners. Groups count
+/// from the first region.
+std::vector<BlockShape> shapes_of(const Model& model, const Cut& cut, const std::vector<CutBlock>& blocks);
+
 /// Blocks, expanded grids and cut blocks as polygons, counter-clockwise, all checked. Everything wrong goes to
-/// `findings`. Flat corners of cut blocks (to a cell of the grid) are left out: they are no corners.
+/// `findings`.
 /// @pre  read_model found no error
 Layout make_layout(const Model& model, const Cut& cut, Findings& findings);
 

@@ -500,7 +500,7 @@ std::vector<SectionSpec> build_schema() {
          .doc = "The same as share of the median area."},
         {.name = "sliver_width_share",
          .range = {.min = 0, .max = 0.5},
-         .default_text = "0.25",
+         .default_text = "0.3",
          .doc = "The same as share of the median width; it bounds the loss of time step."},
         {.name = "blocks",
          .type = K::kText,

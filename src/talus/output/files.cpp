@@ -57,7 +57,7 @@ void open_result_folder(const fs::path& folder, bool force) {
           fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
                       "replace the results in it",
                       folder.string()));
-    const bool ours = fs::exists(folder / "summary.json", ec) ||
+    const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
                       (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
     if (!empty && !ours)
       throw FileError(
@@ -65,7 +65,8 @@ void open_result_folder(const fs::path& folder, bool force) {
                       "Give another folder",
                       folder.string()));
     for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
-                             "blocks_start.svg", "blocks_end.svg"})
+                             "blocks_start.svg", "blocks_end.svg", "cut.json", "cut.svg",
+                             "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
       fs::remove(folder / name, ec);
     for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
     for (const auto& entry : fs::directory_iterator(folder, ec))

@@ -1,0 +1,49 @@
+#include "cut_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "talus/base/error.h"
+#include "talus/cut/blocks_file.h"
+#include "talus/model/read_model.h"
+#include "talus/model/toml_source.h"
+#include "talus/output/cut_report.h"
+#include "talus/output/files.h"
+//PIC #include "talus/plot/cut_picture.h"
+
+namespace talus::app {
+
+int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
+                bool force) {
+  const std::string text = read_text_file(file);
+  Findings findings(file, text);
+  const Model model = read_model(file, text, overrides, findings);
+  if (!model.shapes_readable) findings.throw_if_errors();
+  if (model.regions.empty() && model.arches.empty())
+    findings.error({1, 1, ""}, "region", "the file has no [[region]] or [[arch]]: there is nothing to cut",
+                   "give the outline of the rock as [[region]] with name, polygon and material");
+  const Cut cut = cut_model(model, findings);
+  const Layout layout = make_layout(model, cut, findings);
+  findings.throw_if_errors();
+  if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
+
+  open_result_folder(folder, force);
+  const CutStatistics statistics = cut_statistics(model, cut);
+  const std::string report = cut_report(model, cut, statistics);
+  const std::filesystem::path out(folder);
+  write_file(out / "cut.json", cut_summary(model, cut, statistics));
+  write_file(out / "model.toml", model.text);
+  write_file(out / "blocks.json", blocks_file_text(model, cut));
+  write_file(out / "blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
+  write_file(out / "slivers.csv", slivers_csv(cut));
+  write_file(out / "report.txt", report);
+//PIC   plot::write_cut_picture(model, cut, out / "cut");
+  fmt::print("{}\nwritten to {}: cut.png and cut.svg (picture), blocks.json (for cut.blocks), blocks.csv, slivers.csv, "
+             "report.txt, cut.json\n",
+             report, folder);
+  return kExitOk;
+}
+
+}  // namespace talus::app

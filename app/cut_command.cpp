@@ -11,7 +11,7 @@
 #include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
 #include "talus/output/files.h"
-//PIC #include "talus/plot/cut_picture.h"
+#include "talus/plot/cut_picture.h"
 
 namespace talus::app {
 
@@ -39,7 +39,7 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   write_file(out / "blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
   write_file(out / "slivers.csv", slivers_csv(cut));
   write_file(out / "report.txt", report);
-//PIC   plot::write_cut_picture(model, cut, out / "cut");
+  plot::write_cut_picture(model, cut, out / "cut");
   fmt::print("{}\nwritten to {}: cut.png and cut.svg (picture), blocks.json (for cut.blocks), blocks.csv, slivers.csv, "
              "report.txt, cut.json\n",
              report, folder);

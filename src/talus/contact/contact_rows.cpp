@@ -54,7 +54,8 @@ void add_contact_rows(const BlockSet& blocks, const Layout& joints_of, const Mod
   for (const ContactPoint& c : contacts) {
     const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
     const double size = std::min(blocks.size[a], blocks.size[b]);
-    const int joint = joints_of.joint_at(c.key.block_a, c.edge_a, c.key.block_b, c.key.edge);
+    const int joint = joints_of.joint_at(c.key.block_a, c.face_edge_a, c.key.block_b,
+                                         c.face_edge_b >= 0 ? c.face_edge_b : c.key.edge);
     const JointProperty property = joint < 0 ? JointProperty{} : model.joints[static_cast<size_t>(joint)];
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;

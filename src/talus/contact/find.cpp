@@ -23,16 +23,47 @@ Vec2 edge_vector(const BlockSet& blocks, const State& s, int block, int k) {
   return e + s.strain_part[static_cast<size_t>(block)] * e;
 }
 
+// A corner that turns by less than this (sine) lies on a straight side: a joint ends there on the other side, or the
+// side belongs to two sources. It enters nothing; the corner across does.
+constexpr double kFlat = 1e-4;
+
+bool is_flat(const BlockSet& blocks, const State& s, int block, int k) {
+  const int n = blocks.vertex_count(block);
+  const Vec2 in = edge_vector(blocks, s, block, (k + n - 1) % n), out = edge_vector(blocks, s, block, k);
+  return dot(in, out) > 0 && std::abs(cross(in, out)) <= kFlat * norm(in) * norm(out);
+}
+
 bool is_convex(const BlockSet& blocks, const State& s, int block, int k) {
   const int n = blocks.vertex_count(block);
-  return cross(edge_vector(blocks, s, block, (k + n - 1) % n), edge_vector(blocks, s, block, k)) > 0;
+  return cross(edge_vector(blocks, s, block, (k + n - 1) % n), edge_vector(blocks, s, block, k)) > 0 ||
+         is_flat(blocks, s, block, k);
+}
+
+// The first edge of the straight side that an edge belongs to.
+int side_of(const BlockSet& blocks, const State& s, int block, int edge) {
+  const int n = blocks.vertex_count(block);
+  for (int steps = 0; steps < n && is_flat(blocks, s, block, edge); ++steps) edge = (edge + n - 1) % n;
+  return edge;
+}
+
+// The edge of the straight side from `first` on that has `place` (an offset from the block's centroid) beside it.
+int edge_beside(const BlockSet& blocks, const State& s, int block, int first, Vec2 place) {
+  const int n = blocks.vertex_count(block);
+  int edge = first;
+  for (int steps = 0; steps < n; ++steps) {
+    const int end = (edge + 1) % n;
+    const Vec2 beyond = place - offset_now(s, static_cast<size_t>(block), blocks.corner(block, end));
+    if (!is_flat(blocks, s, block, end) || dot(beyond, edge_vector(blocks, s, block, edge)) <= 0) break;
+    edge = end;
+  }
+  return edge;
 }
 
 // Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards.
 bool may_enter(const BlockSet& blocks, const State& s, int block, int k, Vec2 n) {
   const int m = blocks.vertex_count(block);
   const Vec2 out = edge_vector(blocks, s, block, k), back = -edge_vector(blocks, s, block, (k + m - 1) % m);
-  return cross(-back, out) > 0 && dot(out, n) >= -kEntrance * norm(out) &&
+  return !is_flat(blocks, s, block, k) && cross(-back, out) > 0 && dot(out, n) >= -kEntrance * norm(out) &&
          dot(back, n) >= -kEntrance * norm(back);
 }
 
@@ -153,12 +184,32 @@ void merge_corner_pairs(const BlockSet& blocks, const State& s, double same, std
   }
 }
 
+// Two points become the ends of one face of the sides given (of the lower and the higher block id).
+void make_face(const BlockSet& blocks, const State& s, int side_lo, int side_hi, ContactPoint& x, ContactPoint& y) {
+  const auto place = [&](const ContactPoint& h, int block) {
+    const auto a = static_cast<size_t>(h.key.block_a);
+    return (blocks.centroid[a] - blocks.centroid[static_cast<size_t>(block)]) + offset_now(s, a, h.arm_a);
+  };
+  const int lo = std::min(x.key.block_a, x.key.block_b), hi = std::max(x.key.block_a, x.key.block_b);
+  const double length = norm(place(x, lo) - place(y, lo));
+  x.length += 0.5 * length, y.length += 0.5 * length;
+  x.partner = y.key, y.partner = x.key;
+  // both ends name the same edges: those beside the middle of the face
+  const int edge_lo = edge_beside(blocks, s, lo, side_lo, 0.5 * (place(x, lo) + place(y, lo)));
+  const int edge_hi = edge_beside(blocks, s, hi, side_hi, 0.5 * (place(x, hi) + place(y, hi)));
+  for (ContactPoint* h : {&x, &y}) {
+    h->face_edge_a = h->key.block_a == lo ? edge_lo : edge_hi;
+    h->face_edge_b = h->key.block_a == lo ? edge_hi : edge_lo;
+  }
+}
+
 // Two points that end the overlap of the same two antiparallel edges share its length.
 void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits) {
   struct Span {
-    int edge_lo, edge_hi;  // edges of the lower and the higher block id
+    int side_lo, side_hi;  // straight sides of the lower and the higher block id
+    bool operator==(const Span&) const = default;
   };
-  // the edges of a's corner that may lie on b's edge
+  // the sides of a's corner that may lie on b's side
   const auto faces_of = [&](const Hit& h) {
     std::vector<Span> list;
     const ContactKey& k = h.point.key;
@@ -171,7 +222,9 @@ void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits)
       for (const int f : {k.vertex, (k.vertex + na - 1) % na}) {
         const Vec2 da = edge_vector(blocks, s, k.block_a, f);
         if (std::abs(cross(da, db)) > kParallel * norm(da) * norm(db) || dot(da, db) > 0) continue;
-        list.push_back(k.block_a < k.block_b ? Span{f, e} : Span{e, f});
+        const int side_a = side_of(blocks, s, k.block_a, f), side_b = side_of(blocks, s, k.block_b, e);
+        const Span span = k.block_a < k.block_b ? Span{side_a, side_b} : Span{side_b, side_a};
+        if (std::find(list.begin(), list.end(), span) == list.end()) list.push_back(span);
       }
     }
     return list;
@@ -181,20 +234,8 @@ void share_faces(const BlockSet& blocks, const State& s, std::vector<Hit>& hits)
   for (size_t i = 0; i < hits.size(); ++i) {
     for (size_t j = i + 1; j < hits.size(); ++j) {
       for (const Span& p : faces[i]) {
-        for (const Span& q : faces[j]) {
-          if (p.edge_lo != q.edge_lo || p.edge_hi != q.edge_hi) continue;
-          const auto place = [&](const Hit& h) {
-            return offset_now(s, static_cast<size_t>(h.point.key.block_a), h.point.arm_a) +
-                   blocks.centroid[static_cast<size_t>(h.point.key.block_a)];
-          };
-          const double length = norm(place(hits[i]) - place(hits[j]));
-          hits[i].point.length += 0.5 * length;
-          hits[j].point.length += 0.5 * length;
-          hits[i].point.partner = hits[j].point.key;
-          hits[j].point.partner = hits[i].point.key;
-          for (Hit* h : {&hits[i], &hits[j]})
-            h->point.edge_a = h->point.key.block_a < h->point.key.block_b ? p.edge_lo : p.edge_hi;
-        }
+        if (std::find(faces[j].begin(), faces[j].end(), p) == faces[j].end()) continue;
+        make_face(blocks, s, p.side_lo, p.side_hi, hits[i].point, hits[j].point);
       }
     }
   }

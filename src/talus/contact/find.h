@@ -16,7 +16,7 @@ struct ContactPoint {
   double gap = 0;      // [m] > 0 apart
   double slip = 0;     // [m] position of the foot along the tangent (the normal turned clockwise)
   double length = 0;   // [m] tributary length: half the face it ends, 0 for a corner alone
-  int edge_a = -1;     // a's edge in that face, -1 when there is none
+  int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of that face; -1: none
   ContactKey partner;  // the other end of that face; block_a = -1 when there is none
 };
 
@@ -35,6 +35,7 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int bloc
 ///  - a corner acts on an edge only above the edge itself (never its extension), and only where its own two
 ///  edges
 ///    do not lie behind the edge (entrance condition);
+///  - a flat corner (turning by less than 1e-4) enters nothing: the edges beside it are one straight side;
 ///  - a corner near a convex corner of the other block obeys one edge: the one with the larger gap;
 ///  - two corners at one place make one contact: again the larger gap; gaps that are equal by what they come
 ///  to

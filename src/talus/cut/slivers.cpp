@@ -97,16 +97,31 @@ class SliverTreatment {
 
   bool merge_one(int i) {
     const CutBlock& block = cut_.blocks[static_cast<size_t>(i)];
-    std::map<int, double> shared;
+    struct Border {
+      int other = -1;
+      double length = 0;
+      bool is_fault = false;
+    };
+    std::map<int, Border> shared;
     for (const int e : block.edge) {
       const int other = across(e, i);
       if (other < 0) continue;
       const CutBlock& o = cut_.blocks[static_cast<size_t>(other)];
-      if (o.region == block.region && o.opening == block.opening) shared[other] += length(e);
+      if (o.region != block.region || o.opening != block.opening) continue;
+      Border& border = shared[other];
+      border.other = other;
+      border.length += length(e);
+      const auto origin = static_cast<size_t>(cut_.edge_origin[static_cast<size_t>(e)]);
+      border.is_fault = border.is_fault || cut_.origins[origin].kind == OriginKind::kFault;
     }
-    std::vector<std::pair<int, double>> order(shared.begin(), shared.end());
-    std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.second > y.second; });
-    for (const auto& [other, along] : order) {
+    // the longest edge first, but a fault stays whole as long as another neighbour can take the sliver
+    std::vector<Border> order;
+    for (const auto& [other, border] : shared) order.push_back(border);
+    std::stable_sort(order.begin(), order.end(), [](const Border& x, const Border& y) {
+      return x.is_fault != y.is_fault ? y.is_fault : x.length > y.length;
+    });
+    for (const Border& border : order) {
+      const int other = border.other;
       CutBlock merged;
       if (!joined(i, other, merged)) continue;
       waiting_.erase({measures_[static_cast<size_t>(other)].area, other});

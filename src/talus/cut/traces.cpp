@@ -145,7 +145,8 @@ class TraceMaker {
 std::vector<Origin> all_origins(const Model& model, const RegionMap& regions) {
   std::vector<Origin> list;
   const auto glued = [&model](int joint) { return joint >= 0 ? joint : model.bonded_joint; };
-  for (const OpeningInput& o : model.openings) list.push_back({o.name, OriginKind::kOpening, glued(o.joint)});
+  for (const OpeningInput& o : model.openings)
+    list.push_back({o.name, OriginKind::kOpening, o.kept ? glued(o.joint) : -1});
   for (const CutRegion& r : regions.list()) {
     for (const std::string& side : r.sides) {
       const auto known = [&side](const Origin& o) { return o.kind == OriginKind::kSide && o.name == side; };

@@ -125,8 +125,12 @@ Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 
     if (signed_area(outer) < 0) std::reverse(outer.begin(), outer.end());
     out.rings.push_back(std::move(outer));
   });
-  for (const GEOSGeometry* list : {own_cuts.get(), own_dangles.get()})
-    if (list) for_parts(list, [&](const GEOSGeometry* line) { out.dead_ends.push_back(geos().corners_of(line)); });
+  // pieces of one dead end, between crossings with others, as one line
+  for (const GEOSGeometry* list : {own_cuts.get(), own_dangles.get()}) {
+    const auto merged = geos().own(list ? GEOSLineMerge_r(context, list) : nullptr);
+    if (merged)
+      for_parts(merged.get(), [&](const GEOSGeometry* line) { out.dead_ends.push_back(geos().corners_of(line)); });
+  }
   return out;
 }
 

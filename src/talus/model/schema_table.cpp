@@ -483,7 +483,7 @@ std::vector<SectionSpec> build_schema() {
          .default_text = "\"merge\"",
          .choices = {"merge", "delete", "keep"},
          .doc = "What becomes of blocks below one of the four limits: `merge`: joined to the neighbour with the "
-                "longest shared edge; `delete`: taken out; `keep`."},
+                "longest shared edge, across a fault only when there is no other; `delete`: taken out; `keep`."},
         {.name = "sliver_area",
          .dimension = D::kArea,
          .range = kNonNegative,

@@ -172,7 +172,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
     j["stages"].push_back(stage);
   }
   j["solver"] = {
-      {"method", "newton"},
+      {"method", scene.model.solver.method == SolverKind::kNewton ? "newton" : "gauss_seidel"},
       {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
       {"contact_solves", r.steps},
       {"failed_steps", r.failed_steps},

@@ -227,7 +227,7 @@ TEST_CASE("what cannot be laid out is reported by name") {
   CHECK(has(errors_of(model), "twice"));
   model.grids = {grid("wall", {3, 0}, {5, 1}, 2, 1)};
   model.contact_pairs = {{"a", "wall[0,0]", 0, {}}};
-  CHECK(has(errors_of(model), "\"wall[0,0]\" is one block of a grid"));
+  CHECK(has(errors_of(model), "\"wall[0,0]\" is one block of several"));
   model.contact_pairs.clear();
   MonitorInput monitor;
   monitor.name = "tip";

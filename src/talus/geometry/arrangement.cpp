@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "talus/base/random.h"
 #include "talus/geometry/geos.h"
 
 namespace talus {
@@ -102,7 +103,12 @@ Polygon open_ring(const GEOSGeometry* ring) {
 // Noding and polygonizing, in coordinates relative to `origin`.
 Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 origin) {
   const GEOSContextHandle_t context = geos().context();
-  const auto input = geos().make_lines(lines, origin);
+  // in mixed order: the noder keeps its nodes in a tree that it does not balance, and parallel lines from one side
+  // to the other would make it half a list (measured: 31 s instead of 15 s at half a million faces)
+  std::vector<Polyline> mixed = lines;
+  Random random(1);
+  for (size_t i = mixed.size(); i > 1; --i) std::swap(mixed[i - 1], mixed[random.next() % i]);
+  const auto input = geos().make_lines(mixed, origin);
   const auto noded = geos().own(input ? GEOSUnaryUnionPrec_r(context, input.get(), grid) : nullptr);
   if (!noded) throw std::runtime_error("noding of the joints failed");
   GEOSGeometry *cuts = nullptr, *dangles = nullptr, *invalid = nullptr;

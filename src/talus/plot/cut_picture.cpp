@@ -7,7 +7,6 @@
 #include <climits>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -73,13 +72,16 @@ constexpr std::array<Color, 6> kTints{{{0.975, 0.955, 0.905},    // sand
                                        {0.930, 0.930, 0.930}}};  // grey
 constexpr Color kKeptTint{1.0, 0.925, 0.55}, kFixedTint{0.74, 0.74, 0.74};
 
-Color palette_color(int index) {
-  constexpr double kDark = 0.5;  // of the second round
-  const int count = static_cast<int>(kPalette.size());
-  const Color c = kPalette[at(index % count)];
-  if (index / count % 2 == 0) return c;
-  return {kDark * c.r, kDark * c.g, kDark * c.b};
+// The colour of the table, darker in every second round.
+template <std::size_t n>
+Color color_of(const std::array<Color, n>& table, std::size_t index, double dark) {
+  const Color c = table[index % n];
+  if (index / n % 2 == 0) return c;
+  return {dark * c.r, dark * c.g, dark * c.b};
 }
+
+Color palette_color(int index) { return color_of(kPalette, at(index), 0.5); }
+Color tint(int material) { return color_of(kTints, at(material), 0.92); }
 
 // ------------------------------------------------------------------------------------------------ texts
 
@@ -120,8 +122,7 @@ std::string degrees_text(double radians) {
   return fmt::format("{}{:g}\u00b0", tenths < 0 ? "\u2212" : "", std::abs(tenths) / 10);
 }
 
-// Coordinates of places are read in meters however far the origin is away; beyond that they are powers of
-// ten.
+// Easting and chainage of millions of meters are read in plain digits.
 std::vector<std::string> coordinate_labels(const Ticks& ticks) {
   constexpr double kLargestPlain = 1e10;
   double largest = 0;
@@ -400,7 +401,7 @@ std::vector<Area> make_areas(const Model& model, const Cut& cut) {
   std::vector<Area> list;
   for (auto& [key, area] : areas) {
     if (key < kFixed) {
-      area.color = kTints[at(key) % kTints.size()];
+      area.color = tint(key);
       if (at(key) < model.materials.size()) area.label = short_text(model.materials[at(key)].name);
     } else {
       area.color = key == kFixed ? kFixedTint : kKeptTint;
@@ -455,9 +456,9 @@ struct Axis {
   double widest = 0;  // label [px]
 };
 
-// As many ticks as fit with their labels; one where there is room for no two.
+// Ticks with room for their labels; a single one where there is room for no two.
 Axis make_axis(cairo_t* cr, Range range, double length, bool across) {
-  constexpr double kDense = 65, kDenseUp = 40;        // [px] between ticks
+  constexpr double kDense = 65;                       // [px] between ticks; one step for both axes
   constexpr double kBetween = 20, kBetweenLines = 8;  // [px] between labels
   Axis axis;
   const auto set = [&](int target) {
@@ -468,8 +469,7 @@ Axis make_axis(cairo_t* cr, Range range, double length, bool across) {
     return !axis.ticks.values.empty();
   };
   set_font(cr, kFontSize);
-  for (int target = std::max(2, static_cast<int>(length / (across ? kDense : kDenseUp))); target > 0;
-       --target) {
+  for (int target = std::max(2, static_cast<int>(length / kDense)); target > 0; --target) {
     if (!set(target)) continue;
     const double spacing = axis.ticks.step / range.length() * length;
     if (spacing >= (across ? axis.widest + kBetween : kFontSize + kBetweenLines)) return axis;
@@ -671,17 +671,18 @@ std::string monitor_text(cairo_t* cr, const MonitorInput& monitor) {
   return fit_text(cr, short_text(monitor.name), kWidestName);
 }
 
-// Outlines and openings, as far as there are few enough to look at for each name.
+// Outlines, openings and faults, as far as there are few enough to look at for each name.
 std::vector<Segment> borders_on_sheet(const Model& model, const Cut& cut, const View& view) {
   constexpr std::size_t kMost = 4000;
   std::vector<Segment> borders;
-  const auto add = [&](const Polygon& polygon) {
-    if (borders.size() + polygon.size() > kMost) return;
-    for (std::size_t k = 0; k < polygon.size(); ++k)
-      borders.push_back({view.to_sheet(polygon[k]), view.to_sheet(polygon[(k + 1) % polygon.size()])});
+  const auto add = [&](const std::vector<Vec2>& line, bool closed) {
+    if (borders.size() + line.size() > kMost) return;
+    for (std::size_t k = 0; k + (closed ? 0 : 1) < line.size(); ++k)
+      borders.push_back({view.to_sheet(line[k]), view.to_sheet(line[(k + 1) % line.size()])});
   };
-  for (const CutRegion& region : cut.regions) add(region.polygon);
-  for (const OpeningInput& opening : model.openings) add(opening.polygon);
+  for (const CutRegion& region : cut.regions) add(region.polygon, true);
+  for (const OpeningInput& opening : model.openings) add(opening.polygon, true);
+  for (const FaultInput& fault : model.faults) add(fault.points, false);
   return borders;
 }
 
@@ -911,8 +912,8 @@ void place_legend(cairo_t* cr, double right, double below, Picture& picture) {
     picture.height += place_in_rows(frame.x, picture.height, available, picture.legend) + kMargin;
     return;
   }
-  fit_entries(cr, kWidestColumn, picture.legend);
   const double left = std::ceil(right) + 2 * kLabelGap;
+  fit_entries(cr, std::max(kWidestColumn, picture.width - kMargin - left), picture.legend);
   double row = frame.y + kLegendRow / 2;
   for (LegendEntry& entry : picture.legend) {
     entry.x = left;

@@ -1,0 +1,310 @@
+// What must hold for any network of lines: a closed partition without loss of area, before and after slivers
+// are merged. A thousand random networks (a hundred under the address sanitizer, which is ten times slower).
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "support/random_network.h"
+#include "talus/cut/layout.h"
+#include "talus/cut/slivers.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kNetworks = 100;
+#else
+constexpr int kNetworks = 1000;
+#endif
+
+// Shares of a cell: how far noding moves a line (half a diagonal to a corner, round-off on top), and how near
+// a point may lie to an edge before it is open which side it belongs to.
+constexpr double kMoved = 1.5, kDoubt = 2;
+
+// Calls `check(model, cut, random)` for every network; what it returns, "" for nothing wrong, must be "".
+void for_networks(const auto& check) {
+  for (int i = 0; i < kNetworks; ++i) {
+    CAPTURE(i);
+    const Model model = NetworkMaker(static_cast<uint64_t>(i)).make();
+    Findings findings("case.toml", "");
+    Random random(static_cast<uint64_t>(i) + 1000000);
+    const std::string defect = check(model, cut_model(model, findings), random);
+    CHECK(defect == "");
+  }
+}
+
+bool is_removed(const Model& model, const CutBlock& b) {
+  return b.opening >= 0 && !model.openings[static_cast<size_t>(b.opening)].kept;
+}
+
+std::vector<CutBlock> not_removed(const Model& model, const std::vector<CutBlock>& blocks) {
+  std::vector<CutBlock> out;
+  for (const CutBlock& b : blocks)
+    if (!is_removed(model, b)) out.push_back(b);
+  return out;
+}
+
+double distance_to(const Polyline& line, Vec2 p) {
+  double d = 1e300;
+  for (size_t k = 0; k + 1 < line.size(); ++k) d = std::min(d, distance_to_segment(p, line[k], line[k + 1]));
+  return d;
+}
+
+Polyline edge_of(const Cut& cut, int e) {
+  const auto& [a, b] = cut.edge[static_cast<size_t>(e)];
+  return {cut.point[static_cast<size_t>(a)], cut.point[static_cast<size_t>(b)]};
+}
+
+// Area of the outlines, and what of it may be lost where their corners go to the grid and lines bend: a strip
+// of less than two cells along them. (Coordinates of 5e6 m carry 1e-9 m, less than a cell of any model above
+// 0.1 m.)
+std::string outline_area_defect(const Model& model, const Cut& cut) {
+  double area = 0, length = 0;
+  for (const RegionInput& r : model.regions) {
+    area += std::abs(signed_area(r.polygon)), length += perimeter(r.polygon);
+    if (&r != &model.regions[0]) area -= polygon_overlap(model.regions[0].polygon, r.polygon).area;
+  }
+  const double sum = area_of(CellCut(cut).twice_area_of(cut.whole), cut.grid);
+  const double allowed = 2 * cut.grid * length + 1e-12 * area;  // and round-off of the sums
+  if (std::abs(sum - area) <= allowed) return "";
+  return fmt::format("area {:.17g} differs from that of the outline {:.17g} by more than {:.2g}", sum, area,
+                     allowed);
+}
+
+// Points here and there lie in just the block of the region and opening that hold them.
+std::string point_defect(const Model& model, const Cut& cut, Random& random) {
+  const Box box = RegionMap(model).box();
+  const auto last_of = [](const auto& list, Vec2 p) {
+    int found = -1;
+    for (size_t i = 0; i < list.size(); ++i)
+      if (contains(list[i].polygon, p)) found = static_cast<int>(i);
+    return found;
+  };
+  for (int i = 0; i < 40; ++i) {
+    const Vec2 p{box.min.x + (1.1 * random.uniform() - 0.05) * (box.max.x - box.min.x),
+                 box.min.y + (1.1 * random.uniform() - 0.05) * (box.max.y - box.min.y)};
+    int holders = 0, holder = -1;
+    bool doubt = false;
+    for (const CutBlock& b : cut.whole) {
+      const Polygon polygon = cut.polygon(b);
+      Polyline ring = polygon;
+      ring.push_back(ring[0]);
+      doubt = doubt || distance_to(ring, p) < kDoubt * cut.grid;
+      if (contains(polygon, p)) ++holders, holder = b.id;
+    }
+    if (doubt) continue;
+    const int region = last_of(model.regions, p);
+    const std::string at = fmt::format(" at ({:.9g}, {:.9g})", p.x, p.y);
+    if (holders != (region >= 0 ? 1 : 0)) return fmt::format("{} blocks", holders) + at;
+    if (holder < 0) continue;
+    const CutBlock& b = cut.whole[static_cast<size_t>(holder)];
+    if (b.region != region) return "wrong region" + at;
+    if (b.opening != last_of(model.openings, p)) return "wrong opening" + at;
+  }
+  return "";
+}
+
+// Every edge runs along a trace of its origin, and every trace along edges or dead ends.
+std::string trace_defect(const Model& model, const Cut& cut) {
+  Findings findings("case.toml", "");
+  const TraceSet traces = make_traces(model, RegionMap(model), findings);
+  const double near = kMoved * cut.grid;
+  std::set<int> in_use;
+  for (const CutBlock& b : cut.whole) in_use.insert(b.edge.begin(), b.edge.end());
+  for (const int e : in_use) {
+    const int origin = cut.edge_origin[static_cast<size_t>(e)];
+    const Polyline ends = edge_of(cut, e);
+    const bool along = std::any_of(traces.traces.begin(), traces.traces.end(), [&](const Trace& t) {
+      return t.origin == origin && distance_to(t.line, ends[0]) <= near &&
+             distance_to(t.line, ends[1]) <= near;
+    });
+    const Origin& o = cut.origins[static_cast<size_t>(origin)];
+    if (!along && o.kind != OriginKind::kConstruction) return "an edge lies off its origin " + o.name;
+  }
+  for (const Trace& t : traces.traces) {
+    for (int i = 0; i <= 4; ++i) {
+      const Vec2 p = t.line[0] + i / 4.0 * (t.line[1] - t.line[0]);
+      bool found = false;
+      for (const int e : in_use) found = found || distance_to(edge_of(cut, e), p) <= near;
+      for (const Polyline& line : cut.dead_ends) found = found || distance_to(line, p) <= near;
+      if (!found) return "part of a trace is lost: " + cut.origins[static_cast<size_t>(t.origin)].name;
+    }
+  }
+  return "";
+}
+
+// Whether two blocks make one simple polygon: they touch along one stretch and nowhere else.
+bool make_one_polygon(const CutBlock& a, const CutBlock& b) {
+  const std::set<int> points(b.point.begin(), b.point.end()), edges(b.edge.begin(), b.edge.end());
+  const size_t n = a.point.size();
+  size_t stretches = 0, shared = 0;
+  for (size_t k = 0; k < n; ++k) {
+    const bool before = edges.count(a.edge[(k + n - 1) % n]) > 0, after = edges.count(a.edge[k]) > 0;
+    shared += after;
+    if (points.count(a.point[k]) && !before) ++stretches;  // one begins here, or is this corner alone
+  }
+  return stretches == 1 && shared > 0;
+}
+
+// No block is left below the limits unless nothing may take it: its neighbours are of other regions or
+// openings, or reach around an opening and touch it twice.
+std::string sliver_defect(const Model& model, const Cut& cut) {
+  std::vector<double> areas, widths;
+  for (const CutBlock& b : not_removed(model, cut.whole)) {
+    const PolygonMoments m = polygon_moments(cut.polygon(b));
+    areas.push_back(m.area), widths.push_back(polygon_width(m));
+  }
+  if (areas.empty()) return "";
+  std::sort(areas.begin(), areas.end());
+  std::sort(widths.begin(), widths.end());
+  const double area = model.cut.sliver_area_share * areas[areas.size() / 2];
+  const double width = model.cut.sliver_width_share * widths[widths.size() / 2];
+  int kept = 0;
+  for (const CutBlock& b : cut.blocks) {
+    const PolygonMoments m = polygon_moments(cut.polygon(b));
+    if (m.area >= area && polygon_width(m) >= width) continue;
+    ++kept;
+    for (const CutBlock& other : cut.blocks)
+      if (other.id != b.id && other.region == b.region && other.opening == b.opening &&
+          make_one_polygon(b, other))
+        return fmt::format("{} could be merged into {}", cut.name(b), cut.name(other));
+  }
+  const SliverTable& table = cut.slivers;
+  if (kept != table.kept) return fmt::format("{} slivers are left, the table says {}", kept, table.kept);
+  const size_t whole = not_removed(model, cut.whole).size();
+  if (cut.blocks.size() + static_cast<size_t>(table.merged) != whole) return "blocks were lost in merging";
+  if (table.rows.size() != static_cast<size_t>(table.merged + table.kept)) return "not one row per sliver";
+  return "";
+}
+
+// What becomes of the blocks under the other two policies.
+std::string policy_defect(Model model, const Cut& merged) {
+  Findings findings("case.toml", "");
+  const auto ids = [](const std::vector<CutBlock>& blocks) {
+    std::set<int> out;
+    for (const CutBlock& b : blocks) out.insert(b.id);
+    return out;
+  };
+  model.cut.slivers = SliverPolicy::kKeep;
+  const Cut keep = cut_model(model, findings);
+  if (ids(keep.blocks) != ids(not_removed(model, keep.whole))) return "keep does not keep";
+  model.cut.slivers = SliverPolicy::kDelete;
+  const Cut cut = cut_model(model, findings);
+  const std::set<int> left = ids(cut.blocks);
+  Int128 missing = 0;
+  const CellCut cells(cut);
+  for (const CutBlock& b : not_removed(model, cut.whole))
+    if (!left.count(b.id)) missing += twice_area(cells.ring(b));
+  // every deleted area and their sum is rounded, by less than 1e-15 of itself and the height of its corners
+  const double area = area_of(missing, cut.grid), told = cut.slivers.deleted_area;
+  if (std::abs(area - told) > 1e-9 * area + 1e-15 * merged.slivers.median_area)
+    return fmt::format("{} m2 are missing, deleted were {}", area, told);
+  if (cut.slivers.rows.size() != keep.slivers.rows.size() || cut.slivers.kept + cut.slivers.merged > 0 ||
+      keep.slivers.kept != cut.slivers.deleted)
+    return "delete and keep judge different blocks";
+  return "";
+}
+
+// Limits are shares of the median block: where most blocks are slivers it bounds nothing, and hair-thin ones
+// stay.
+bool has_sound_limits(const Cut& cut) {
+  double length = 0;
+  for (const CutRegion& r : cut.regions) length = std::max(length, perimeter(r.polygon));
+  return cut.slivers.median_width > 1e-4 * length;
+}
+
+// The blocks of the layout: simple, and what flat corners take away is less than a strip of one cell.
+std::string shape_defect(const Model& model, const Cut& cut) {
+  const std::vector<BlockShape> shapes = shapes_of(model, cut, cut.blocks);
+  if (shapes.size() != cut.blocks.size()) return "not one shape per block";
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    const Polygon whole = cut.polygon(cut.blocks[i]), shape = shapes[i].polygon;
+    std::string defect = polygon_defect(shape);
+    if (!has_sound_limits(cut) && defect.starts_with("has no area")) defect.clear();
+    if (!defect.empty()) return shapes[i].name + " " + defect;
+    if (std::abs(signed_area(shape) - signed_area(whole)) > cut.grid * perimeter(whole))
+      return shapes[i].name + " lost area with its flat corners";
+    if (shapes[i].edge_origin.size() != shape.size() || shapes[i].edge_joint.size() != shape.size())
+      return shapes[i].name + " has not one origin and joint per edge";
+  }
+  return "";
+}
+
+bool same(const std::vector<CutBlock>& a, const std::vector<CutBlock>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const CutBlock& x, const CutBlock& y) {
+    return x.id == y.id && x.region == y.region && x.opening == y.opening && x.point == y.point &&
+           x.edge == y.edge;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("any network is cut into a closed partition of its regions") {
+  size_t blocks = 0, most = 0;
+  for_networks([&](const Model& model, const Cut& cut, Random& random) {
+    blocks += cut.whole.size(), most = std::max(most, cut.whole.size());
+    std::string defect = partition_defect(cut);
+    if (defect.empty()) defect = outline_area_defect(model, cut);
+    if (defect.empty()) defect = point_defect(model, cut, random);
+    for (size_t i = 0; i < cut.whole.size(); ++i)
+      if (cut.whole[i].id != static_cast<int>(i)) defect = "blocks are not numbered in their order";
+    return defect;
+  });
+  // the networks are worth the name
+  CHECK(blocks > 20 * kNetworks);
+  CHECK(most > 100);
+  MESSAGE(blocks, " blocks, at most ", most);
+}
+
+TEST_CASE("every edge runs along its origin and no trace is lost") {
+  for_networks([](const Model& model, const Cut& cut, Random&) { return trace_defect(model, cut); });
+}
+
+TEST_CASE("merging slivers of any network loses no area and leaves none that could be merged") {
+  int merged = 0, kept = 0;
+  for_networks([&](const Model& model, const Cut& cut, Random&) -> std::string {
+    const CellCut cells(cut);
+    if (cells.twice_area_of(not_removed(model, cut.whole)) != cells.twice_area_of(cut.blocks))
+      return "area was lost";
+    merged += cut.slivers.merged, kept += cut.slivers.kept;
+    return sliver_defect(model, cut);
+  });
+  CHECK(merged > kNetworks);
+  MESSAGE(merged, " slivers merged, ", kept, " kept");
+}
+
+TEST_CASE("deleting slivers takes away the area told, keeping them nothing") {
+  for_networks([](const Model& model, const Cut& cut, Random&) { return policy_defect(model, cut); });
+}
+
+TEST_CASE("the same model gives the same blocks to the last bit") {
+  for_networks([](const Model& model, const Cut& cut, Random&) -> std::string {
+    Findings findings("case.toml", "");
+    const Cut again = cut_model(model, findings);
+    const bool equal = cut.point == again.point && cut.edge == again.edge &&
+                       cut.edge_origin == again.edge_origin && same(cut.whole, again.whole) &&
+                       same(cut.blocks, again.blocks);
+    return equal ? "" : "cut again it gives other blocks";
+  });
+}
+
+TEST_CASE("blocks of any network are sound polygons without overlap in the layout") {
+  int pairs = 0;
+  for_networks([&](const Model& model, const Cut& cut, Random& random) -> std::string {
+    std::string defect = shape_defect(model, cut);
+    std::vector<Box> boxes;
+    for (const CutBlock& b : cut.blocks) boxes.push_back(bounding_box(cut.polygon(b)));
+    for (const auto& [i, j] : close_pairs(boxes, 0)) {
+      if (random.uniform() > 0.05) continue;
+      const Polygon a = cut.polygon(cut.blocks[static_cast<size_t>(i)]),
+                    b = cut.polygon(cut.blocks[static_cast<size_t>(j)]);
+      ++pairs;
+      if (polygon_overlap(a, b).area > 0) defect = "blocks overlap";
+    }
+    return defect;
+  });
+  CHECK(pairs > kNetworks);
+}

@@ -40,9 +40,11 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   write_file(out / "slivers.csv", slivers_csv(cut));
   write_file(out / "report.txt", report);
   plot::write_cut_picture(model, cut, out / "cut");
-  fmt::print("{}\nwritten to {}: cut.png and cut.svg (picture), blocks.json (for cut.blocks), blocks.csv, slivers.csv, "
-             "report.txt, cut.json\n",
-             report, folder);
+  fmt::print(
+      "{}\nwritten to {}: cut.png and cut.svg (picture), blocks.json (for cut.blocks), blocks.csv, "
+      "slivers.csv, "
+      "report.txt, cut.json\n",
+      report, folder);
   return kExitOk;
 }
 

@@ -144,8 +144,8 @@ int run_command(int argc, char** argv) {
   add_model_arguments(*check_verb, model);
   check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml");
 
-  CLI::App* cut_verb =
-      app.add_subcommand("cut", "cut regions into blocks: statistics, picture and a blocks file; runs nothing");
+  CLI::App* cut_verb = app.add_subcommand(
+      "cut", "cut regions into blocks: statistics, picture and a blocks file; runs nothing");
   add_model_arguments(*cut_verb, model);
   cut_verb->add_option("-o,--output", folder, "folder for the results")->required();
   cut_verb->add_flag("--force", force, "replace the results in that folder");

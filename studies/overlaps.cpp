@@ -1,6 +1,6 @@
-// Runs a model and reports, at the end of every tenth of it, the largest overlap between two blocks: whether anything
-// has passed through anything.
-// Usage: overlaps MODEL [PATH=VALUE ...]     overrides as with talus run --set
+// Runs a model and reports, at the end of every tenth of it, the largest overlap between two blocks: whether
+// anything has passed through anything. Usage: overlaps MODEL [PATH=VALUE ...]     overrides as with talus
+// run --set
 
 #include <fmt/format.h>
 
@@ -15,8 +15,8 @@ class OverlapWatch : public talus::Observer {
     const auto tenth = std::max<int64_t>(1, now.plan.steps / 10);
     if (!now.last && now.state.step % tenth != 0) return;
     const auto largest = talus::test::largest_overlap(now.scene.blocks, now.state);
-    fmt::print("t = {:8.5f} s   largest overlap {:.3e} of the smaller block ({})\n", now.state.time, largest.share,
-               largest.between);
+    fmt::print("t = {:8.5f} s   largest overlap {:.3e} of the smaller block ({})\n", now.state.time,
+               largest.share, largest.between);
     std::fflush(stdout);
   }
 };
@@ -36,8 +36,9 @@ int main(int argc, char** argv) {
     talus::State state = talus::start_state(run.scene);
     OverlapWatch watch;
     const talus::RunResult result = talus::run_stages(run.scene, run.plans, state, watch);
-    fmt::print("{} blocks, {} steps, {:.1f} s, {} failed steps, energy left over {:.1e} of the largest term\n",
-               run.scene.blocks.count, result.steps, result.wall_seconds, result.failed_steps, result.closure());
+    fmt::print(
+        "{} blocks, {} steps, {:.1f} s, {} failed steps, energy left over {:.1e} of the largest term\n",
+        run.scene.blocks.count, result.steps, result.wall_seconds, result.failed_steps, result.closure());
     return result.failure.empty() ? 0 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());

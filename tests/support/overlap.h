@@ -1,6 +1,6 @@
 #pragma once
-// How far blocks have gone into each other, from their polygons alone: a judge that shares nothing with the contact
-// search.
+// How far blocks have gone into each other, from their polygons alone: a judge that shares nothing with the
+// contact search.
 
 #include <algorithm>
 #include <string>

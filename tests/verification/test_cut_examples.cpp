@@ -49,7 +49,8 @@ double edge_length(const Cut& cut, const std::string& origin) {
       const auto e = static_cast<size_t>(i);
       if (seen[e] || cut.origins[static_cast<size_t>(cut.edge_origin[e])].name != origin) continue;
       seen[e] = true;
-      sum += norm(cut.point[static_cast<size_t>(cut.edge[e][1])] - cut.point[static_cast<size_t>(cut.edge[e][0])]);
+      sum += norm(cut.point[static_cast<size_t>(cut.edge[e][1])] -
+                  cut.point[static_cast<size_t>(cut.edge[e][0])]);
     }
   }
   return sum;
@@ -98,7 +99,8 @@ TEST_CASE("example cavern: the fault stays whole, the gallery's rock stays") {
   const double to_arc = -b - std::sqrt(b * b - dot(from_center, from_center) + 121);
   length -= to_wall - to_arc;
   // 24 segments stand for the half circle: up to 0.3 % of its radius off
-  check_close("cavern fault, length of block edges [m]", edge_length(e.cut, "shear zone"), length, 5e-4, 3e-4);
+  check_close("cavern fault, length of block edges [m]", edge_length(e.cut, "shear zone"), length, 5e-4,
+              3e-4);
   double gallery = 0;
   for (const CutBlock& block : e.cut.blocks)
     if (block.opening == 1) gallery += signed_area(e.cut.polygon(block));
@@ -116,7 +118,8 @@ TEST_CASE("example specimen: cells of the size asked for") {
 }
 
 TEST_CASE("example wall: blocks counted by hand, the ground carries the weight") {
-  // courses of 10, or 9 and two halves; the window takes the middle of six courses, the lintel that of the seventh
+  // courses of 10, or 9 and two halves; the window takes the middle of six courses, the lintel that of the
+  // seventh
   const CutExample e = cut_example("wall");
   CHECK(e.cut.blocks.size() == 5 * 10 + 2 + 6 * 8 + 9 + 3 * 10 + 1);
   const CaseResult r = run_case(example("wall"));
@@ -128,14 +131,15 @@ TEST_CASE("example wall: blocks counted by hand, the ground carries the weight")
 
 TEST_CASE("example settle: nothing passes through anything") {
   LargestOverlap worst;
-  const CaseResult r = run_case(example("settle"), {"output.history_interval=\"10 ms\""}, [&](const Instant& now) {
-    if (!now.last && now.state.step % 50 != 0) return;
-    const LargestOverlap largest = largest_overlap(now.scene.blocks, now.state);
-    if (largest.share > worst.share) worst = largest;
-  });
+  const CaseResult r =
+      run_case(example("settle"), {"output.history_interval=\"10 ms\""}, [&](const Instant& now) {
+        if (!now.last && now.state.step % 50 != 0) return;
+        const LargestOverlap largest = largest_overlap(now.scene.blocks, now.state);
+        if (largest.share > worst.share) worst = largest;
+      });
   INFO(worst.between);
-  // joints of 20 GPa/m under at most twice the weight of 60 m close by 0.17 mm, of blocks 3 m wide: 6e-5; three-cornered
-  // ones at the floor have half the area per side
+  // joints of 20 GPa/m under at most twice the weight of 60 m close by 0.17 mm, of blocks 3 m wide: 6e-5;
+  // three-cornered ones at the floor have half the area per side
   check_below("settle, largest overlap / smaller block", worst.share, 1e-3, 2e-4);
   CHECK(r.run.failed_steps == 0);
 }

@@ -23,8 +23,8 @@ class Random {
   uint64_t state_;
 };
 
-/// Seed of the stream for the thing called `name`, and of its part `number`, under one seed of the model: adding
-/// one stream does not disturb another.
+/// Seed of the stream for the thing called `name`, and of its part `number`, under one seed of the model:
+/// adding one stream does not disturb another.
 uint64_t stream_seed(uint64_t seed, std::string_view name, int64_t number = 0);
 
 }  // namespace talus

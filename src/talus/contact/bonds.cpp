@@ -111,7 +111,8 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
   std::vector<std::pair<int, int>> without_face;
   for (const auto& [a, b] : close_pairs(boxes, std::max(layout.touching, kTouching * largest))) {
     if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
-    const int pair = layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
+    const int pair =
+        layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
     const bool by_edges = pair == Layout::kNoPair && has_edge_joints(layout, a) && has_edge_joints(layout, b);
     const int whole = pair == Layout::kNoPair ? layout.default_joint : pair;
     if (!by_edges && !has_strength(model.joints, whole)) continue;

@@ -23,8 +23,8 @@ Vec2 edge_vector(const BlockSet& blocks, const State& s, int block, int k) {
   return e + s.strain_part[static_cast<size_t>(block)] * e;
 }
 
-// A corner that turns by less than this (sine) lies on a straight side: a joint ends there on the other side, or the
-// side belongs to two sources. It enters nothing; the corner across does.
+// A corner that turns by less than this (sine) lies on a straight side: a joint ends there on the other side,
+// or the side belongs to two sources. It enters nothing; the corner across does.
 constexpr double kFlat = 1e-4;
 
 bool is_flat(const BlockSet& blocks, const State& s, int block, int k) {
@@ -46,7 +46,8 @@ int side_of(const BlockSet& blocks, const State& s, int block, int edge) {
   return edge;
 }
 
-// The edge of the straight side from `first` on that has `place` (an offset from the block's centroid) beside it.
+// The edge of the straight side from `first` on that has `place` (an offset from the block's centroid) beside
+// it.
 int edge_beside(const BlockSet& blocks, const State& s, int block, int first, Vec2 place) {
   const int n = blocks.vertex_count(block);
   int edge = first;
@@ -185,7 +186,8 @@ void merge_corner_pairs(const BlockSet& blocks, const State& s, double same, std
 }
 
 // Two points become the ends of one face of the sides given (of the lower and the higher block id).
-void make_face(const BlockSet& blocks, const State& s, int side_lo, int side_hi, ContactPoint& x, ContactPoint& y) {
+void make_face(const BlockSet& blocks, const State& s, int side_lo, int side_hi, ContactPoint& x,
+               ContactPoint& y) {
   const auto place = [&](const ContactPoint& h, int block) {
     const auto a = static_cast<size_t>(h.key.block_a);
     return (blocks.centroid[a] - blocks.centroid[static_cast<size_t>(block)]) + offset_now(s, a, h.arm_a);

@@ -11,13 +11,13 @@ namespace talus {
 /// One contact point: a corner of block a on, near or slightly inside an edge of block b.
 struct ContactPoint {
   ContactKey key;
-  Vec2 normal;         // outward normal of b's edge now: from b into a
-  Vec2 arm_a, arm_b;   // reference arms of the corner and of its foot on the edge
-  double gap = 0;      // [m] > 0 apart
-  double slip = 0;     // [m] position of the foot along the tangent (the normal turned clockwise)
-  double length = 0;   // [m] tributary length: half the face it ends, 0 for a corner alone
+  Vec2 normal;        // outward normal of b's edge now: from b into a
+  Vec2 arm_a, arm_b;  // reference arms of the corner and of its foot on the edge
+  double gap = 0;     // [m] > 0 apart
+  double slip = 0;    // [m] position of the foot along the tangent (the normal turned clockwise)
+  double length = 0;  // [m] tributary length: half the face it ends, 0 for a corner alone
   int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of that face; -1: none
-  ContactKey partner;  // the other end of that face; block_a = -1 when there is none
+  ContactKey partner;                      // the other end of that face; block_a = -1 when there is none
 };
 
 /// Gap and foot of a corner over an edge; digits are kept however far both are from the origin.

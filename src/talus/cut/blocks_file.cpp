@@ -54,7 +54,10 @@ std::string joined(const auto& list, const auto& show, const char* separator) {
 std::string quoted(const std::string& s) { return Json(s).dump(); }
 
 std::string numbers(const std::vector<int>& list) {
-  return "[" + joined(list, [](int i) { return std::to_string(i); }, ",") + "]";
+  return "[" +
+         joined(
+             list, [](int i) { return std::to_string(i); }, ",") +
+         "]";
 }
 
 // A block, its edges made known to the cut by their ends.
@@ -71,10 +74,12 @@ CutBlock block_of(const Json& in, std::map<std::pair<int, int>, int>& edge_of, C
                origin.size() == b.point.size();
   for (const int p : b.point) sound = sound && below(p, cut.point.size());
   for (const int o : origin) sound = sound && below(o, cut.origins.size());
-  if (!sound || !(signed_area(cut.polygon(b)) > 0)) throw std::runtime_error(fmt::format("block {} is damaged", b.id));
+  if (!sound || !(signed_area(cut.polygon(b)) > 0))
+    throw std::runtime_error(fmt::format("block {} is damaged", b.id));
   for (size_t k = 0; k < b.point.size(); ++k) {
     const auto ends = std::minmax(b.point[k], b.point[(k + 1) % b.point.size()]);
-    const auto [it, fresh] = edge_of.try_emplace({ends.first, ends.second}, static_cast<int>(cut.edge.size()));
+    const auto [it, fresh] =
+        edge_of.try_emplace({ends.first, ends.second}, static_cast<int>(cut.edge.size()));
     if (fresh) {
       cut.edge.push_back({ends.first, ends.second});
       cut.edge_origin.push_back(origin[k]);
@@ -130,17 +135,21 @@ std::string blocks_file_text(const Model& model, const Cut& cut) {
     std::vector<int> corners, origins;
     for (const int p : b.point) corners.push_back(number[static_cast<size_t>(p)]);
     for (const int e : b.edge) origins.push_back(cut.edge_origin[static_cast<size_t>(e)]);
-    return fmt::format("{{\"id\":{},\"region\":{},\"opening\":{},\"points\":{},\"origins\":{}}}", b.id, b.region,
-                       b.opening, numbers(corners), numbers(origins));
+    return fmt::format("{{\"id\":{},\"region\":{},\"opening\":{},\"points\":{},\"origins\":{}}}", b.id,
+                       b.region, b.opening, numbers(corners), numbers(origins));
   };
   std::string out = fmt::format("{{\"talus_blocks\": {},\n\"cut\": {},\n\"grid\": {},\n", kFormat,
                                 quoted(cut_fingerprint(model)), cut.grid);
   out += fmt::format("\"regions\": [{}],\n\"openings\": [{}],\n\"origins\": [{}],\n",
-                     joined(cut.regions, [](const CutRegion& r) { return quoted(r.name); }, ", "),
+                     joined(
+                         cut.regions, [](const CutRegion& r) { return quoted(r.name); }, ", "),
                      joined(cut.openings, quoted, ", "),
-                     joined(cut.origins, [](const Origin& o) { return quoted(o.name); }, ", "));
+                     joined(
+                         cut.origins, [](const Origin& o) { return quoted(o.name); }, ", "));
   out += "\"points\": [\n" +
-         joined(points, [](Vec2 p) { return fmt::format("[{},{}]", p.x, p.y); }, ",\n") + "],\n";
+         joined(
+             points, [](Vec2 p) { return fmt::format("[{},{}]", p.x, p.y); }, ",\n") +
+         "],\n";
   return out + "\"blocks\": [\n" + joined(cut.blocks, block, ",\n") + "]}\n";
 }
 
@@ -154,9 +163,10 @@ Cut read_blocks_file(const Model& model, Findings& findings) {
     const Json json = Json::parse(in);
     if (json.at("talus_blocks") != kFormat) throw std::runtime_error("it is of another format");
     if (json.at("cut") != cut_fingerprint(model)) {
-      findings.error(where, "cut.blocks",
-                     fmt::format("\"{}\" was cut from other regions, joints or settings", model.cut.blocks_file),
-                     "cut again with talus cut, or undo the change");
+      findings.error(
+          where, "cut.blocks",
+          fmt::format("\"{}\" was cut from other regions, joints or settings", model.cut.blocks_file),
+          "cut again with talus cut, or undo the change");
       return {};
     }
     const RegionMap regions(model);
@@ -169,7 +179,8 @@ Cut read_blocks_file(const Model& model, Findings& findings) {
     cut.whole = cut.blocks;
     return cut;
   } catch (const std::exception& e) {
-    findings.error(where, "cut.blocks", fmt::format("\"{}\" is no blocks file of talus: {}", model.cut.blocks_file, e.what()),
+    findings.error(where, "cut.blocks",
+                   fmt::format("\"{}\" is no blocks file of talus: {}", model.cut.blocks_file, e.what()),
                    "write it with talus cut");
     return {};
   }

@@ -13,7 +13,8 @@ namespace talus {
 
 namespace {
 
-// Noding moves lines by less than a cell of the grid: a face within this many cells of a region belongs to it.
+// Noding moves lines by less than a cell of the grid: a face within this many cells of a region belongs to
+// it.
 constexpr double kNear = 2;
 
 // A cut through a hole may meet another hole; each round opens at least one.
@@ -22,7 +23,10 @@ constexpr int kMostRounds = 1000;
 class Cutter {
  public:
   Cutter(const Model& model, Findings& findings)
-      : model_(model), findings_(findings), regions_(model), traces_(make_traces(model, regions_, findings)) {}
+      : model_(model),
+        findings_(findings),
+        regions_(model),
+        traces_(make_traces(model, regions_, findings)) {}
 
   Cut cut() {
     Cut out;
@@ -30,7 +34,8 @@ class Cutter {
     const double extent = std::max(box.max.x - box.min.x, box.max.y - box.min.y);
     out.grid = grid_width(extent, model_.cut.grid);
     if (extent / out.grid > 0x1p46) {
-      findings_.error(model_.cut.where, "cut.grid", fmt::format("{:.3g} m is too fine for a model of {:.3g} m", out.grid, extent),
+      findings_.error(model_.cut.where, "cut.grid",
+                      fmt::format("{:.3g} m is too fine for a model of {:.3g} m", out.grid, extent),
                       "coordinates have no digits left for it: give a wider grid or leave it out");
       return {};
     }
@@ -51,7 +56,9 @@ class Cutter {
     }
     out.blocks = out.whole;
     treat_slivers(model_.cut, removed, out);
-    const auto is_out = [&](const CutBlock& b) { return b.opening >= 0 && removed[static_cast<size_t>(b.opening)]; };
+    const auto is_out = [&](const CutBlock& b) {
+      return b.opening >= 0 && removed[static_cast<size_t>(b.opening)];
+    };
     const size_t before = out.blocks.size();
     out.blocks.erase(std::remove_if(out.blocks.begin(), out.blocks.end(), is_out), out.blocks.end());
     out.taken_out = static_cast<int>(before - out.blocks.size());
@@ -60,7 +67,8 @@ class Cutter {
   }
 
  private:
-  // Faces with holes are no blocks: a level cut through the middle of each hole, from side to side of its face.
+  // Faces with holes are no blocks: a level cut through the middle of each hole, from side to side of its
+  // face.
   Arrangement arrange_without_holes(Cut& out) {
     std::vector<Polyline> lines;
     for (const Trace& t : traces_.traces) lines.push_back(t.line);
@@ -70,7 +78,8 @@ class Cutter {
       const size_t before = lines.size();
       for (const auto& rings : net.rings_of_holed) {
         const auto cuts = level_cuts(rings);
-        if (regions_.region_at(0.5 * (cuts[0].first + cuts[0].second), kNear * out.grid) < 0) continue;  // no rock
+        if (regions_.region_at(0.5 * (cuts[0].first + cuts[0].second), kNear * out.grid) < 0)
+          continue;  // no rock
         if (construction < 0) {
           construction = static_cast<int>(traces_.origins.size());
           traces_.origins.push_back({"(construction)", OriginKind::kConstruction, model_.bonded_joint});
@@ -125,8 +134,8 @@ class Cutter {
       if (b.region < 0) continue;  // between regions
       for (size_t o = 0; o < opening_boxes.size(); ++o) {
         const Box& box = opening_boxes[o];
-        if (inside.x >= box.min.x && inside.x <= box.max.x && inside.y >= box.min.y && inside.y <= box.max.y &&
-            contains(model_.openings[o].polygon, inside))
+        if (inside.x >= box.min.x && inside.x <= box.max.x && inside.y >= box.min.y &&
+            inside.y <= box.max.y && contains(model_.openings[o].polygon, inside))
           b.opening = static_cast<int>(o);
       }
       b.id = static_cast<int>(out.whole.size());
@@ -141,8 +150,8 @@ class Cutter {
       if (b.opening >= 0) used[static_cast<size_t>(b.opening)] = true;
     for (size_t o = 0; o < used.size(); ++o)
       if (!used[o])
-        findings_.error(model_.openings[o].where, "opening." + model_.openings[o].name, "lies outside every region",
-                        "move it, or extend a region");
+        findings_.error(model_.openings[o].where, "opening." + model_.openings[o].name,
+                        "lies outside every region", "move it, or extend a region");
   }
 
   const Model& model_;

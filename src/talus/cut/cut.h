@@ -1,6 +1,6 @@
 #pragma once
-// From the model's regions and traces to a closed set of blocks: arrangement, dead ends, slivers, numbers that
-// stay. Theory: docs/theory.md section 8.
+// From the model's regions and traces to a closed set of blocks: arrangement, dead ends, slivers, numbers
+// that stay. Theory: docs/theory.md section 10.
 
 #include <array>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace talus {
 
-/// A block of the partition. Corners are shared with its neighbours exactly; some are flat (the end of a joint on
-/// the other side).
+/// A block of the partition. Corners are shared with its neighbours exactly; some are flat (the end of a
+/// joint on the other side).
 struct CutBlock {
-  int id = 0;               // number in its name; does not change when others are merged or taken out
+  int id = 0;  // number in its name; does not change when others are merged or taken out
   int region = 0;
-  int opening = -1;         // -1: in none
-  std::vector<int> point;   // corners, counter-clockwise
-  std::vector<int> edge;    // edge[k] runs from point[k] to point[k + 1]
+  int opening = -1;        // -1: in none
+  std::vector<int> point;  // corners, counter-clockwise
+  std::vector<int> edge;   // edge[k] runs from point[k] to point[k + 1]
 };
 
 enum class SliverAction { kMerged, kDeleted, kKept };
@@ -28,7 +28,7 @@ struct Sliver {
   double area = 0, width = 0;  // [m2], [m] when it was judged
   Vec2 at;                     // centroid [m]
   SliverAction action = SliverAction::kKept;
-  int into = -1;               // id of the receiver
+  int into = -1;  // id of the receiver
 };
 
 struct SliverTable {
@@ -36,25 +36,25 @@ struct SliverTable {
   double area_limit = 0, width_limit = 0;
   std::vector<Sliver> rows;
   int merged = 0, deleted = 0, kept = 0;
-  int receivers = 0;         // blocks that took up slivers
-  double deleted_area = 0;   // [m2]
+  int receivers = 0;        // blocks that took up slivers
+  double deleted_area = 0;  // [m2]
 };
 
 struct Cut {
-  double grid = 0;                            // [m]
-  std::vector<CutRegion> regions;             // regions, then arches
-  std::vector<std::string> openings;          // names
+  double grid = 0;                    // [m]
+  std::vector<CutRegion> regions;     // regions, then arches
+  std::vector<std::string> openings;  // names
   std::vector<Origin> origins;
-  std::vector<Vec2> point;                    // [n_points]
-  std::vector<std::array<int, 2>> edge;       // [n_edges] points
-  std::vector<int> edge_origin;               // [n_edges]
-  std::vector<CutBlock> whole;                // all blocks before anything was merged or taken out, by id
-  std::vector<CutBlock> blocks;               // what is left
+  std::vector<Vec2> point;               // [n_points]
+  std::vector<std::array<int, 2>> edge;  // [n_edges] points
+  std::vector<int> edge_origin;          // [n_edges]
+  std::vector<CutBlock> whole;           // all blocks before anything was merged or taken out, by id
+  std::vector<CutBlock> blocks;          // what is left
   std::vector<JointSetNote> joint_sets;
-  std::vector<Polyline> dead_ends;            // parts of traces that bound no block
-  double dead_end_length = 0;                 // [m]
-  int bridges = 0;                            // cuts added where a block had a hole
-  int taken_out = 0;                          // blocks of removed openings
+  std::vector<Polyline> dead_ends;  // parts of traces that bound no block
+  double dead_end_length = 0;       // [m]
+  int bridges = 0;                  // cuts added where a block had a hole
+  int taken_out = 0;                // blocks of removed openings
   SliverTable slivers;
 
   Polygon polygon(const CutBlock& block) const;

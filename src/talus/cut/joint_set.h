@@ -1,5 +1,6 @@
 #pragma once
-// Lines of one joint set: parallel, scattered, through-going or in traces with gaps. Theory: docs/theory.md 8.1.
+// Lines of one joint set: parallel, scattered, through-going or in traces with gaps. Theory:
+// docs/theory.md 10.1.
 
 #include <string>
 #include <utility>
@@ -21,8 +22,9 @@ struct JointSetNote {
   double length = 0;  // in the regions [m]
 };
 
-/// Direction of a joint plane's trace in the section [rad], counter-clockwise from +x, and how much wider than
-/// the plane's the spacing of its traces is: angle = -atan(tan dip cos(dip_direction - section_azimuth)).
+/// Direction of a joint plane's trace in the section [rad], counter-clockwise from +x, and how much wider
+/// than the plane's the spacing of its traces is: angle = -atan(tan dip cos(dip_direction -
+/// section_azimuth)).
 struct ApparentDip {
   double angle = 0;
   double widening = 1;  // infinite when the plane is parallel to the section

@@ -51,8 +51,8 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
   }
 }
 
-// A corner is flat when it lies within a cell of the grid on the line between the corners kept beside it, and the
-// edges on both sides have one origin.
+// A corner is flat when it lies within a cell of the grid on the line between the corners kept beside it, and
+// the edges on both sides have one origin.
 void add_cut_block(const Cut& cut, const CutBlock& block, const Model& model, BlockShape& out) {
   const size_t n = block.point.size();
   const auto place = [&](size_t k) { return cut.point[static_cast<size_t>(block.point[k % n])]; };
@@ -118,7 +118,10 @@ void check_overlaps(const Layout& layout, Findings& findings) {
     const Overlap overlap = polygon_overlap(a.polygon, b.polygon);
     const double smaller = std::min(signed_area(a.polygon), signed_area(b.polygon));
     // sides of cut blocks lie on the grid, not exactly where they were drawn
-    const double rounding = cut_a || cut_b ? layout.touching * norm(boxes[static_cast<size_t>(j)].max - boxes[static_cast<size_t>(j)].min) : 0;
+    const double rounding =
+        cut_a || cut_b
+            ? layout.touching * norm(boxes[static_cast<size_t>(j)].max - boxes[static_cast<size_t>(j)].min)
+            : 0;
     if (overlap.area <= kOverlapShare * smaller + rounding) continue;
     findings.error(layout.group_where[static_cast<size_t>(b.group)], b.name,
                    fmt::format("overlaps \"{}\" by {:.3g} m2 around ({:.6g}, {:.6g})", a.name, overlap.area,
@@ -291,7 +294,8 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
     layout.pair_joint[std::minmax(a, b)] = p.joint;
   }
   if (layout.blocks.empty() && sound)
-    findings.error({1, 1, ""}, "block", "the model has no block", "add a [[block]], a [[grid]] or a [[region]]");
+    findings.error({1, 1, ""}, "block", "the model has no block",
+                   "add a [[block]], a [[grid]] or a [[region]]");
   if (layout.blocks.empty() || !sound) return layout;
 
   check_overlaps(layout, findings);
@@ -315,7 +319,7 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
       const std::string near = closest_name(s.along, layout.origins);
       findings.error(s.where, "support." + s.name + ".along",
                      fmt::format("there is no side, opening, fault or joint set called \"{}\"", s.along),
-                     !near.empty() ? fmt::format("did you mean \"{}\"?", near)
+                     !near.empty()            ? fmt::format("did you mean \"{}\"?", near)
                      : layout.origins.empty() ? "the file has no [[region]]"
                                               : fmt::format("there is {}", join_or(layout.origins)));
       continue;
@@ -325,13 +329,13 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
       continue;
     }
     if (corners_of_support(layout, s).empty())
-      findings.error(
-          s.where, "support." + s.name,
-          !s.along.empty() ? fmt::format("no block edge is left along \"{}\"", s.along)
-          : s.is_edge      ? "no block edge lies on the segment"
-                           : "the point lies on no block",
-          !s.along.empty() ? "see with talus cut which edges there are"
-          : s.is_edge      ? "give a segment along block edges, corners included" : "give a point of a block");
+      findings.error(s.where, "support." + s.name,
+                     !s.along.empty() ? fmt::format("no block edge is left along \"{}\"", s.along)
+                     : s.is_edge      ? "no block edge lies on the segment"
+                                      : "the point lies on no block",
+                     !s.along.empty() ? "see with talus cut which edges there are"
+                     : s.is_edge      ? "give a segment along block edges, corners included"
+                                      : "give a point of a block");
   }
   return layout;
 }

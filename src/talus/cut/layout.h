@@ -28,17 +28,17 @@ struct BlockShape {
 
 struct Layout {
   std::vector<BlockShape> blocks;
-  std::vector<std::string> groups;                // names of blocks, grids, regions and kept openings
-  std::vector<Where> group_where;                 // [groups]
-  int first_cut_group = 0;                        // groups from here on were cut together
-  std::vector<std::string> origins;               // what edges of cut blocks come from
-  double touching = 0;  // [m] edges of cut blocks lie this near to each other where they touch
+  std::vector<std::string> groups;   // names of blocks, grids, regions and kept openings
+  std::vector<Where> group_where;    // [groups]
+  int first_cut_group = 0;           // groups from here on were cut together
+  std::vector<std::string> origins;  // what edges of cut blocks come from
+  double touching = 0;               // [m] edges of cut blocks lie this near to each other where they touch
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
 
-  /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and frictionless.
-  /// A joint given for the pair goes first; then that of the edge, where two differ that of the lower block; then
-  /// the default.
+  /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and
+  /// frictionless. A joint given for the pair goes first; then that of the edge, where two differ that of the
+  /// lower block; then the default.
   int joint_at(int block_a, int edge_a, int block_b, int edge_b) const;
   /// Joint given for two groups, or kNoPair.
   static constexpr int kNoPair = -2;
@@ -53,12 +53,12 @@ struct Layout {
 /// `findings`. Throws FileError when that file cannot be read.
 Cut cut_or_read(const Model& model, Findings& findings);
 
-/// Polygons of blocks of a cut, flat corners (to a cell of the grid) left out: they are no corners. Groups count
-/// from the first region.
+/// Polygons of blocks of a cut, flat corners (to a cell of the grid) left out: they are no corners. Groups
+/// count from the first region.
 std::vector<BlockShape> shapes_of(const Model& model, const Cut& cut, const std::vector<CutBlock>& blocks);
 
-/// Blocks, expanded grids and cut blocks as polygons, counter-clockwise, all checked. Everything wrong goes to
-/// `findings`.
+/// Blocks, expanded grids and cut blocks as polygons, counter-clockwise, all checked. Everything wrong goes
+/// to `findings`.
 /// @pre  read_model found no error
 Layout make_layout(const Model& model, const Cut& cut, Findings& findings);
 

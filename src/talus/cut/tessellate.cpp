@@ -12,7 +12,8 @@ namespace {
 // Interior points of triangles stay this share of their distance away from the outline.
 constexpr double kFromOutline = 0.55;
 
-// Points of a triangular lattice of pitch `pitch` over `box`, each moved by up to irregularity / 2 of the pitch.
+// Points of a triangular lattice of pitch `pitch` over `box`, each moved by up to irregularity / 2 of the
+// pitch.
 std::vector<Vec2> lattice(const Box& box, double pitch, double irregularity, Random& random) {
   std::vector<Vec2> points;
   const double row = pitch * std::sqrt(0.75);
@@ -23,8 +24,9 @@ std::vector<Vec2> lattice(const Box& box, double pitch, double irregularity, Ran
       // two numbers per point, used or not: a point does not depend on the others
       const double radius = 0.5 * irregularity * pitch * std::sqrt(random.uniform());
       const double angle = 6.283185307179586 * random.uniform();
-      points.push_back({box.min.x + pitch * (static_cast<double>(i) + (j % 2 != 0 ? 0.5 : 0)) + radius * std::cos(angle),
-                        box.min.y + row * static_cast<double>(j) + radius * std::sin(angle)});
+      points.push_back(
+          {box.min.x + pitch * (static_cast<double>(i) + (j % 2 != 0 ? 0.5 : 0)) + radius * std::cos(angle),
+           box.min.y + row * static_cast<double>(j) + radius * std::sin(angle)});
     }
   }
   return points;
@@ -32,7 +34,8 @@ std::vector<Vec2> lattice(const Box& box, double pitch, double irregularity, Ran
 
 }  // namespace
 
-std::vector<std::pair<Vec2, Vec2>> tessellate(const TessellationInput& input, const Polygon& polygon, uint64_t seed) {
+std::vector<std::pair<Vec2, Vec2>> tessellate(const TessellationInput& input, const Polygon& polygon,
+                                              uint64_t seed) {
   Random random(stream_seed(seed, input.name));
   const Box box = bounding_box(polygon);
   if (!input.triangles) {
@@ -51,7 +54,8 @@ std::vector<std::pair<Vec2, Vec2>> tessellate(const TessellationInput& input, co
   const auto is_free = [&](Vec2 p) {
     if (!contains(polygon, p)) return false;
     for (size_t k = 0; k < polygon.size(); ++k)
-      if (distance_to_segment(p, polygon[k], polygon[(k + 1) % polygon.size()]) < kFromOutline * input.size) return false;
+      if (distance_to_segment(p, polygon[k], polygon[(k + 1) % polygon.size()]) < kFromOutline * input.size)
+        return false;
     return true;
   };
   for (const Vec2 p : lattice(box, input.size, input.irregularity, random))

@@ -48,19 +48,19 @@ class TraceMaker {
   }
 
   void add_ring(const Polygon& ring, int origin, int region = -1) {
-    for (size_t k = 0; k < ring.size(); ++k) add_clipped(ring[k], ring[(k + 1) % ring.size()], region, origin);
+    for (size_t k = 0; k < ring.size(); ++k)
+      add_clipped(ring[k], ring[(k + 1) % ring.size()], region, origin);
   }
 
   void add_openings() {
-    for (const OpeningInput& o : model_.openings)
-      add_ring(o.polygon, origin(o.name, OriginKind::kOpening));
+    for (const OpeningInput& o : model_.openings) add_ring(o.polygon, origin(o.name, OriginKind::kOpening));
   }
 
   void add_sides() {
     for (const CutRegion& r : regions_.list()) {
       for (size_t k = 0; k < r.polygon.size(); ++k)
-        out_.traces.push_back({{r.polygon[k], r.polygon[(k + 1) % r.polygon.size()]},
-                               origin(r.sides[k], OriginKind::kSide)});
+        out_.traces.push_back(
+            {{r.polygon[k], r.polygon[(k + 1) % r.polygon.size()]}, origin(r.sides[k], OriginKind::kSide)});
     }
   }
 
@@ -79,7 +79,8 @@ class TraceMaker {
       const auto first_course = static_cast<int64_t>(std::floor((box.min.y - m.origin.y) / m.height));
       const auto last_course = static_cast<int64_t>(std::ceil((box.max.y - m.origin.y) / m.height));
       for (int64_t j = first_course; j < last_course; ++j) {
-        const double y0 = m.origin.y + m.height * static_cast<double>(j), y1 = m.origin.y + m.height * static_cast<double>(j + 1);
+        const double y0 = m.origin.y + m.height * static_cast<double>(j),
+                     y1 = m.origin.y + m.height * static_cast<double>(j + 1);
         add_clipped({box.min.x, y0}, {box.max.x, y0}, m.region, beds);
         const double x0 = m.origin.x + (j % 2 != 0 ? m.overlap * m.length : 0);
         const auto last = static_cast<int64_t>(std::ceil((box.max.x - x0) / m.length));

@@ -1,6 +1,6 @@
 #pragma once
 // The lines that divide the regions, from everything the model names: outlines, openings, faults, masonry,
-// tessellations and joint sets. Theory: docs/theory.md section 8.
+// tessellations and joint sets. Theory: docs/theory.md section 10.
 
 #include <string>
 #include <vector>
@@ -33,8 +33,8 @@ struct TraceSet {
 /// Everything that block edges of the model may come from, in the order of their importance.
 std::vector<Origin> all_origins(const Model& model, const RegionMap& regions);
 
-/// All traces of the model, clipped to the regions. Sets that make no sense (parallel to the section, millions of
-/// traces) are findings.
+/// All traces of the model, clipped to the regions. Sets that make no sense (parallel to the section,
+/// millions of traces) are findings.
 TraceSet make_traces(const Model& model, const RegionMap& regions, Findings& findings);
 
 }  // namespace talus

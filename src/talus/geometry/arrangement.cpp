@@ -83,7 +83,7 @@ class LineIndex {
 };
 
 struct Noded {
-  std::vector<Polygon> rings;               // counter-clockwise, without the closing corner
+  std::vector<Polygon> rings;  // counter-clockwise, without the closing corner
   std::vector<std::vector<Polyline>> holed;
   std::vector<Polyline> dead_ends;
 };
@@ -103,8 +103,8 @@ Polygon open_ring(const GEOSGeometry* ring) {
 // Noding and polygonizing, in coordinates relative to `origin`.
 Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 origin) {
   const GEOSContextHandle_t context = geos().context();
-  // in mixed order: the noder keeps its nodes in a tree that it does not balance, and parallel lines from one side
-  // to the other would make it half a list (measured: 31 s instead of 15 s at half a million faces)
+  // in mixed order: the noder keeps its nodes in a tree that it does not balance, and parallel lines from one
+  // side to the other would make it half a list (measured: 31 s instead of 15 s at half a million faces)
   std::vector<Polyline> mixed = lines;
   Random random(1);
   for (size_t i = mixed.size(); i > 1; --i) std::swap(mixed[i - 1], mixed[random.next() % i]);
@@ -113,11 +113,12 @@ Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 
   if (!noded) throw std::runtime_error("noding of the joints failed");
   GEOSGeometry *cuts = nullptr, *dangles = nullptr, *invalid = nullptr;
   const auto faces = geos().own(GEOSPolygonize_full_r(context, noded.get(), &cuts, &dangles, &invalid));
-  const auto own_cuts = geos().own(cuts), own_dangles = geos().own(dangles), own_invalid = geos().own(invalid);
+  const auto own_cuts = geos().own(cuts), own_dangles = geos().own(dangles),
+             own_invalid = geos().own(invalid);
   if (!faces) throw std::runtime_error("collecting the faces between the joints failed");
   if (invalid && GEOSGetNumGeometries_r(context, invalid) > 0)
-    throw std::runtime_error(fmt::format("{} faces between the joints are not simple",
-                                         GEOSGetNumGeometries_r(context, invalid)));
+    throw std::runtime_error(
+        fmt::format("{} faces between the joints are not simple", GEOSGetNumGeometries_r(context, invalid)));
   Noded out;
   for_parts(faces.get(), [&](const GEOSGeometry* polygon) {
     Polygon outer = open_ring(GEOSGetExteriorRing_r(context, polygon));
@@ -135,7 +136,8 @@ Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 
   for (const GEOSGeometry* list : {own_cuts.get(), own_dangles.get()}) {
     const auto merged = geos().own(list ? GEOSLineMerge_r(context, list) : nullptr);
     if (merged)
-      for_parts(merged.get(), [&](const GEOSGeometry* line) { out.dead_ends.push_back(geos().corners_of(line)); });
+      for_parts(merged.get(),
+                [&](const GEOSGeometry* line) { out.dead_ends.push_back(geos().corners_of(line)); });
   }
   return out;
 }
@@ -178,7 +180,8 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
     const int f = static_cast<int>(out.face.size());
     for (size_t k = 0; k < face.point.size(); ++k) {
       const int a = face.point[k], b = face.point[(k + 1) % face.point.size()];
-      const auto [it, fresh] = edge_of.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(out.edge.size()));
+      const auto [it, fresh] =
+          edge_of.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(out.edge.size()));
       if (fresh) {
         out.edge.push_back({std::min(a, b), std::max(a, b)});
         out.edge_face.push_back({-1, -1});
@@ -202,8 +205,9 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
     const Vec2 p = out.point[static_cast<size_t>(a)], q = out.point[static_cast<size_t>(b)];
     out.edge_source.push_back(index.first_along(p, q));
     if (out.edge_source.back() < 0)
-      throw std::runtime_error(fmt::format("no joint runs along the edge from ({:.9g}, {:.9g}) to ({:.9g}, {:.9g})",
-                                           p.x + origin.x, p.y + origin.y, q.x + origin.x, q.y + origin.y));
+      throw std::runtime_error(
+          fmt::format("no joint runs along the edge from ({:.9g}, {:.9g}) to ({:.9g}, {:.9g})",
+                      p.x + origin.x, p.y + origin.y, q.x + origin.x, q.y + origin.y));
   }
 
   for (Vec2& p : out.point) p += origin;

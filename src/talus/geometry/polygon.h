@@ -9,7 +9,7 @@
 
 namespace talus {
 
-using Polygon = std::vector<Vec2>;  // vertices in order, the last joins the first, [m]
+using Polygon = std::vector<Vec2>;   // vertices in order, the last joins the first, [m]
 using Polyline = std::vector<Vec2>;  // vertices from end to end, [m]
 
 /// Signed area [m2]; > 0 for counter-clockwise order.

@@ -1,5 +1,6 @@
 #pragma once
-// Polygons of common outlines. Curves become equal-area segments: the polygon encloses what the curve encloses.
+// Polygons of common outlines. Curves become equal-area segments: the polygon encloses what the curve
+// encloses.
 
 #include "talus/geometry/polygon.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// What the user asked the cutter for: regions of rock or masonry and the traces that divide them. Plain data in SI
-// units; angles counter-clockwise from +x.
+// What the user asked the cutter for: regions of rock or masonry and the traces that divide them. Plain data
+// in SI units; angles counter-clockwise from +x.
 
 #include <cstdint>
 #include <limits>
@@ -58,12 +58,12 @@ struct JointSetInput {
   bool in_space = false;
   double dip = 0, dip_direction = 0;  // [rad] when in_space
   double fisher = 0;                  // concentration of the poles; 0: no scatter
-  Scattered spacing;                  // [m] along the normal; of the planes when in_space, of the traces otherwise
-  Scattered trace_length;             // [m] mean 0: through-going
-  Scattered gap;                      // [m]
-  Vec2 origin;                        // [m]
-  Scattered offset;                   // [m] of the first line from the origin
-  Scattered start;                    // [m] of the first trace along each line
+  Scattered spacing;       // [m] along the normal; of the planes when in_space, of the traces otherwise
+  Scattered trace_length;  // [m] mean 0: through-going
+  Scattered gap;           // [m]
+  Vec2 origin;             // [m]
+  Scattered offset;        // [m] of the first line from the origin
+  Scattered start;         // [m] of the first trace along each line
   int joint = -1;
   Where where, where_spacing;
 };

@@ -98,8 +98,9 @@ struct ContactPairInput {
 struct SupportInput {
   std::string name;
   bool is_edge = false;
-  Vec2 from, to;      // the segment; the point when is_edge is false
-  std::string along;  // name of an outline side, opening, fault or joint set: all block edges along it; "" = none
+  Vec2 from, to;  // the segment; the point when is_edge is false
+  std::string
+      along;  // name of an outline side, opening, fault or joint set: all block edges along it; "" = none
   std::string block;  // "" = any
   Where where_block;
   Motion x, y;

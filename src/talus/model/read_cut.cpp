@@ -41,9 +41,7 @@ class CutReader : private SectionReader {
   void claim_trace_name(const Fields& f, const std::string& what) { claim_name(f, trace_names_, what); }
 
   int region(const Fields& f) { return refer(f, "region", model_.regions, "region"); }
-  int joint(const Fields& f, std::string_view key = "joint") {
-    return refer(f, key, model_.joints, "joint");
-  }
+  int joint(const Fields& f, std::string_view key = "joint") { return refer(f, key, model_.joints, "joint"); }
   int material(const Fields& f) { return refer(f, "material", model_.materials, "material"); }
 
   void incomplete() { model_.shapes_readable = false; }
@@ -76,7 +74,8 @@ class CutReader : private SectionReader {
     c.blocks_file = f.get<std::string>("blocks");
     c.where_file = f.where("blocks");
     if (f.given("blocks") && c.blocks_file.empty())
-      findings_.error(f.where("blocks"), f.path_of("blocks"), "is empty", "name a file that talus cut has written");
+      findings_.error(f.where("blocks"), f.path_of("blocks"), "is empty",
+                      "name a file that talus cut has written");
   }
 
   void read_regions() {
@@ -137,7 +136,8 @@ class CutReader : private SectionReader {
       a.material = material(f);
       a.joint = joint(f);
       a.kind = block_kind(f.get<std::string>("kind"));
-      for (const char* side : {"intrados", "extrados", "start", "end"}) side_names_.insert(a.name + "-" + side);
+      for (const char* side : {"intrados", "extrados", "start", "end"})
+        side_names_.insert(a.name + "-" + side);
       model_.arches.push_back(a);
     });
   }
@@ -172,7 +172,8 @@ class CutReader : private SectionReader {
       o.kept = f.get<std::string>("rock") == "kept";
       o.joint = joint(f);
       if (!o.kept && f.given("joint"))
-        findings_.error(f.where("joint"), f.path_of("joint"), "needs rock = \"kept\": removed rock has no joint");
+        findings_.error(f.where("joint"), f.path_of("joint"),
+                        "needs rock = \"kept\": removed rock has no joint");
       if (o.polygon.empty()) incomplete();
       model_.openings.push_back(std::move(o));
     });
@@ -189,7 +190,8 @@ class CutReader : private SectionReader {
       const bool belongs = std::find(needed.begin(), needed.end(), key) != needed.end() ||
                            (key == "segments" && shape != "polygon");
       if (!belongs && f.given(key)) {
-        findings_.error(f.where(key), f.path_of(key), fmt::format("does not belong to shape = \"{}\"", shape));
+        findings_.error(f.where(key), f.path_of(key),
+                        fmt::format("does not belong to shape = \"{}\"", shape));
         sound = false;
       }
     }
@@ -258,7 +260,8 @@ class CutReader : private SectionReader {
     if (polygon.empty()) return;
     const double cells = std::abs(signed_area(polygon)) / cell;
     if (cells <= kMostCells) return;
-    findings_.error(f.where(key), f.path_of(key), fmt::format("makes about {:.2g} cells, more than {:g}", cells, kMostCells),
+    findings_.error(f.where(key), f.path_of(key),
+                    fmt::format("makes about {:.2g} cells, more than {:g}", cells, kMostCells),
                     "is a unit missing?");
     incomplete();
   }
@@ -272,8 +275,7 @@ class CutReader : private SectionReader {
       s.where_spacing = f.where("spacing");
       s.in_space = f.given("dip") || f.given("dip_direction");
       if (f.given("angle") == s.in_space)
-        findings_.error(f.where(), f.path(),
-                        s.in_space ? "has both angle and dip" : "has no direction",
+        findings_.error(f.where(), f.path(), s.in_space ? "has both angle and dip" : "has no direction",
                         "give angle, or dip and dip_direction");
       s.angle = f.get<Scattered>("angle");
       s.dip = f.get("dip", 0.0);

@@ -205,7 +205,8 @@ class ValueReader {
       return Scattered{Scattered::kExponential, *mean, *mean};
     }
     const bool normal = t->contains("normal");
-    if (t->size() != 2 || !t->contains("mean") || !(normal || t->contains("uniform"))) return wrong(node, expected);
+    if (t->size() != 2 || !t->contains("mean") || !(normal || t->contains("uniform")))
+      return wrong(node, expected);
     const toml::node& spread_node = *t->get(normal ? "normal" : "uniform");
     const auto mean = quantity(*t->get("mean"));
     const ValueReader free(without_range(), path_, where_, findings_);

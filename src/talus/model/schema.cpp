@@ -129,8 +129,8 @@ std::string json_type(const KeySpec& k) {
     case K::kScattered: {
       const auto table = [&](const std::string& one, const std::string& two_keys) {
         return fmt::format(
-            R"({{"type": "object", "additionalProperties": false, "properties": {{{}}}, "required": [{}]}})", one,
-            two_keys);
+            R"({{"type": "object", "additionalProperties": false, "properties": {{{}}}, "required": [{}]}})",
+            one, two_keys);
       };
       const std::string number = "{" + quantity + "}";
       return fmt::format(R"("oneOf": [{{{}}}, {}, {}, {}])", quantity + json_range(k.range),

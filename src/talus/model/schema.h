@@ -17,16 +17,16 @@ enum class KeyType {
   kQuantity,      // number, or text with unit
   kQuantityAuto,  // the same, or "auto" (read as NaN)
   kText,
-  kChoice,    // one of `choices`
-  kName,      // name of something defined elsewhere in the file: `refers_to`
-  kNames,     // list of two names
-  kVector,    // [x, y], each a quantity
-  kIntegers,  // [nx, ny]
-  kPoints,    // list of [x, y]
-  kNumbers,   // list of plain numbers
-  kTexts,     // list of texts, any number
+  kChoice,     // one of `choices`
+  kName,       // name of something defined elsewhere in the file: `refers_to`
+  kNames,      // list of two names
+  kVector,     // [x, y], each a quantity
+  kIntegers,   // [nx, ny]
+  kPoints,     // list of [x, y]
+  kNumbers,    // list of plain numbers
+  kTexts,      // list of texts, any number
   kScattered,  // quantity, { mean, normal }, { mean, uniform } or { exponential }
-  kMotion,    // "fixed", "free", { velocity = "history" } or { displacement = "history" }
+  kMotion,     // "fixed", "free", { velocity = "history" } or { displacement = "history" }
 };
 
 struct Range {

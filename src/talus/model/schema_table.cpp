@@ -240,9 +240,13 @@ std::vector<SectionSpec> build_schema() {
 
       {"region",
        SectionShape::kList,
-       "A piece of the section that joints, faults, masonry or a sub-division cut into blocks. Its blocks are named "
+       "A piece of the section that joints, faults, masonry or a sub-division cut into blocks. Its blocks "
+       "are named "
        "NAME[number]. Where regions overlap, the later one in the file holds.",
-       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name; stands for all its blocks."},
+       {{.name = "name",
+         .type = K::kText,
+         .required = true,
+         .doc = "Unique name; stands for all its blocks."},
         {.name = "polygon",
          .type = K::kPoints,
          .dimension = D::kLength,
@@ -250,9 +254,14 @@ std::vector<SectionSpec> build_schema() {
          .doc = "Outline [[x, y], ...], a simple polygon in either order."},
         {.name = "sides",
          .type = K::kTexts,
-         .doc = "One name per edge of the polygon, the first for the edge from the first to the second corner; a name "
+         .doc = "One name per edge of the polygon, the first for the edge from the first to the second "
+                "corner; a name "
                 "may come more than once. None: NAME-1, NAME-2 ... Supports take these names (`along`)."},
-        {.name = "material", .type = K::kName, .required = true, .refers_to = "material", .doc = "Its material."},
+        {.name = "material",
+         .type = K::kName,
+         .required = true,
+         .refers_to = "material",
+         .doc = "Its material."},
         {.name = "joint",
          .type = K::kName,
          .refers_to = "joint",
@@ -265,10 +274,18 @@ std::vector<SectionSpec> build_schema() {
 
       {"arch",
        SectionShape::kList,
-       "A ring of equal voussoirs with straight faces: a region of its own. Its sides are called NAME-intrados, "
+       "A ring of equal voussoirs with straight faces: a region of its own. Its sides are called "
+       "NAME-intrados, "
        "NAME-extrados, NAME-start and NAME-end.",
-       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name; stands for all its blocks."},
-        {.name = "center", .type = K::kVector, .dimension = D::kLength, .required = true, .doc = "Centre of the ring."},
+       {{.name = "name",
+         .type = K::kText,
+         .required = true,
+         .doc = "Unique name; stands for all its blocks."},
+        {.name = "center",
+         .type = K::kVector,
+         .dimension = D::kLength,
+         .required = true,
+         .doc = "Centre of the ring."},
         {.name = "radius",
          .dimension = D::kLength,
          .range = kPositive,
@@ -283,13 +300,20 @@ std::vector<SectionSpec> build_schema() {
          .dimension = D::kAngle,
          .default_text = "\"0 deg\"",
          .doc = "Angle of the first springing, counter-clockwise from +x."},
-        {.name = "to", .dimension = D::kAngle, .default_text = "\"180 deg\"", .doc = "Angle of the last springing."},
+        {.name = "to",
+         .dimension = D::kAngle,
+         .default_text = "\"180 deg\"",
+         .doc = "Angle of the last springing."},
         {.name = "voussoirs",
          .type = K::kInteger,
          .range = {.min = 1, .max = 1e5},
          .required = true,
          .doc = "Number of blocks."},
-        {.name = "material", .type = K::kName, .required = true, .refers_to = "material", .doc = "Its material."},
+        {.name = "material",
+         .type = K::kName,
+         .required = true,
+         .refers_to = "material",
+         .doc = "Its material."},
         {.name = "joint",
          .type = K::kName,
          .refers_to = "joint",
@@ -302,9 +326,12 @@ std::vector<SectionSpec> build_schema() {
 
       {"joint_set",
        SectionShape::kList,
-       "Parallel joints. Give `angle`, or `dip` and `dip_direction` with `cut.section_azimuth`. Quantities that scatter "
-       "are written `{ mean = \"3 m\", normal = \"0.5 m\" }` (standard deviation), `{ mean = \"3 m\", uniform = \"1 m\" "
-       "}` (half width) or `{ exponential = \"3 m\" }` (mean); values that must be positive and are not are drawn again. "
+       "Parallel joints. Give `angle`, or `dip` and `dip_direction` with `cut.section_azimuth`. Quantities "
+       "that scatter "
+       "are written `{ mean = \"3 m\", normal = \"0.5 m\" }` (standard deviation), `{ mean = \"3 m\", "
+       "uniform = \"1 m\" "
+       "}` (half width) or `{ exponential = \"3 m\" }` (mean); values that must be positive and are not are "
+       "drawn again. "
        "Ends that stop inside a block are taken back to the last crossing.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
         {.name = "angle",
@@ -327,7 +354,8 @@ std::vector<SectionSpec> build_schema() {
          .dimension = D::kLength,
          .range = kPositive,
          .required = true,
-         .doc = "Distance between neighbours, across: with `angle` that of the traces, with `dip` the true one of the "
+         .doc = "Distance between neighbours, across: with `angle` that of the traces, with `dip` the true "
+                "one of the "
                 "planes."},
         {.name = "trace_length",
          .type = K::kScattered,
@@ -354,7 +382,8 @@ std::vector<SectionSpec> build_schema() {
          .type = K::kScattered,
          .dimension = D::kLength,
          .default_text = "\"0 m\"",
-         .doc = "Where a trace begins on each line, along `angle` from the foot of the origin; drawn for each line."},
+         .doc = "Where a trace begins on each line, along `angle` from the foot of the origin; drawn for "
+                "each line."},
         {.name = "region",
          .type = K::kName,
          .refers_to = "region",
@@ -380,19 +409,27 @@ std::vector<SectionSpec> build_schema() {
 
       {"opening",
        SectionShape::kList,
-       "An excavation: its boundary always becomes block edges, and its rock is taken out, or kept as a group of its "
+       "An excavation: its boundary always becomes block edges, and its rock is taken out, or kept as a "
+       "group of its "
        "own. Curves are drawn with equal-area segments: the polygon has the area of the curve.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
         {.name = "shape",
          .type = K::kChoice,
          .required = true,
          .choices = {"circle", "horseshoe", "polygon"},
-         .doc = "`circle`: `center`, `diameter`. `horseshoe`: half a circle over straight walls and a flat floor: "
+         .doc = "`circle`: `center`, `diameter`. `horseshoe`: half a circle over straight walls and a flat "
+                "floor: "
                 "`center` of the half circle, `width`, `height` from floor to crown. `polygon`: `polygon`."},
-        {.name = "center", .type = K::kVector, .dimension = D::kLength, .doc = "Centre of the circle or half circle."},
+        {.name = "center",
+         .type = K::kVector,
+         .dimension = D::kLength,
+         .doc = "Centre of the circle or half circle."},
         {.name = "diameter", .dimension = D::kLength, .range = kPositive, .doc = "Of the circle."},
         {.name = "width", .dimension = D::kLength, .range = kPositive, .doc = "Of the horseshoe."},
-        {.name = "height", .dimension = D::kLength, .range = kPositive, .doc = "Of the horseshoe, at least half its width."},
+        {.name = "height",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .doc = "Of the horseshoe, at least half its width."},
         {.name = "polygon", .type = K::kPoints, .dimension = D::kLength, .doc = "Corners [[x, y], ...]."},
         {.name = "segments",
          .type = K::kInteger,
@@ -403,7 +440,8 @@ std::vector<SectionSpec> build_schema() {
          .type = K::kChoice,
          .default_text = "\"removed\"",
          .choices = {"removed", "kept"},
-         .doc = "`removed`: taken out before the run. `kept`: stays, as the blocks NAME[number]. Numbers of all other "
+         .doc = "`removed`: taken out before the run. `kept`: stays, as the blocks NAME[number]. Numbers of "
+                "all other "
                 "blocks are the same either way."},
         {.name = "joint",
          .type = K::kName,
@@ -412,12 +450,25 @@ std::vector<SectionSpec> build_schema() {
 
       {"masonry",
        SectionShape::kList,
-       "Running bond in a region: courses of equal blocks, every second one shifted. Its joints are called NAME-bed and "
+       "Running bond in a region: courses of equal blocks, every second one shifted. Its joints are called "
+       "NAME-bed and "
        "NAME-head.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-        {.name = "region", .type = K::kName, .required = true, .refers_to = "region", .doc = "The region it fills."},
-        {.name = "length", .dimension = D::kLength, .range = kPositive, .required = true, .doc = "Of a block."},
-        {.name = "height", .dimension = D::kLength, .range = kPositive, .required = true, .doc = "Of a course."},
+        {.name = "region",
+         .type = K::kName,
+         .required = true,
+         .refers_to = "region",
+         .doc = "The region it fills."},
+        {.name = "length",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .required = true,
+         .doc = "Of a block."},
+        {.name = "height",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .required = true,
+         .doc = "Of a course."},
         {.name = "overlap",
          .range = {.min = 0, .max = 1, .max_open = true},
          .default_text = "0.5",
@@ -440,7 +491,11 @@ std::vector<SectionSpec> build_schema() {
        SectionShape::kList,
        "Artificial sub-division of a region into cells.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-        {.name = "region", .type = K::kName, .required = true, .refers_to = "region", .doc = "The region it divides."},
+        {.name = "region",
+         .type = K::kName,
+         .required = true,
+         .refers_to = "region",
+         .doc = "The region it divides."},
         {.name = "cells",
          .type = K::kChoice,
          .required = true,
@@ -476,14 +531,16 @@ std::vector<SectionSpec> build_schema() {
          .dimension = D::kLength,
          .range = kPositive,
          .default_text = "\"auto\"",
-         .doc = "Corners lie on a grid of this width, rounded down to a power of two; `auto`: 2^-20 m, or finer for "
+         .doc = "Corners lie on a grid of this width, rounded down to a power of two; `auto`: 2^-20 m, or "
+                "finer for "
                 "models below 95 m (1e-8 of their size)."},
         {.name = "slivers",
          .type = K::kChoice,
          .default_text = "\"merge\"",
          .choices = {"merge", "delete", "keep"},
-         .doc = "What becomes of blocks below one of the four limits: `merge`: joined to the neighbour with the "
-                "longest shared edge, across a fault only when there is no other; `delete`: taken out; `keep`."},
+         .doc =
+             "What becomes of blocks below one of the four limits: `merge`: joined to the neighbour with the "
+             "longest shared edge, across a fault only when there is no other; `delete`: taken out; `keep`."},
         {.name = "sliver_area",
          .dimension = D::kArea,
          .range = kNonNegative,
@@ -504,7 +561,8 @@ std::vector<SectionSpec> build_schema() {
          .doc = "The same as share of the median width; it bounds the loss of time step."},
         {.name = "blocks",
          .type = K::kText,
-         .doc = "A blocks file of an earlier `talus cut` of the same regions and joints, relative to the model file: it "
+         .doc = "A blocks file of an earlier `talus cut` of the same regions and joints, relative to the "
+                "model file: it "
                 "is read instead of cutting again."}}},
 
       {"contact",
@@ -566,7 +624,10 @@ std::vector<SectionSpec> build_schema() {
          .type = K::kName,
          .refers_to = "side, opening, fault or joint set",
          .doc = "All block edges along it, held at their corners."},
-        {.name = "block", .type = K::kName, .refers_to = "block, grid or region", .doc = "Only blocks of this name."},
+        {.name = "block",
+         .type = K::kName,
+         .refers_to = "block, grid or region",
+         .doc = "Only blocks of this name."},
         {.name = "x",
          .type = K::kMotion,
          .default_text = "\"fixed\"",

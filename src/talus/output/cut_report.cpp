@@ -19,7 +19,9 @@ constexpr double kManyRemoved = 0.03;
 Spread spread_of(std::vector<double> v) {
   if (v.empty()) return {};
   std::sort(v.begin(), v.end());
-  const auto at = [&v](double share) { return v[static_cast<size_t>(share * static_cast<double>(v.size() - 1))]; };
+  const auto at = [&v](double share) {
+    return v[static_cast<size_t>(share * static_cast<double>(v.size() - 1))];
+  };
   double sum = 0;
   for (const double x : v) sum += x;
   return {v.front(), at(0.01), at(0.05), at(0.5), sum / static_cast<double>(v.size()), at(0.95), v.back()};
@@ -56,51 +58,60 @@ const char* action_text(SliverAction action) {
 }
 
 std::string row(const char* what, const Spread& s, double unit = 1) {
-  return fmt::format("  {:<22}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}\n", what, s.min / unit,
-                     s.p1 / unit, s.p5 / unit, s.median / unit, s.mean / unit, s.p95 / unit, s.max / unit);
+  return fmt::format("  {:<22}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}\n", what,
+                     s.min / unit, s.p1 / unit, s.p5 / unit, s.median / unit, s.mean / unit, s.p95 / unit,
+                     s.max / unit);
 }
 
 std::string joint_set_lines(const Cut& cut) {
   std::string out;
   for (const JointSetNote& n : cut.joint_sets) {
-    const std::string dip = n.in_space ? fmt::format(", apparent dip {:.1f} deg towards {}", std::abs(n.apparent_dip) / kDegree,
-                                                     n.apparent_dip >= 0 ? "+x" : "-x")
-                                       : "";
+    const std::string dip =
+        n.in_space ? fmt::format(", apparent dip {:.1f} deg towards {}", std::abs(n.apparent_dip) / kDegree,
+                                 n.apparent_dip >= 0 ? "+x" : "-x")
+                   : "";
     const std::string wider = n.in_space ? fmt::format(" ({:.3g} times the true one)", n.widening) : "";
-    out += fmt::format("joint set  \"{}\": traces at {:.1f} deg{}, spacing {:.4g} m{}; {} traces, {:.4g} m\n", n.name,
-                       n.angle / kDegree, dip, n.spacing, wider, n.traces, n.length);
+    out += fmt::format("joint set  \"{}\": traces at {:.1f} deg{}, spacing {:.4g} m{}; {} traces, {:.4g} m\n",
+                       n.name, n.angle / kDegree, dip, n.spacing, wider, n.traces, n.length);
   }
   return out;
 }
 
 std::string sliver_lines(const Cut& cut, const CutStatistics& s) {
   const SliverTable& t = cut.slivers;
-  std::string out = fmt::format("slivers    limits: area {:.4g} m2, width {:.4g} m (median block {:.4g} m2, {:.4g} m)\n",
-                                t.area_limit, t.width_limit, t.median_area, t.median_width);
+  std::string out =
+      fmt::format("slivers    limits: area {:.4g} m2, width {:.4g} m (median block {:.4g} m2, {:.4g} m)\n",
+                  t.area_limit, t.width_limit, t.median_area, t.median_width);
   if (t.rows.empty()) return out + "           none below them\n";
   if (t.merged > 0)
-    out += fmt::format("           {} merged into {} other blocks ({:.2g} % of the blocks)\n", t.merged, t.receivers,
-                       100.0 * t.merged / std::max(s.before.count, 1));
-  if (t.deleted > 0) out += fmt::format("           {} deleted, {:.4g} m2 of rock lost\n", t.deleted, t.deleted_area);
+    out += fmt::format("           {} merged into {} other blocks ({:.2g} % of the blocks)\n", t.merged,
+                       t.receivers, 100.0 * t.merged / std::max(s.before.count, 1));
+  if (t.deleted > 0)
+    out += fmt::format("           {} deleted, {:.4g} m2 of rock lost\n", t.deleted, t.deleted_area);
   if (t.kept > 0)
-    out += fmt::format("           {} kept{}\n", t.kept, t.merged > 0 ? ": no neighbour in their region can take them" : "");
+    out += fmt::format("           {} kept{}\n", t.kept,
+                       t.merged > 0 ? ": no neighbour in their region can take them" : "");
   if (t.merged + t.deleted > kManyRemoved * s.before.count)
     out += "           more than 3 % of the blocks: look at the picture, and at narrower limits\n";
-  const auto share = [](const BlockStatistics& b) { return b.step.median > 0 ? b.step.min / b.step.median : 0; };
+  const auto share = [](const BlockStatistics& b) {
+    return b.step.median > 0 ? b.step.min / b.step.median : 0;
+  };
   if (!s.before.step_block.empty() && !s.after.step_block.empty())
-    out += fmt::format("           stable step {:.3g} s before ({:.3g} of the median block's), {:.3g} s after ({:.3g})\n",
-                       s.before.step.min, share(s.before), s.after.step.min, share(s.after));
+    out += fmt::format(
+        "           stable step {:.3g} s before ({:.3g} of the median block's), {:.3g} s after ({:.3g})\n",
+        s.before.step.min, share(s.before), s.after.step.min, share(s.after));
   return out;
 }
 
 nlohmann::json json_of(const Spread& s) {
-  return {{"min", s.min}, {"p1", s.p1}, {"p5", s.p5}, {"median", s.median}, {"mean", s.mean}, {"p95", s.p95}, {"max", s.max}};
+  return {{"min", s.min},   {"p1", s.p1},   {"p5", s.p5},  {"median", s.median},
+          {"mean", s.mean}, {"p95", s.p95}, {"max", s.max}};
 }
 
 nlohmann::json json_of(const BlockStatistics& b) {
-  return {{"blocks", b.count},           {"total_area", b.total_area}, {"area", json_of(b.area)},
-          {"width", json_of(b.width)},   {"aspect", json_of(b.aspect)}, {"edges", json_of(b.edges)},
-          {"step", json_of(b.step)},     {"step_block", b.step_block}};
+  return {{"blocks", b.count},         {"total_area", b.total_area},  {"area", json_of(b.area)},
+          {"width", json_of(b.width)}, {"aspect", json_of(b.aspect)}, {"edges", json_of(b.edges)},
+          {"step", json_of(b.step)},   {"step_block", b.step_block}};
 }
 
 }  // namespace
@@ -143,20 +154,21 @@ std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& 
   if (!model.title.empty()) out += model.title + "\n";
   out += joint_set_lines(cut);
   if (!cut.dead_ends.empty())
-    out += fmt::format("dead ends  {} removed, {:.4g} m: they bound no block (grey in the picture)\n", cut.dead_ends.size(),
-                       cut.dead_end_length);
+    out += fmt::format("dead ends  {} removed, {:.4g} m: they bound no block (grey in the picture)\n",
+                       cut.dead_ends.size(), cut.dead_end_length);
   if (cut.bridges > 0)
-    out += fmt::format("holes      {} opened by a glued level cut: a block cannot have a hole\n", cut.bridges);
+    out +=
+        fmt::format("holes      {} opened by a glued level cut: a block cannot have a hole\n", cut.bridges);
   int removed = 0;
   for (const OpeningInput& o : model.openings) removed += !o.kept;
-  if (removed > 0)
-    out += fmt::format("openings   {} taken out with {} blocks\n", removed, cut.taken_out);
+  if (removed > 0) out += fmt::format("openings   {} taken out with {} blocks\n", removed, cut.taken_out);
   out += sliver_lines(cut, s);
-  out += fmt::format("blocks     {}, {:.10g} m2 on a grid of {:.3g} m\n\n", s.after.count, s.after.total_area, cut.grid);
-  out += fmt::format("  {:<22}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "", "smallest", "1 %", "5 %", "median", "mean", "95 %",
-                     "largest");
-  out += row("area [m2]", s.after.area) + row("width [m]", s.after.width) + row("length / width", s.after.aspect) +
-         row("edges", s.after.edges);
+  out += fmt::format("blocks     {}, {:.10g} m2 on a grid of {:.3g} m\n\n", s.after.count, s.after.total_area,
+                     cut.grid);
+  out += fmt::format("  {:<22}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "", "smallest", "1 %", "5 %",
+                     "median", "mean", "95 %", "largest");
+  out += row("area [m2]", s.after.area) + row("width [m]", s.after.width) +
+         row("length / width", s.after.aspect) + row("edges", s.after.edges);
   if (s.after.step_block.empty()) return out + "  no block deforms: no stable step\n";
   out += row("stable step [ms]", s.after.step, 1e-3);
   return out + fmt::format("  the smallest step is that of {}\n", s.after.step_block);
@@ -165,7 +177,11 @@ std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& 
 std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics& s) {
   nlohmann::json sets = nlohmann::json::array();
   for (const JointSetNote& n : cut.joint_sets)
-    sets.push_back({{"name", n.name}, {"angle", n.angle}, {"spacing", n.spacing}, {"traces", n.traces}, {"length", n.length}});
+    sets.push_back({{"name", n.name},
+                    {"angle", n.angle},
+                    {"spacing", n.spacing},
+                    {"traces", n.traces},
+                    {"length", n.length}});
   const SliverTable& t = cut.slivers;
   const nlohmann::json out = {
       {"title", model.title},
@@ -175,8 +191,13 @@ std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics&
       {"holes_opened", cut.bridges},
       {"taken_out", cut.taken_out},
       {"slivers",
-       {{"area_limit", t.area_limit}, {"width_limit", t.width_limit}, {"merged", t.merged}, {"receivers", t.receivers},
-        {"deleted", t.deleted}, {"deleted_area", t.deleted_area}, {"kept", t.kept}}},
+       {{"area_limit", t.area_limit},
+        {"width_limit", t.width_limit},
+        {"merged", t.merged},
+        {"receivers", t.receivers},
+        {"deleted", t.deleted},
+        {"deleted_area", t.deleted_area},
+        {"kept", t.kept}}},
       {"before", json_of(s.before)},
       {"after", json_of(s.after)}};
   return out.dump(2) + "\n";
@@ -189,8 +210,8 @@ std::string cut_blocks_csv(const Model& model, const std::vector<BlockShape>& bl
     const BlockShape& b = blocks[static_cast<size_t>(i)];
     const BlockNumbers n = numbers_of(b.polygon);
     const Vec2 c = set.centroid[static_cast<size_t>(i)];
-    out += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{:.6g}\n", b.name, b.id, c.x, c.y, n.area, n.width, n.aspect,
-                       b.polygon.size(), stable_step_of(set, i));
+    out += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{:.6g}\n", b.name, b.id, c.x, c.y, n.area,
+                       n.width, n.aspect, b.polygon.size(), stable_step_of(set, i));
   }
   return out;
 }
@@ -198,8 +219,8 @@ std::string cut_blocks_csv(const Model& model, const std::vector<BlockShape>& bl
 std::string slivers_csv(const Cut& cut) {
   std::string out = "id,x [m],y [m],area [m2],width [m],action,into id\n";
   for (const Sliver& s : cut.slivers.rows)
-    out += fmt::format("{},{:.9g},{:.9g},{:.6g},{:.6g},{},{}\n", s.id, s.at.x, s.at.y, s.area, s.width, action_text(s.action),
-                       s.into < 0 ? "" : std::to_string(s.into));
+    out += fmt::format("{},{:.9g},{:.9g},{:.6g},{:.6g},{},{}\n", s.id, s.at.x, s.at.y, s.area, s.width,
+                       action_text(s.action), s.into < 0 ? "" : std::to_string(s.into));
   return out;
 }
 

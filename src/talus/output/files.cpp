@@ -65,8 +65,8 @@ void open_result_folder(const fs::path& folder, bool force) {
                       "Give another folder",
                       folder.string()));
     for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
-                             "blocks_start.svg", "blocks_end.svg", "cut.json", "cut.svg",
-                             "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
+                             "blocks_start.svg", "blocks_end.svg", "cut.json", "cut.svg", "cut.png",
+                             "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
       fs::remove(folder / name, ec);
     for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
     for (const auto& entry : fs::directory_iterator(folder, ec))

@@ -59,7 +59,8 @@ TEST_CASE("a face over a flat corner has two ends, and both stand for half of it
     }
     CHECK(points[0].partner == points[1].key);
     CHECK(points[1].partner == points[0].key);
-    // both ends name the same edges: of the upper block its bottom, of the lower the one under the middle, x = 1.75
+    // both ends name the same edges: of the upper block its bottom, of the lower the one under the middle, x
+    // = 1.75
     CHECK(points[0].face_edge_a == 0);
     CHECK(points[0].face_edge_b == 3);
     CHECK(points[1].face_edge_a == points[0].face_edge_a);
@@ -77,9 +78,8 @@ TEST_CASE("flat corners on both sides at different places: still one face of two
 TEST_CASE("two blocks whose joint ends at a flat corner: a face of two points each") {
   for (const double bump : {0.0, 1e-6, -1e-6}) {
     CAPTURE(bump);
-    const Scene s = scene_of({lower(bump),
-                              {{0, 1}, {2, 1 + bump}, {2, 2}, {0, 2}},
-                              {{2, 1 + bump}, {4, 1}, {4, 2}, {2, 2}}});
+    const Scene s = scene_of(
+        {lower(bump), {{0, 1}, {2, 1 + bump}, {2, 2}, {0, 2}}, {{2, 1 + bump}, {4, 1}, {4, 2}, {2, 2}}});
     for (const int other : {1, 2}) {
       const auto points = touch(s, 0, other);
       REQUIRE(points.size() == 2);

@@ -87,13 +87,15 @@ TEST_CASE("every key of the schema is used by an example or a test model of the 
   std::string all;
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::string(TALUS_SOURCE_DIR) + "/examples"))
-    if (entry.path().extension() == ".toml") all += read_text_file(entry.path());
+    if (entry.path().extension() == ".toml" || entry.path().extension() == ".md")
+      all += read_text_file(entry.path());
   for (const SectionSpec& s : model_schema()) {
     for (const KeySpec& k : s.keys) {
       INFO(s.name, ".", k.name);
       const std::string key(k.name);
       CHECK((all.find("\n" + key + " =") != std::string::npos || all.rfind(key + " =", 0) == 0 ||
-             all.find("{ " + key + " =") != std::string::npos));
+             all.find("{ " + key + " =") != std::string::npos ||
+             all.find("--set '" + std::string(s.name) + "." + key + "=") != std::string::npos));
     }
   }
 }

@@ -24,12 +24,15 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   if (model.regions.empty() && model.arches.empty())
     findings.error({1, 1, ""}, "region", "the file has no [[region]] or [[arch]]: there is nothing to cut",
                    "give the outline of the rock as [[region]] with name, polygon and material");
+  const int errors = findings.error_count();
   const Cut cut = cut_model(model, findings);
+  if (findings.error_count() > errors)
+    findings.throw_if_errors();  // without blocks all else would look wrong
   const Layout layout = make_layout(model, cut, findings);
   findings.throw_if_errors();
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
 
-  open_result_folder(folder, force);
+  open_result_folder(folder, force, ResultKind::kCut);
   const CutStatistics statistics = cut_statistics(model, cut);
   const std::string report = cut_report(model, cut, statistics);
   const std::filesystem::path out(folder);

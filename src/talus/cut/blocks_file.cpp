@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -60,29 +62,68 @@ std::string numbers(const std::vector<int>& list) {
          "]";
 }
 
+// A block as it stands in the file.
+struct FileBlock {
+  int id = 0, region = 0, opening = -1;
+  std::vector<int> points, origins;
+};
+
+struct Renumbered {
+  std::vector<Vec2> points;
+  std::vector<FileBlock> blocks;
+};
+
+// The blocks left, with only the points in use.
+Renumbered renumbered(const Cut& cut) {
+  Renumbered out;
+  std::vector<int> number(cut.point.size(), -1);
+  for (const CutBlock& b : cut.blocks) {
+    FileBlock block{b.id, b.region, b.opening, {}, {}};
+    for (const int p : b.point) {
+      int& n = number[static_cast<size_t>(p)];
+      if (n < 0) {
+        n = static_cast<int>(out.points.size());
+        out.points.push_back(cut.point[static_cast<size_t>(p)]);
+      }
+      block.points.push_back(n);
+    }
+    for (const int e : b.edge) block.origins.push_back(cut.edge_origin[static_cast<size_t>(e)]);
+    out.blocks.push_back(std::move(block));
+  }
+  return out;
+}
+
+// Any change to the file's numbers is noticed.
+std::string content_hash(const std::vector<Vec2>& points, const std::vector<FileBlock>& blocks) {
+  Fingerprint f;
+  f.add(points);
+  for (const FileBlock& b : blocks) f.add(b.id, b.region, b.opening, b.points, b.origins);
+  return f.hash();
+}
+
+FileBlock file_block(const Json& in) {
+  return {in.at("id"), in.at("region"), in.at("opening"), in.at("points").get<std::vector<int>>(),
+          in.at("origins").get<std::vector<int>>()};
+}
+
 // A block, its edges made known to the cut by their ends.
-CutBlock block_of(const Json& in, std::map<std::pair<int, int>, int>& edge_of, Cut& cut) {
-  CutBlock b;
-  b.id = in.at("id");
-  b.region = in.at("region");
-  b.opening = in.at("opening");
-  b.point = in.at("points").get<std::vector<int>>();
-  const auto origin = in.at("origins").get<std::vector<int>>();
+CutBlock cut_block(const FileBlock& in, std::map<std::pair<int, int>, int>& edge_of, Cut& cut) {
   const auto below = [](int i, size_t n) { return i >= 0 && static_cast<size_t>(i) < n; };
-  bool sound = b.id >= 0 && below(b.region, cut.regions.size()) && b.opening >= -1 &&
-               b.opening < static_cast<int>(cut.openings.size()) && b.point.size() >= 3 &&
-               origin.size() == b.point.size();
-  for (const int p : b.point) sound = sound && below(p, cut.point.size());
-  for (const int o : origin) sound = sound && below(o, cut.origins.size());
+  bool sound = in.id >= 0 && below(in.region, cut.regions.size()) && in.opening >= -1 &&
+               in.opening < static_cast<int>(cut.openings.size()) && in.points.size() >= 3 &&
+               in.origins.size() == in.points.size();
+  for (const int p : in.points) sound = sound && below(p, cut.point.size());
+  for (const int o : in.origins) sound = sound && below(o, cut.origins.size());
+  CutBlock b{in.id, in.region, in.opening, in.points, {}};
   if (!sound || !(signed_area(cut.polygon(b)) > 0))
-    throw std::runtime_error(fmt::format("block {} is damaged", b.id));
+    throw std::runtime_error(fmt::format("block {} is damaged", in.id));
   for (size_t k = 0; k < b.point.size(); ++k) {
     const auto ends = std::minmax(b.point[k], b.point[(k + 1) % b.point.size()]);
     const auto [it, fresh] =
         edge_of.try_emplace({ends.first, ends.second}, static_cast<int>(cut.edge.size()));
     if (fresh) {
       cut.edge.push_back({ends.first, ends.second});
-      cut.edge_origin.push_back(origin[k]);
+      cut.edge_origin.push_back(in.origins[k]);
     }
     b.edge.push_back(it->second);
   }
@@ -93,10 +134,12 @@ void read_json(const Json& in, Cut& cut) {
   cut.grid = in.at("grid");
   if (!(cut.grid > 0)) throw std::runtime_error("the grid is damaged");
   for (const Json& p : in.at("points")) cut.point.push_back({p.at(0), p.at(1)});
-  for (const Vec2 p : cut.point)
-    if (!is_finite(p)) throw std::runtime_error("a point is damaged");
+  std::vector<FileBlock> blocks;
+  for (const Json& b : in.at("blocks")) blocks.push_back(file_block(b));
+  if (in.at("content") != content_hash(cut.point, blocks))
+    throw std::runtime_error("its points or blocks have been changed");
   std::map<std::pair<int, int>, int> edge_of;
-  for (const Json& b : in.at("blocks")) cut.blocks.push_back(block_of(b, edge_of, cut));
+  for (const FileBlock& b : blocks) cut.blocks.push_back(cut_block(b, edge_of, cut));
 }
 
 }  // namespace
@@ -122,42 +165,33 @@ std::string cut_fingerprint(const Model& model) {
 }
 
 std::string blocks_file_text(const Model& model, const Cut& cut) {
-  // the points in use, numbered anew
-  std::vector<int> number(cut.point.size(), -1);
-  std::vector<Vec2> points;
-  for (const CutBlock& b : cut.blocks)
-    for (const int p : b.point)
-      if (number[static_cast<size_t>(p)] < 0) {
-        number[static_cast<size_t>(p)] = static_cast<int>(points.size());
-        points.push_back(cut.point[static_cast<size_t>(p)]);
-      }
-  const auto block = [&](const CutBlock& b) {
-    std::vector<int> corners, origins;
-    for (const int p : b.point) corners.push_back(number[static_cast<size_t>(p)]);
-    for (const int e : b.edge) origins.push_back(cut.edge_origin[static_cast<size_t>(e)]);
+  const Renumbered r = renumbered(cut);
+  const auto point = [](Vec2 p) { return fmt::format("[{},{}]", p.x, p.y); };
+  const auto block = [](const FileBlock& b) {
     return fmt::format("{{\"id\":{},\"region\":{},\"opening\":{},\"points\":{},\"origins\":{}}}", b.id,
-                       b.region, b.opening, numbers(corners), numbers(origins));
+                       b.region, b.opening, numbers(b.points), numbers(b.origins));
   };
-  std::string out = fmt::format("{{\"talus_blocks\": {},\n\"cut\": {},\n\"grid\": {},\n", kFormat,
-                                quoted(cut_fingerprint(model)), cut.grid);
-  out += fmt::format("\"regions\": [{}],\n\"openings\": [{}],\n\"origins\": [{}],\n",
-                     joined(
-                         cut.regions, [](const CutRegion& r) { return quoted(r.name); }, ", "),
-                     joined(cut.openings, quoted, ", "),
-                     joined(
-                         cut.origins, [](const Origin& o) { return quoted(o.name); }, ", "));
-  out += "\"points\": [\n" +
-         joined(
-             points, [](Vec2 p) { return fmt::format("[{},{}]", p.x, p.y); }, ",\n") +
-         "],\n";
-  return out + "\"blocks\": [\n" + joined(cut.blocks, block, ",\n") + "]}\n";
+  const auto region_name = [](const CutRegion& region) { return quoted(region.name); };
+  const auto origin_name = [](const Origin& o) { return quoted(o.name); };
+  return fmt::format("{{\"talus_blocks\": {},\n\"cut\": {},\n\"content\": {},\n\"grid\": {},\n", kFormat,
+                     quoted(cut_fingerprint(model)), quoted(content_hash(r.points, r.blocks)), cut.grid) +
+         fmt::format("\"regions\": [{}],\n\"openings\": [{}],\n\"origins\": [{}],\n",
+                     joined(cut.regions, region_name, ", "), joined(cut.openings, quoted, ", "),
+                     joined(cut.origins, origin_name, ", ")) +
+         "\"points\": [\n" + joined(r.points, point, ",\n") + "],\n\"blocks\": [\n" +
+         joined(r.blocks, block, ",\n") + "]}\n";
 }
 
 Cut read_blocks_file(const Model& model, Findings& findings) {
   const auto path = std::filesystem::path(model.file).parent_path() / model.cut.blocks_file;
-  std::ifstream in(path);
-  if (!in) throw FileError(fmt::format("{}: cannot be opened (cut.blocks)", path.string()));
   const Where& where = model.cut.where_file;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) {
+    findings.error(where, "cut.blocks",
+                   fmt::format("{} cannot be opened: {}", path.string(), std::strerror(errno)),
+                   "the path counts from the folder of the model file");
+    return {};
+  }
   Cut cut;
   try {
     const Json json = Json::parse(in);

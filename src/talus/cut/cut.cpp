@@ -17,9 +17,6 @@ namespace {
 // it.
 constexpr double kNear = 2;
 
-// A cut through a hole may meet another hole; each round opens at least one.
-constexpr int kMostRounds = 1000;
-
 class Cutter {
  public:
   Cutter(const Model& model, Findings& findings)
@@ -33,14 +30,18 @@ class Cutter {
     const Box box = regions_.box();
     const double extent = std::max(box.max.x - box.min.x, box.max.y - box.min.y);
     out.grid = grid_width(extent, model_.cut.grid);
-    if (extent / out.grid > 0x1p46) {
-      findings_.error(model_.cut.where, "cut.grid",
-                      fmt::format("{:.3g} m is too fine for a model of {:.3g} m", out.grid, extent),
-                      "coordinates have no digits left for it: give a wider grid or leave it out");
+    const double farthest =
+        std::max({std::abs(box.min.x), std::abs(box.min.y), std::abs(box.max.x), std::abs(box.max.y)});
+    if (extent / out.grid > 0x1p46 || farthest / out.grid > 0x1p53) {
+      findings_.error(
+          model_.cut.where_grid, "cut.grid",
+          fmt::format("{:.3g} m is too fine for a model of {:.3g} m whose coordinates reach {:.3g} m",
+                      out.grid, extent, farthest),
+          "coordinates have no digits left for it: give a wider grid, or move the model to the origin");
       return {};
     }
     if (extent / out.grid < 1e4)
-      findings_.warning(model_.cut.where, "cut.grid",
+      findings_.warning(model_.cut.where_grid, "cut.grid",
                         fmt::format("{:.3g} m is coarse for a model of {:.3g} m", out.grid, extent),
                         "corners move by up to half of it");
     // places relative to a corner of the grid near the middle: all digits for the noding
@@ -49,6 +50,7 @@ class Cutter {
 
     const Arrangement net = arrange_without_holes(out);
     take_over(net, out);
+    name_outline(out);
     std::vector<bool> removed;
     for (const OpeningInput& o : model_.openings) {
       out.openings.push_back(o.name);
@@ -67,49 +69,18 @@ class Cutter {
   }
 
  private:
-  // Faces with holes are no blocks: a level cut through the middle of each hole, from side to side of its
-  // face.
+  // Faces with holes are no blocks: they are opened by glued cuts, whose origin comes last.
   Arrangement arrange_without_holes(Cut& out) {
     std::vector<Polyline> lines;
     for (const Trace& t : traces_.traces) lines.push_back(t.line);
-    int construction = -1;
-    for (int round = 0; round < kMostRounds; ++round) {
-      Arrangement net = arrange(lines, out.grid, origin_);
-      const size_t before = lines.size();
-      for (const auto& rings : net.rings_of_holed) {
-        const auto cuts = level_cuts(rings);
-        if (regions_.region_at(0.5 * (cuts[0].first + cuts[0].second), kNear * out.grid) < 0)
-          continue;  // no rock
-        if (construction < 0) {
-          construction = static_cast<int>(traces_.origins.size());
-          traces_.origins.push_back({"(construction)", OriginKind::kConstruction, model_.bonded_joint});
-        }
-        for (const auto& [a, b] : cuts) {
-          lines.push_back({a, b});
-          traces_.traces.push_back({{a, b}, construction});
-        }
-        ++out.bridges;
-      }
-      if (lines.size() == before) return net;
-    }
-    throw std::runtime_error("blocks with holes could not be opened by cuts");
-  }
-
-  // Pieces inside the face of the level line through the middle of its first hole.
-  static std::vector<std::pair<Vec2, Vec2>> level_cuts(const std::vector<Polyline>& rings) {
-    const Box hole = bounding_box(rings[1]);
-    const double y = 0.5 * (hole.min.y + hole.max.y);
-    std::vector<double> x;
-    for (const Polyline& ring : rings) {
-      for (size_t k = 0; k < ring.size(); ++k) {
-        const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
-        if ((a.y > y) != (b.y > y)) x.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
-      }
-    }
-    std::sort(x.begin(), x.end());
-    std::vector<std::pair<Vec2, Vec2>> cuts;
-    for (size_t k = 0; k + 1 < x.size(); k += 2) cuts.push_back({{x[k], y}, {x[k + 1], y}});
-    return cuts;
+    Arrangement net = arrange(lines, out.grid, origin_,
+                              [&](Vec2 p) { return regions_.region_at(p, kNear * out.grid) >= 0; });
+    out.bridges = net.opened;
+    if (net.cuts.empty()) return net;
+    const int construction = static_cast<int>(traces_.origins.size());
+    traces_.origins.push_back({"(construction)", OriginKind::kConstruction, model_.bonded_joint});
+    for (const Polyline& line : net.cuts) traces_.traces.push_back({line, construction});
+    return net;
   }
 
   void take_over(const Arrangement& net, Cut& out) {
@@ -143,15 +114,44 @@ class Cutter {
     }
   }
 
+  // An edge with a block on one side only lies on the outline, even if an opening or a fault runs along it,
+  // too: supports along that side must find it.
+  void name_outline(Cut& out) const {
+    std::vector<int> blocks_at(out.edge.size(), 0);
+    for (const CutBlock& b : out.whole)
+      for (const int e : b.edge) ++blocks_at[static_cast<size_t>(e)];
+    for (size_t e = 0; e < out.edge.size(); ++e) {
+      int& origin = out.edge_origin[e];
+      if (blocks_at[e] != 1 || out.origins[static_cast<size_t>(origin)].kind == OriginKind::kSide) continue;
+      const Vec2 p = out.point[static_cast<size_t>(out.edge[e][0])],
+                 q = out.point[static_cast<size_t>(out.edge[e][1])];
+      for (const Trace& t : traces_.traces) {
+        if (out.origins[static_cast<size_t>(t.origin)].kind != OriginKind::kSide) continue;
+        if (distance_to_segment(p, t.line[0], t.line[1]) > kNear * out.grid ||
+            distance_to_segment(q, t.line[0], t.line[1]) > kNear * out.grid)
+          continue;
+        origin = t.origin;
+        break;
+      }
+    }
+  }
+
   // Openings that hold no rock are a mistake.
   void check_use(const Cut& out) {
     std::vector<bool> used(model_.openings.size(), false);
-    for (const CutBlock& b : out.whole)
+    std::vector<bool> has_blocks(out.regions.size(), false);
+    for (const CutBlock& b : out.whole) {
+      has_blocks[static_cast<size_t>(b.region)] = true;
       if (b.opening >= 0) used[static_cast<size_t>(b.opening)] = true;
+    }
+    for (size_t r = 0; r < model_.regions.size(); ++r)
+      if (!has_blocks[r])
+        findings_.warning(model_.regions[r].where, "region." + model_.regions[r].name, "has no block",
+                          "regions later in the file, or arches, cover it");
     for (size_t o = 0; o < used.size(); ++o)
       if (!used[o])
-        findings_.error(model_.openings[o].where, "opening." + model_.openings[o].name,
-                        "lies outside every region", "move it, or extend a region");
+        findings_.error(model_.openings[o].where, "opening." + model_.openings[o].name, "holds no rock",
+                        "it lies outside every region, or a later opening covers it");
   }
 
   const Model& model_;

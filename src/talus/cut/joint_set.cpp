@@ -31,12 +31,31 @@ double draw(const Scattered& s, Random& random) {
   return s.mean;
 }
 
+// How far from the mean a drawn value may lie; rarer ones, less than one in a hundred million, may be missed
+// at the edge of the regions.
+double largest_spread(const Scattered& s) {
+  switch (s.kind) {
+    case Scattered::kConstant:
+      return 0;
+    case Scattered::kNormal:
+      return 6 * s.spread;
+    case Scattered::kUniform:
+      return s.spread;
+    case Scattered::kExponential:
+      return 19 * s.mean;
+  }
+  return 0;
+}
+
 // Until it is positive.
 double draw_positive(const Scattered& s, Random& random) {
   double v = draw(s, random);
   while (!(v > 0)) v = draw(s, random);
   return v;
 }
+
+// Joints that turn further than this [rad] from the mean are looked for as if they turned by this much.
+constexpr double kLargestTurn = 1.4;
 
 struct Vec3 {
   double x, y, z;
@@ -75,11 +94,15 @@ class LineMaker {
       lo_u_ = std::min(lo_u_, u), hi_u_ = std::max(hi_u_, u);
     }
     // lines that turn reach in from outside
-    const bool turns = set.angle.kind != Scattered::kConstant || set.fisher > 0;
-    const double reach =
-        turns ? (is_through() ? 0.5 * norm(box.max - box.min) : 0.5 * set.trace_length.mean) : 0;
-    lo_s_ -= reach, hi_s_ += reach;
-    lo_u_ -= reach, hi_u_ += reach;
+    const double turn = std::min(
+        set.fisher > 0 ? 6 / std::sqrt(set.fisher) * note.widening : largest_spread(set.angle), kLargestTurn);
+    if (turn == 0) return;
+    // a through-going line turns about its foot below the origin, a trace about its middle
+    const double half = 0.5 * (set.trace_length.mean + largest_spread(set.trace_length));
+    const double arm = is_through() ? std::max(std::abs(lo_u_), std::abs(hi_u_)) : half;
+    const double reach_s = arm * (is_through() ? std::tan(turn) : std::sin(turn));
+    lo_s_ -= reach_s, hi_s_ += reach_s;
+    if (!is_through()) lo_u_ -= half, hi_u_ += half;
   }
 
   std::vector<std::pair<Vec2, Vec2>> make() {
@@ -127,8 +150,9 @@ class LineMaker {
     Random random(stream_seed(cut_.seed, set_.name + "#", k));
     if (is_through()) {
       // long enough to leave the box however it turns
-      const double half = (hi_u_ - lo_u_) + (hi_s_ - lo_s_), middle = 0.5 * (lo_u_ + hi_u_);
-      add_trace(s, middle - half, middle + half, random);
+      const double half =
+          2 * (std::max(std::abs(lo_u_), std::abs(hi_u_)) + std::max(std::abs(lo_s_), std::abs(hi_s_)));
+      add_trace(s, -half, half, random);
       return;
     }
     const double start = draw(set_.start, random);
@@ -180,16 +204,33 @@ JointSetNote describe(const JointSetInput& set, double section_azimuth) {
   return note;
 }
 
-std::string joint_set_defect(const JointSetInput& set, const JointSetNote& note, const Box& box) {
+JointSetDefect joint_set_defect(const JointSetInput& set, const JointSetNote& note, const Box& box) {
   if (set.in_space && !(note.widening < 1 / kParallel))
-    return "is parallel to the section: its joints have no trace in it";
+    return {"dip_direction", "is parallel to the section: its joints have no trace in it", set.where};
   const double diagonal = norm(box.max - box.min);
-  const double lines = diagonal / note.spacing;
-  const double length = set.trace_length.mean + set.gap.mean;
-  const double traces = lines * (set.trace_length.mean > 0 ? diagonal / length + 1 : 1);
-  if (!(traces <= kMostTraces))
-    return fmt::format("makes about {:.2g} traces, more than {:g}; is a unit missing?", traces, kMostTraces);
-  return "";
+  const double lines = diagonal / note.spacing, length = set.trace_length.mean + set.gap.mean;
+  const bool in_traces = set.trace_length.mean > 0;
+  const double traces = lines * (in_traces ? diagonal / length + 1 : 1);
+  if (!(traces <= kMostTraces)) {
+    const bool spacing = !(lines <= std::sqrt(kMostTraces)) || !in_traces;
+    return {spacing ? "spacing" : "trace_length",
+            fmt::format("makes about {:.2g} traces, more than {:g}; is a unit missing?", traces, kMostTraces),
+            spacing ? set.where_spacing : set.where_length};
+  }
+  // what is drawn on the way from the origin to the box counts too
+  const double away = norm(0.5 * (box.min + box.max) - set.origin) + std::abs(set.offset.mean) +
+                      std::abs(set.start.mean) + set.offset.spread + set.start.spread;
+  const double drawn = (set.spacing.kind != Scattered::kConstant ? away / note.spacing : 0) +
+                       (in_traces ? lines * away / length : 0);
+  if (!(drawn <= kMostTraces))
+    return {
+        "origin",
+        fmt::format(
+            "begins {:.2g} m from the middle of its regions, about {:.2g} joints away; give origin, offset "
+            "and start near them",
+            away, drawn),
+        set.where};
+  return {};
 }
 
 std::vector<std::pair<Vec2, Vec2>> joint_set_lines(const JointSetInput& set, const JointSetNote& note,

@@ -34,11 +34,15 @@ ApparentDip apparent_dip(double dip, double dip_direction, double section_azimut
 /// Mean direction and spacing of the set in the section.
 JointSetNote describe(const JointSetInput& set, double section_azimuth);
 
-/// Why the set cannot be drawn over `box`; "" when it can.
-std::string joint_set_defect(const JointSetInput& set, const JointSetNote& note, const Box& box);
+/// Why the set cannot be drawn over `box`, and where the reason stands in the file; no text when it can.
+struct JointSetDefect {
+  std::string key, text;
+  Where where;
+};
+JointSetDefect joint_set_defect(const JointSetInput& set, const JointSetNote& note, const Box& box);
 
 /// The lines that may cross `box`, ends and all. A line keeps its place when the box grows.
-/// @pre joint_set_defect() is ""
+/// @pre joint_set_defect() has no text
 std::vector<std::pair<Vec2, Vec2>> joint_set_lines(const JointSetInput& set, const JointSetNote& note,
                                                    const CutInput& cut, const Box& box);
 

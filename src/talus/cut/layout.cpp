@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "talus/base/error.h"
 #include "talus/base/text.h"
@@ -15,6 +16,10 @@ namespace {
 
 // Overlap smaller than this share of the smaller block is round-off of the coordinates, not a mistake.
 constexpr double kOverlapShare = 1e-9;
+
+// Edges of cut blocks shorter than this [cells of the grid] are looked at twice when flat corners are left
+// out.
+constexpr double kShort = 8;
 
 // Lengths below this share of the model's size are the same point.
 constexpr double kPointShare = 1e-9;
@@ -74,7 +79,17 @@ void add_cut_block(const Cut& cut, const CutBlock& block, const Model& model, Bl
     const bool one_origin = origin(k) == origin(k - 1);
     if (!one_origin || !straight(kept.back(), k + 1)) kept.push_back(k);
   }
-  if (kept.size() < 3) {
+  // corners a few cells apart may cross a line drawn past another of them
+  bool crossed = kept.size() < 3;
+  const auto is_short = [&](size_t k) { return norm(place(k + 1) - place(k)) < kShort * cut.grid; };
+  for (size_t k = 0; k < n && !crossed && kept.size() < n; ++k) {
+    if (!is_short(k)) continue;
+    Polygon trial;
+    for (const size_t i : kept) trial.push_back(place(i));
+    crossed = !polygon_defect(trial).empty();
+    break;
+  }
+  if (crossed) {
     kept.clear();
     for (size_t k = 0; k < n; ++k) kept.push_back(k);
   }
@@ -111,6 +126,7 @@ void add_cut(const Model& model, const Cut& cut, Layout& layout) {
 void check_overlaps(const Layout& layout, Findings& findings) {
   std::vector<Box> boxes;
   for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
+  std::set<std::pair<int, int>> told;  // groups; one place of a cut region is enough
   for (const auto& [i, j] : close_pairs(boxes, 0)) {
     const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
     const bool cut_a = a.group >= layout.first_cut_group, cut_b = b.group >= layout.first_cut_group;
@@ -123,6 +139,7 @@ void check_overlaps(const Layout& layout, Findings& findings) {
             ? layout.touching * norm(boxes[static_cast<size_t>(j)].max - boxes[static_cast<size_t>(j)].min)
             : 0;
     if (overlap.area <= kOverlapShare * smaller + rounding) continue;
+    if ((cut_a || cut_b) && !told.insert(std::minmax(a.group, b.group)).second) continue;
     findings.error(layout.group_where[static_cast<size_t>(b.group)], b.name,
                    fmt::format("overlaps \"{}\" by {:.3g} m2 around ({:.6g}, {:.6g})", a.name, overlap.area,
                                overlap.at.x, overlap.at.y),
@@ -166,6 +183,11 @@ double model_size(const Layout& layout) {
 void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
                    Findings& findings) {
   if (name.empty()) return;  // told by the reader
+  if (layout.find_group(name) >= 0) {
+    findings.error(where, path, fmt::format("\"{}\" has no block left", name),
+                   "its rock is taken out, or another region or opening covers it");
+    return;
+  }
   std::vector<std::string> names = layout.groups;
   for (const BlockShape& b : layout.blocks) names.push_back(b.name);
   const std::string near = closest_name(name, names);

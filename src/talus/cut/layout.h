@@ -50,7 +50,7 @@ struct Layout {
 };
 
 /// Cuts the regions of the model, or reads the blocks file that `cut.blocks` names. Everything wrong goes to
-/// `findings`. Throws FileError when that file cannot be read.
+/// `findings`, and then the cut is empty.
 Cut cut_or_read(const Model& model, Findings& findings);
 
 /// Polygons of blocks of a cut, flat corners (to a cell of the grid) left out: they are no corners. Groups

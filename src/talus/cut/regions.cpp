@@ -7,6 +7,9 @@ namespace talus {
 
 namespace {
 
+// A side this near [share of the model] to that of another region lies on it, not inside the region.
+constexpr double kOnSide = 1e-9;
+
 Box united(const Box& a, const Box& b) {
   return {{std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y)},
           {std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y)}};
@@ -80,26 +83,48 @@ Box RegionMap::box(int region) const {
   return all;
 }
 
-std::vector<std::vector<Vec2>> RegionMap::clip(Vec2 from, Vec2 to, int region) const {
+// Parts of the segment, between its crossings with the sides of all regions, whose middle is wanted.
+template <class Wanted>
+std::vector<std::vector<Vec2>> RegionMap::parts(Vec2 from, Vec2 to, const Wanted& wanted) const {
   std::vector<double> t{0, 1};
-  for (size_t i = 0; i < regions_.size(); ++i) {
-    const Polygon& polygon = regions_[i].polygon;
-    for (size_t k = 0; k < polygon.size(); ++k)
-      add_crossing(from, to, polygon[k], polygon[(k + 1) % polygon.size()], t);
-  }
+  for (const CutRegion& r : regions_)
+    for (size_t k = 0; k < r.polygon.size(); ++k)
+      add_crossing(from, to, r.polygon[k], r.polygon[(k + 1) % r.polygon.size()], t);
   std::sort(t.begin(), t.end());
-  const auto at = [&](double s) { return from + s * (to - from); };
-  std::vector<std::vector<Vec2>> parts;
+  const auto at = [&](double s) { return s == 1 ? to : from + s * (to - from); };
+  std::vector<std::vector<Vec2>> list;
   bool joined = false;  // the last part ends where this one begins
   for (size_t i = 0; i + 1 < t.size(); ++i) {
     if (t[i] == t[i + 1]) continue;
-    const int here = region_at(at(0.5 * (t[i] + t[i + 1])));
-    const bool wanted = region < 0 ? here >= 0 : here == region;
-    if (wanted && joined) parts.back().back() = i + 2 == t.size() ? to : at(t[i + 1]);
-    if (wanted && !joined) parts.push_back({at(t[i]), i + 2 == t.size() ? to : at(t[i + 1])});
-    joined = wanted;
+    const bool here = wanted(at(0.5 * (t[i] + t[i + 1])));
+    if (here && joined) list.back().back() = at(t[i + 1]);
+    if (here && !joined) list.push_back({at(t[i]), at(t[i + 1])});
+    joined = here;
   }
-  return parts;
+  return list;
+}
+
+std::vector<std::vector<Vec2>> RegionMap::clip(Vec2 from, Vec2 to, int region) const {
+  return parts(from, to, [&](Vec2 middle) {
+    const int here = region_at(middle);
+    return region < 0 ? here >= 0 : here == region;
+  });
+}
+
+std::vector<std::vector<Vec2>> RegionMap::uncovered(Vec2 from, Vec2 to, int region) const {
+  const Box all = box();
+  const double near = kOnSide * norm(all.max - all.min);
+  const auto well_inside = [near](const Polygon& polygon, Vec2 p) {
+    if (!contains(polygon, p)) return false;
+    for (size_t k = 0; k < polygon.size(); ++k)
+      if (distance_to_segment(p, polygon[k], polygon[(k + 1) % polygon.size()]) <= near) return false;
+    return true;
+  };
+  return parts(from, to, [&](Vec2 middle) {
+    for (size_t later = static_cast<size_t>(region) + 1; later < regions_.size(); ++later)
+      if (holds(boxes_[later], middle, 0) && well_inside(regions_[later].polygon, middle)) return false;
+    return true;
+  });
 }
 
 }  // namespace talus

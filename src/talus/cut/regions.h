@@ -29,8 +29,13 @@ class RegionMap {
   Box box(int region = -1) const;
   /// Parts of the segment that lie in some region, or in the one given.
   std::vector<std::vector<Vec2>> clip(Vec2 from, Vec2 to, int region = -1) const;
+  /// Parts of the segment, a side of region `region`, that no later region covers.
+  std::vector<std::vector<Vec2>> uncovered(Vec2 from, Vec2 to, int region) const;
 
  private:
+  template <class Wanted>
+  std::vector<std::vector<Vec2>> parts(Vec2 from, Vec2 to, const Wanted& wanted) const;
+
   std::vector<CutRegion> regions_;
   std::vector<Box> boxes_;
 };

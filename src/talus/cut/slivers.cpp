@@ -14,14 +14,19 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+// A block thinner than this share of its length is a sliver whatever the limits: its moments have no digits
+// left.
+constexpr double kThinnest = 1e-5;
+
 struct Measure {
-  double area = 0, width = 0;
+  double area = 0, width = 0, length = 0;
   Vec2 centroid;
 };
 
 Measure measure(const Polygon& polygon) {
   const PolygonMoments m = polygon_moments(polygon);
-  return {m.area, polygon_width(m), m.centroid};
+  const double width = polygon_width(m);
+  return {m.area, width, m.area / width, m.centroid};
 }
 
 class SliverTreatment {
@@ -39,8 +44,11 @@ class SliverTreatment {
 
   void run() {
     std::vector<double> areas, widths;
-    for (size_t i = 0; i < measures_.size(); ++i)
-      if (judged_[i]) areas.push_back(measures_[i].area), widths.push_back(measures_[i].width);
+    // of the rock outside openings: limits must not depend on what is taken out
+    for (const bool everywhere : {false, true})
+      for (size_t i = 0; i < measures_.size() && (!everywhere || areas.empty()); ++i)
+        if (everywhere || cut_.blocks[i].opening < 0)
+          areas.push_back(measures_[i].area), widths.push_back(measures_[i].width);
     if (areas.empty()) return;
     table_.median_area = median(areas), table_.median_width = median(widths);
     table_.area_limit = std::max(input_.sliver_area, input_.sliver_area_share * table_.median_area);
@@ -60,7 +68,8 @@ class SliverTreatment {
  private:
   bool is_sliver(int i) const {
     const Measure& m = measures_[static_cast<size_t>(i)];
-    return judged_[static_cast<size_t>(i)] && (m.area < table_.area_limit || m.width < table_.width_limit);
+    return judged_[static_cast<size_t>(i)] &&
+           (m.area < table_.area_limit || m.width < table_.width_limit || m.width < kThinnest * m.length);
   }
 
   void attach(int edge, int block) {

@@ -13,6 +13,9 @@ namespace talus {
 
 namespace {
 
+// Most blocks that joint sets may make.
+constexpr double kMostBlocks = 2e7;
+
 class TraceMaker {
  public:
   TraceMaker(const Model& model, const RegionMap& regions, Findings& findings)
@@ -57,17 +60,25 @@ class TraceMaker {
   }
 
   void add_sides() {
-    for (const CutRegion& r : regions_.list()) {
-      for (size_t k = 0; k < r.polygon.size(); ++k)
-        out_.traces.push_back(
-            {{r.polygon[k], r.polygon[(k + 1) % r.polygon.size()]}, origin(r.sides[k], OriginKind::kSide)});
+    for (size_t i = 0; i < regions_.list().size(); ++i) {
+      const CutRegion& r = regions_.list()[i];
+      for (size_t k = 0; k < r.polygon.size(); ++k) {
+        const Vec2 a = r.polygon[k], b = r.polygon[(k + 1) % r.polygon.size()];
+        for (auto& part : regions_.uncovered(a, b, static_cast<int>(i)))
+          out_.traces.push_back({std::move(part), origin(r.sides[k], OriginKind::kSide)});
+      }
     }
   }
 
   void add_faults() {
     for (const FaultInput& f : model_.faults) {
       const int o = origin(f.name, OriginKind::kFault);
-      for (size_t k = 0; k + 1 < f.points.size(); ++k) add_clipped(f.points[k], f.points[k + 1], -1, o);
+      double length = 0;
+      for (size_t k = 0; k + 1 < f.points.size(); ++k)
+        length += add_clipped(f.points[k], f.points[k + 1], -1, o);
+      if (length == 0)
+        findings_.warning(f.where, "fault." + f.name, "has no part in the regions",
+                          "are its points in metres?");
     }
   }
 
@@ -113,26 +124,58 @@ class TraceMaker {
     }
   }
 
-  void add_joint_sets() {
-    for (const JointSetInput& set : model_.joint_sets) {
-      const int o = origin(set.name, OriginKind::kJointSet);
-      const Box box = regions_.box(set.region);
-      JointSetNote note = describe(set, model_.cut.section_azimuth);
-      const std::string defect = joint_set_defect(set, note, box);
-      if (!defect.empty()) {
-        findings_.error(set.where_spacing, "joint_set." + set.name, defect);
-        continue;
+  // Crossings of two families of lines, from their lengths per area: about as many blocks.
+  bool too_many_blocks() {
+    double blocks = 0;
+    for (size_t i = 0; i < model_.joint_sets.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        const JointSetInput &a = model_.joint_sets[i], &b = model_.joint_sets[j];
+        if (a.region >= 0 && b.region >= 0 && a.region != b.region) continue;
+        const Box box = regions_.box(a.region >= 0 ? a.region : b.region);
+        blocks += (box.max.x - box.min.x) * (box.max.y - box.min.y) * lines_per_length(a) *
+                  lines_per_length(b) *
+                  std::abs(std::sin(describe(a, model_.cut.section_azimuth).angle -
+                                    describe(b, model_.cut.section_azimuth).angle));
       }
-      for (const auto& [a, b] : joint_set_lines(set, note, model_.cut, box)) {
-        const double length = add_clipped(a, b, set.region, o);
-        note.length += length;
-        note.traces += length > 0;
-      }
-      if (note.traces == 0)
-        findings_.warning(set.where, "joint_set." + set.name, "has no joint in the regions",
-                          "its spacing may be wider than they are, or its origin far away with few traces");
-      out_.joint_sets.push_back(note);
     }
+    if (!(blocks > kMostBlocks)) return false;
+    findings_.error(model_.joint_sets.back().where_spacing, "joint_set",
+                    fmt::format("the sets make about {:.2g} blocks, more than {:g}", blocks, kMostBlocks),
+                    "is a unit missing in a spacing?");
+    return true;
+  }
+
+  double lines_per_length(const JointSetInput& set) const {
+    const double share =
+        set.trace_length.mean > 0 ? set.trace_length.mean / (set.trace_length.mean + set.gap.mean) : 1;
+    return share / describe(set, model_.cut.section_azimuth).spacing;
+  }
+
+  void add_joint_sets() {
+    bool sound = true;
+    for (const JointSetInput& set : model_.joint_sets) {
+      out_.joint_sets.push_back(describe(set, model_.cut.section_azimuth));
+      const JointSetDefect defect = joint_set_defect(set, out_.joint_sets.back(), regions_.box(set.region));
+      if (defect.text.empty()) continue;
+      findings_.error(defect.where, "joint_set." + set.name + "." + defect.key, defect.text,
+                      "docs/theory.md 10.1 says how sets are drawn");
+      sound = false;
+    }
+    if (!sound || too_many_blocks()) return;
+    for (size_t i = 0; i < model_.joint_sets.size(); ++i)
+      add_joint_set(model_.joint_sets[i], out_.joint_sets[i]);
+  }
+
+  void add_joint_set(const JointSetInput& set, JointSetNote& note) {
+    const int o = origin(set.name, OriginKind::kJointSet);
+    for (const auto& [a, b] : joint_set_lines(set, note, model_.cut, regions_.box(set.region))) {
+      const double length = add_clipped(a, b, set.region, o);
+      note.length += length;
+      note.traces += length > 0;
+    }
+    if (note.traces == 0)
+      findings_.warning(set.where, "joint_set." + set.name, "has no joint in the regions",
+                        "its spacing may be wider than they are, or its origin far away with few traces");
   }
 
   const Model& model_;
@@ -151,7 +194,7 @@ std::vector<Origin> all_origins(const Model& model, const RegionMap& regions) {
   for (const CutRegion& r : regions.list()) {
     for (const std::string& side : r.sides) {
       const auto known = [&side](const Origin& o) { return o.kind == OriginKind::kSide && o.name == side; };
-      if (std::none_of(list.begin(), list.end(), known)) list.push_back({side, OriginKind::kSide, r.joint});
+      if (std::none_of(list.begin(), list.end(), known)) list.push_back({side, OriginKind::kSide, -1});
     }
   }
   for (const FaultInput& f : model.faults) list.push_back({f.name, OriginKind::kFault, f.joint});

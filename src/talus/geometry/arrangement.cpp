@@ -14,8 +14,11 @@ namespace talus {
 
 namespace {
 
-// Noding moves a line by less than one cell of the grid.
-constexpr double kMoved = 1.5;
+// Noding moves a line by less than one cell of the grid, and again by as much where a cut was added.
+constexpr double kMoved = 1.5, kMovedTwice = 2.5;
+
+// A cut through a hole may meet another hole; each round opens at least one.
+constexpr int kMostRounds = 100;
 
 using Node = std::array<int64_t, 2>;  // in cells of the grid
 
@@ -38,14 +41,14 @@ class LineIndex {
     entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
   }
 
-  // The first line that passes both points within reach, -1 when none does.
-  int first_along(Vec2 a, Vec2 b) const {
+  // The first line that passes both points within `near`, at most the reach; -1 when none does.
+  int first_along(Vec2 a, Vec2 b, double near) const {
     const Node square = square_of(0.5 * (a + b));
     auto it = std::lower_bound(entries_.begin(), entries_.end(), Entry{square, -1, -1});
     for (; it != entries_.end() && it->square == square; ++it) {
       const Polyline& line = lines_[static_cast<size_t>(it->line)];
       const Vec2 p = line[static_cast<size_t>(it->part)], q = line[static_cast<size_t>(it->part) + 1];
-      if (distance_to_segment(a, p, q) <= reach_ && distance_to_segment(b, p, q) <= reach_) return it->line;
+      if (distance_to_segment(a, p, q) <= near && distance_to_segment(b, p, q) <= near) return it->line;
     }
     return -1;
   }
@@ -100,19 +103,23 @@ Polygon open_ring(const GEOSGeometry* ring) {
   return corners;
 }
 
-// Noding and polygonizing, in coordinates relative to `origin`.
-Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 origin) {
+Geos::Handle node(const std::vector<Polyline>& lines, double grid) {
   const GEOSContextHandle_t context = geos().context();
   // in mixed order: the noder keeps its nodes in a tree that it does not balance, and parallel lines from one
   // side to the other would make it half a list (measured: 31 s instead of 15 s at half a million faces)
   std::vector<Polyline> mixed = lines;
   Random random(1);
   for (size_t i = mixed.size(); i > 1; --i) std::swap(mixed[i - 1], mixed[random.next() % i]);
-  const auto input = geos().make_lines(mixed, origin);
-  const auto noded = geos().own(input ? GEOSUnaryUnionPrec_r(context, input.get(), grid) : nullptr);
+  const auto input = geos().make_lines(mixed, {0, 0});
+  auto noded = geos().own(input ? GEOSUnaryUnionPrec_r(context, input.get(), grid) : nullptr);
   if (!noded) throw std::runtime_error("noding of the joints failed");
+  return noded;
+}
+
+Noded polygonize(const GEOSGeometry* noded) {
+  const GEOSContextHandle_t context = geos().context();
   GEOSGeometry *cuts = nullptr, *dangles = nullptr, *invalid = nullptr;
-  const auto faces = geos().own(GEOSPolygonize_full_r(context, noded.get(), &cuts, &dangles, &invalid));
+  const auto faces = geos().own(GEOSPolygonize_full_r(context, noded, &cuts, &dangles, &invalid));
   const auto own_cuts = geos().own(cuts), own_dangles = geos().own(dangles),
              own_invalid = geos().own(invalid);
   if (!faces) throw std::runtime_error("collecting the faces between the joints failed");
@@ -142,6 +149,45 @@ Noded node_and_polygonize(const std::vector<Polyline>& lines, double grid, Vec2 
   return out;
 }
 
+// Pieces inside the face of the level line through the middle of its first hole.
+std::vector<Polyline> level_cuts(const std::vector<Polyline>& rings) {
+  const Box hole = bounding_box(rings[1]);
+  const double y = 0.5 * (hole.min.y + hole.max.y);
+  std::vector<double> x;
+  for (const Polyline& ring : rings) {
+    for (size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
+      if ((a.y > y) != (b.y > y)) x.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+  }
+  std::sort(x.begin(), x.end());
+  std::vector<Polyline> cuts;
+  for (size_t k = 0; k + 1 < x.size(); k += 2) cuts.push_back({{x[k], y}, {x[k + 1], y}});
+  return cuts;
+}
+
+// Nodes the lines and opens the solid faces with holes. Cuts are added to what is noded already: they end on
+// its edges, which may lie a cell away from the lines themselves.
+Noded node_and_open(const std::vector<Polyline>& lines, double grid,
+                    const std::function<bool(Vec2)>& is_solid, std::vector<Polyline>& cuts, int& opened) {
+  auto noded = node(lines, grid);
+  for (int round = 0; round < kMostRounds; ++round) {
+    Noded out = polygonize(noded.get());
+    const size_t before = cuts.size();
+    for (const auto& rings : out.holed) {
+      const auto level = level_cuts(rings);
+      if (!is_solid || !is_solid(0.5 * (level[0][0] + level[0][1]))) continue;
+      cuts.insert(cuts.end(), level.begin(), level.end());
+      ++opened;
+    }
+    if (cuts.size() == before) return out;
+    std::vector<Polyline> next(cuts.begin() + static_cast<std::ptrdiff_t>(before), cuts.end());
+    for_parts(noded.get(), [&](const GEOSGeometry* line) { next.push_back(geos().corners_of(line)); });
+    noded = node(next, grid);
+  }
+  throw std::runtime_error("blocks with holes could not be opened by cuts");
+}
+
 bool lower_left(Vec2 a, Vec2 b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
 
 }  // namespace
@@ -151,11 +197,17 @@ double grid_width(double extent, double wanted) {
   return std::exp2(std::floor(std::log2(limit)));
 }
 
-Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin) {
+Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin,
+                    const std::function<bool(Vec2)>& is_solid) {
   Arrangement out;
   out.grid = grid;
   if (lines.empty()) return out;
-  Noded noded = node_and_polygonize(lines, grid, origin);
+  std::vector<Polyline> local = lines;
+  for (Polyline& l : local)
+    for (Vec2& p : l) p -= origin;
+  const auto is_solid_local = [&](Vec2 p) { return is_solid && is_solid(p + origin); };
+  Noded noded = node_and_open(local, grid, is_solid_local, out.cuts, out.opened);
+  local.insert(local.end(), out.cuts.begin(), out.cuts.end());
 
   // faces in an order that depends on their places only
   for (Polygon& ring : noded.rings)
@@ -196,15 +248,14 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
   }
 
   // the line along each edge
-  std::vector<Polyline> local = lines;
-  for (Polyline& l : local)
-    for (Vec2& p : l) p -= origin;
   const double cell = std::max(total / static_cast<double>(std::max<size_t>(out.edge.size(), 1)), 4 * grid);
-  const LineIndex index(local, cell, kMoved * grid);
+  const LineIndex index(local, cell, kMovedTwice * grid);
   for (const auto& [a, b] : out.edge) {
     const Vec2 p = out.point[static_cast<size_t>(a)], q = out.point[static_cast<size_t>(b)];
-    out.edge_source.push_back(index.first_along(p, q));
-    if (out.edge_source.back() < 0)
+    int source = index.first_along(p, q, kMoved * grid);
+    if (source < 0) source = index.first_along(p, q, kMovedTwice * grid);
+    out.edge_source.push_back(source);
+    if (source < 0)
       throw std::runtime_error(
           fmt::format("no joint runs along the edge from ({:.9g}, {:.9g}) to ({:.9g}, {:.9g})",
                       p.x + origin.x, p.y + origin.y, q.x + origin.x, q.y + origin.y));
@@ -213,27 +264,36 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
   for (Vec2& p : out.point) p += origin;
   out.dead_ends = std::move(noded.dead_ends);
   out.rings_of_holed = std::move(noded.holed);
-  for (Polyline& l : out.dead_ends)
-    for (Vec2& p : l) p += origin;
   for (auto& rings : out.rings_of_holed)
     for (Polyline& ring : rings)
       for (Vec2& p : ring) p += origin;
+  for (std::vector<Polyline>* list : {&out.dead_ends, &out.cuts})
+    for (Polyline& l : *list)
+      for (Vec2& p : l) p += origin;
   return out;
 }
 
 Vec2 interior_point(const Polygon& polygon) {
-  const double y = polygon_moments(polygon).centroid.y;
-  std::vector<double> crossing;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    if ((a.y > y) != (b.y > y)) crossing.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+  // between the heights of two corners no corner is met; the roomiest of all stretches there
+  std::vector<double> height;
+  for (const Vec2 p : polygon) height.push_back(p.y);
+  std::sort(height.begin(), height.end());
+  Vec2 best = polygon[0];
+  double room = -1;
+  for (size_t h = 0; h + 1 < height.size(); ++h) {
+    const double y = 0.5 * (height[h] + height[h + 1]), tall = height[h + 1] - height[h];
+    if (!(tall > 0)) continue;
+    std::vector<double> crossing;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+      if ((a.y > y) != (b.y > y)) crossing.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+    std::sort(crossing.begin(), crossing.end());
+    for (size_t i = 0; i + 1 < crossing.size(); i += 2) {
+      const double here = std::min(tall, crossing[i + 1] - crossing[i]);
+      if (here > room) room = here, best = {0.5 * (crossing[i] + crossing[i + 1]), y};
+    }
   }
-  std::sort(crossing.begin(), crossing.end());
-  Vec2 best{polygon[0].x, y};
-  double widest = -1;
-  for (size_t i = 0; i + 1 < crossing.size(); i += 2)
-    if (crossing[i + 1] - crossing[i] > widest)
-      widest = crossing[i + 1] - crossing[i], best.x = 0.5 * (crossing[i] + crossing[i + 1]);
   return best;
 }
 

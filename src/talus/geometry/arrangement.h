@@ -3,6 +3,7 @@
 // and the source of every edge put back. All corners are multiples of the grid; faces share them exactly.
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "talus/geometry/polygon.h"
@@ -23,8 +24,10 @@ struct Arrangement {
   std::vector<Face> face;                     // [n_faces] sorted by lowest, then leftmost corner
 
   std::vector<Polyline> dead_ends;  // noded lines, or parts of them, that bound no face [m]
+  std::vector<Polyline> cuts;  // level cuts that opened holes; as sources they are numbered after the lines
+  int opened = 0;              // faces with holes that were opened
   std::vector<std::vector<Polyline>>
-      rings_of_holed;  // faces with holes, which are not in `face`: outer ring, holes
+      rings_of_holed;  // faces with holes that were not: outer ring, then holes
 };
 
 /// Width of the grid for a model of size `extent` [m]: `wanted` rounded down to a power of two, or 2^-20 m
@@ -34,10 +37,14 @@ double grid_width(double extent, double wanted);
 /// Nodes `lines` on the grid and collects the faces. Where two lines run along one edge the one that comes
 /// first in the list is its source. Cost N log N. Throws std::runtime_error when GEOS fails or gives lines
 /// that bound no valid face.
-/// @param grid  a power of two [m], larger than 2^-52 of the coordinates relative to `origin`
-Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin);
+/// @param grid      a power of two [m], larger than 2^-52 of the coordinates relative to `origin`
+/// @param is_solid  whether a face with holes around this point must become faces without: it is cut along
+/// the level
+///                  line through the middle of its first hole, and again until no hole is left. None: no face
+Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin,
+                    const std::function<bool(Vec2)>& is_solid = nullptr);
 
-/// A point inside a simple polygon: the middle of the widest stretch at the height of its centroid.
+/// A point well inside a simple polygon, away from the heights of its corners. Cost n^2.
 /// @pre area is not zero
 Vec2 interior_point(const Polygon& polygon);
 

@@ -65,7 +65,7 @@ struct JointSetInput {
   Scattered offset;        // [m] of the first line from the origin
   Scattered start;         // [m] of the first trace along each line
   int joint = -1;
-  Where where, where_spacing;
+  Where where, where_spacing, where_length;
 };
 
 struct FaultInput {
@@ -116,7 +116,7 @@ struct CutInput {
   double sliver_area = 0, sliver_width = 0;              // [m2], [m]
   double sliver_area_share = 0, sliver_width_share = 0;  // of the median block
   std::string blocks_file;                               // cut before; "" cut now
-  Where where, where_file;
+  Where where, where_file, where_grid;
 };
 
 }  // namespace talus

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "talus/geometry/polygon_check.h"
@@ -40,6 +41,17 @@ class CutReader : private SectionReader {
   // Names that supports may follow: each stands for one source of block edges.
   void claim_trace_name(const Fields& f, const std::string& what) { claim_name(f, trace_names_, what); }
 
+  // A name of blocks that is a source of edges, too: one message is enough.
+  void claim_both(const Fields& f, const std::string& what) {
+    const int before = findings_.error_count();
+    claim_name(f, block_names_, what);
+    const std::string name = f.get<std::string>("name");
+    if (findings_.error_count() > before || trace_names_.insert(name).second) return;
+    findings_.error(f.where("name"), f.path_of("name"),
+                    fmt::format("a second source of joints is called \"{}\"", name),
+                    "supports follow these names: they must differ");
+  }
+
   int region(const Fields& f) { return refer(f, "region", model_.regions, "region"); }
   int joint(const Fields& f, std::string_view key = "joint") { return refer(f, key, model_.joints, "joint"); }
   int material(const Fields& f) { return refer(f, "material", model_.materials, "material"); }
@@ -47,11 +59,12 @@ class CutReader : private SectionReader {
   void incomplete() { model_.shapes_readable = false; }
 
   // A polygon that must be simple; wrong ones are told and keep the cutter from starting.
-  void check_polygon(const Fields& f, std::string_view key, const Polygon& polygon) {
+  bool check_polygon(const Fields& f, std::string_view key, const Polygon& polygon) {
     const std::string defect = polygon_defect(polygon);
-    if (defect.empty()) return;
-    findings_.error(f.where(key), f.path_of(key), defect);
+    if (defect.empty()) return true;
+    findings_.error(f.where(key), f.path_of(key), defect, "give the corners in order, once around");
     incomplete();
+    return false;
   }
 
   // --- sections ---
@@ -61,6 +74,8 @@ class CutReader : private SectionReader {
     CutInput& c = model_.cut;
     c.where = f.where();
     c.section_azimuth = f.get("section_azimuth", c.section_azimuth);
+    azimuth_given_ = f.given("section_azimuth");
+    c.where_grid = f.where("grid");
     c.seed = static_cast<uint64_t>(f.get<int64_t>("seed", 1));
     c.grid = f.get("grid", c.grid);
     const auto policy = f.get<std::string>("slivers");
@@ -85,12 +100,10 @@ class CutReader : private SectionReader {
       r.name = f.get<std::string>("name");
       r.where = f.where();
       r.polygon = f.get<std::vector<Vec2>>("polygon");
-      if (f.has("polygon"))
-        check_polygon(f, "polygon", r.polygon);
-      else
-        incomplete();
+      const bool sound = f.has("polygon") && check_polygon(f, "polygon", r.polygon);
+      if (!sound) incomplete();
       r.sides = f.get<std::vector<std::string>>("sides");
-      if (f.has("sides") && r.sides.size() != r.polygon.size()) {
+      if (sound && f.has("sides") && r.sides.size() != r.polygon.size()) {
         findings_.error(f.where("sides"), f.path_of("sides"),
                         fmt::format("has {} names for {} edges", r.sides.size(), r.polygon.size()),
                         "give one name per edge, the first for the edge from the first to the second corner");
@@ -101,7 +114,8 @@ class CutReader : private SectionReader {
         if (side.empty() || side.find_first_of(".,\"\n[]") != std::string::npos)
           findings_.error(f.where("sides"), f.path_of("sides"), fmt::format("\"{}\" is no name", side),
                           "names are not empty and hold no dot, comma, quote or bracket");
-        side_names_.insert(side);
+        side_names_.emplace(side, f.has("sides") ? std::pair(f.where("sides"), f.path_of("sides"))
+                                                 : std::pair(f.where(), f.path()));
       }
       r.material = material(f);
       r.joint = joint(f);
@@ -112,8 +126,7 @@ class CutReader : private SectionReader {
 
   void read_arches() {
     for_list("arch", [this](const Fields& f) {
-      claim_name(f, block_names_, "block, grid or region");
-      claim_trace_name(f, "source of joints");
+      claim_both(f, "block, grid or region");
       ArchInput a;
       a.name = f.get<std::string>("name");
       a.where = f.where();
@@ -126,7 +139,9 @@ class CutReader : private SectionReader {
       for (const char* key : {"name", "center", "radius", "thickness", "voussoirs"})
         if (!f.has(key)) incomplete();
       if (!(a.to > a.from) || a.to - a.from > kTurn * (1 - 1e-9)) {
-        findings_.error(f.where("to"), f.path_of("to"), "must be larger than from, by less than a full turn");
+        findings_.error(
+            f.where("to"), f.path_of("to"), "must be larger than from, by less than a full turn",
+            "angles are counter-clockwise from +x: a half circle runs from \"0 deg\" to \"180 deg\"");
         incomplete();
       } else if ((a.to - a.from) / a.voussoirs > 0.5 * kTurn * (1 - 1e-9)) {
         findings_.error(f.where("voussoirs"), f.path_of("voussoirs"), "each must span less than 180 deg",
@@ -137,15 +152,14 @@ class CutReader : private SectionReader {
       a.joint = joint(f);
       a.kind = block_kind(f.get<std::string>("kind"));
       for (const char* side : {"intrados", "extrados", "start", "end"})
-        side_names_.insert(a.name + "-" + side);
+        side_names_.emplace(a.name + "-" + side, std::pair(f.where(), f.path()));
       model_.arches.push_back(a);
     });
   }
 
   void read_openings() {
     for_list("opening", [this](const Fields& f) {
-      claim_name(f, block_names_, "block, grid, region or opening");
-      claim_trace_name(f, "source of joints");
+      claim_both(f, "block, grid, region or opening");
       OpeningInput o;
       o.name = f.get<std::string>("name");
       o.where = f.where();
@@ -171,9 +185,9 @@ class CutReader : private SectionReader {
       }
       o.kept = f.get<std::string>("rock") == "kept";
       o.joint = joint(f);
-      if (!o.kept && f.given("joint"))
-        findings_.error(f.where("joint"), f.path_of("joint"),
-                        "needs rock = \"kept\": removed rock has no joint");
+      if (!o.kept && f.has("rock") && f.given("joint"))
+        findings_.warning(f.where("joint"), f.path_of("joint"), "has no effect: removed rock has no joint",
+                          "it counts with rock = \"kept\"");
       if (o.polygon.empty()) incomplete();
       model_.openings.push_back(std::move(o));
     });
@@ -190,14 +204,15 @@ class CutReader : private SectionReader {
       const bool belongs = std::find(needed.begin(), needed.end(), key) != needed.end() ||
                            (key == "segments" && shape != "polygon");
       if (!belongs && f.given(key)) {
-        findings_.error(f.where(key), f.path_of(key),
-                        fmt::format("does not belong to shape = \"{}\"", shape));
+        findings_.error(f.where(key), f.path_of(key), fmt::format("does not belong to shape = \"{}\"", shape),
+                        fmt::format("give {}", join_or(needed)));
         sound = false;
       }
     }
     for (const std::string& key : needed) {
       if (!f.given(key))
-        findings_.error(f.where(), f.path_of(key), fmt::format("is missing for shape = \"{}\"", shape));
+        findings_.error(f.where(), f.path_of(key), fmt::format("is missing for shape = \"{}\"", shape),
+                        "see the section opening in docs/file_format.md");
       sound = sound && f.has(key);
     }
     return sound;
@@ -211,7 +226,8 @@ class CutReader : private SectionReader {
       fault.where = f.where();
       fault.points = f.get<std::vector<Vec2>>("points");
       if (f.has("points") && fault.points.size() < 2)
-        findings_.error(f.where("points"), f.path_of("points"), "needs two points or more");
+        findings_.error(f.where("points"), f.path_of("points"), "needs two points or more",
+                        "give [[x0, y0], [x1, y1], ...] from end to end");
       fault.joint = joint(f);
       if (!f.has("points") || fault.points.size() < 2) incomplete();
       model_.faults.push_back(std::move(fault));
@@ -231,8 +247,9 @@ class CutReader : private SectionReader {
       m.origin = f.get<Vec2>("origin");
       m.bed_joint = joint(f, "bed_joint");
       m.head_joint = joint(f, "head_joint");
-      side_names_.insert({m.name + "-bed", m.name + "-head"});
-      check_cells(f, "length", m.region, m.length * m.height);
+      for (const char* part : {"bed", "head"})
+        side_names_.emplace(m.name + "-" + part, std::pair(f.where(), f.path()));
+      check_cells(f, "length", m.region, m.length, m.height);
       model_.masonry.push_back(m);
     });
   }
@@ -248,17 +265,19 @@ class CutReader : private SectionReader {
       t.size = f.get("size", 1.0);
       t.irregularity = f.get("irregularity", 0.0);
       t.joint = joint(f);
-      check_cells(f, "size", t.region, t.size * t.size);
+      check_cells(f, "size", t.region, t.size, t.size);
       model_.tessellations.push_back(t);
     });
   }
 
   // A region of known size must not be divided into more cells than any machine takes.
-  void check_cells(const Fields& f, std::string_view key, int region, double cell) {
+  void check_cells(const Fields& f, std::string_view key, int region, double length, double height) {
     if (region < 0) return incomplete();
     const Polygon& polygon = model_.regions[static_cast<size_t>(region)].polygon;
     if (polygon.empty()) return;
-    const double cells = std::abs(signed_area(polygon)) / cell;
+    // over the box, as they are drawn
+    const Box box = bounding_box(polygon);
+    const double cells = ((box.max.x - box.min.x) / length + 1) * ((box.max.y - box.min.y) / height + 1);
     if (cells <= kMostCells) return;
     findings_.error(f.where(key), f.path_of(key),
                     fmt::format("makes about {:.2g} cells, more than {:g}", cells, kMostCells),
@@ -273,6 +292,7 @@ class CutReader : private SectionReader {
       s.name = f.get<std::string>("name");
       s.where = f.where();
       s.where_spacing = f.where("spacing");
+      s.where_length = f.where("trace_length");
       s.in_space = f.given("dip") || f.given("dip_direction");
       if (f.given("angle") == s.in_space)
         findings_.error(f.where(), f.path(), s.in_space ? "has both angle and dip" : "has no direction",
@@ -281,10 +301,10 @@ class CutReader : private SectionReader {
       s.dip = f.get("dip", 0.0);
       s.dip_direction = f.get("dip_direction", 0.0);
       s.fisher = f.get("fisher", 0.0);
-      if (s.in_space && !(f.given("dip") && f.given("dip_direction")))
+      if (s.in_space && !f.given("angle") && !(f.given("dip") && f.given("dip_direction")))
         findings_.error(f.where(), f.path(), f.given("dip") ? "has no dip_direction" : "has no dip",
                         "an orientation in space needs both");
-      if (s.in_space && !std::isfinite(model_.cut.section_azimuth))
+      if (s.in_space && !azimuth_given_)
         findings_.error(f.where("dip"), f.path_of("dip"), "needs the direction of the section",
                         "give section_azimuth in [cut]");
       if (!s.in_space && f.given("fisher"))
@@ -303,6 +323,7 @@ class CutReader : private SectionReader {
       s.region = region(f);
       s.joint = joint(f);
       if (!f.has("spacing") || (s.in_space && !std::isfinite(model_.cut.section_azimuth)) ||
+          f.given("angle") == s.in_space || (s.in_space && !(f.given("dip") && f.given("dip_direction"))) ||
           (f.given("region") && s.region < 0))
         incomplete();
       model_.joint_sets.push_back(s);
@@ -322,9 +343,10 @@ class CutReader : private SectionReader {
                       "give the outline of the rock as [[region]] with name, polygon and material");
       incomplete();
     }
-    for (const std::string& side : side_names_)
+    for (const auto& [side, place] : side_names_)
       if (trace_names_.count(side))
-        findings_.error(model_.cut.where, side, "is the name of a side and of a source of joints",
+        findings_.error(place.first, place.second,
+                        fmt::format("\"{}\" is the name of a side and of a source of joints", side),
                         "supports follow these names: they must differ");
     if (model_.regions.empty() && model_.arches.empty()) return;
     JointProperty glue;
@@ -335,8 +357,10 @@ class CutReader : private SectionReader {
   }
 
   Model& model_;
+  bool azimuth_given_ = false;
   std::set<std::string>& block_names_;
-  std::set<std::string> trace_names_, side_names_;
+  std::set<std::string> trace_names_;
+  std::map<std::string, std::pair<Where, std::string>> side_names_;  // with place and key
 };
 
 }  // namespace

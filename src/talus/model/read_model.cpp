@@ -356,6 +356,9 @@ class ModelReader : private SectionReader {
                         "give one of point = [x, y], edge = [[x0, y0], [x1, y1]], along = \"NAME\"");
       }
       s.along = f.get<std::string>("along");
+      if (f.has("along") && s.along.empty())
+        findings_.error(f.where("along"), f.path_of("along"), "is empty",
+                        "name a side of a region, an opening, a fault or a joint set");
       s.from = s.to = f.get<Vec2>("point");
       if (f.has("edge")) {
         const auto points = f.get<std::vector<Vec2>>("edge");

@@ -280,8 +280,12 @@ Fields read_section(const SectionSpec& spec, const toml::table& table, const std
   // what the file gives
   for (const auto& [key, node] : table) {
     Where where = where_of(key.source());
-    const auto over = source.overridden.find(full(key.str()));
-    if (over != source.overridden.end()) where = {0, 0, over->second};
+    // given by --set as a whole or in part, as in angle.mean
+    const std::string path_here = full(key.str());
+    const auto over = source.overridden.lower_bound(path_here);
+    if (over != source.overridden.end() &&
+        (over->first == path_here || over->first.rfind(path_here + ".", 0) == 0))
+      where = {0, 0, over->second};
     const KeySpec* match = nullptr;
     for (const KeySpec& k : spec.keys)
       if (k.name == key.str()) match = &k;

@@ -242,7 +242,7 @@ std::vector<SectionSpec> build_schema() {
        SectionShape::kList,
        "A piece of the section that joints, faults, masonry or a sub-division cut into blocks. Its blocks "
        "are named "
-       "NAME[number]. Where regions overlap, the later one in the file holds.",
+       "NAME[number]. Where regions overlap, the later one in the file holds, and an arch before any.",
        {{.name = "name",
          .type = K::kText,
          .required = true,

@@ -89,7 +89,8 @@ class SectionReader {
     const int i = index_of(list, name);
     if (i < 0) {
       std::vector<std::string> names;
-      for (const auto& item : list) names.push_back(item.name);
+      for (const auto& item : list)
+        if (!item.name.empty()) names.push_back(item.name);
       const std::string near = closest_name(name, names);
       findings_.error(where, path, fmt::format("there is no {} called \"{}\"", what, name),
                       !near.empty()   ? fmt::format("did you mean \"{}\"?", near)

@@ -46,7 +46,7 @@ void write_file(const fs::path& path, const std::string& content) {
   }
 }
 
-void open_result_folder(const fs::path& folder, bool force) {
+void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
   std::error_code ec;
   if (fs::exists(folder, ec)) {
     if (!fs::is_directory(folder, ec))
@@ -64,13 +64,18 @@ void open_result_folder(const fs::path& folder, bool force) {
           fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
                       "Give another folder",
                       folder.string()));
-    for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
-                             "blocks_start.svg", "blocks_end.svg", "cut.json", "cut.svg", "cut.png",
-                             "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
-      fs::remove(folder / name, ec);
-    for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
-    for (const auto& entry : fs::directory_iterator(folder, ec))
-      if (entry.path().filename().string().rfind("step_", 0) == 0) fs::remove(entry.path(), ec);
+    if (kind == ResultKind::kCut) {
+      for (const char* name :
+           {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
+        fs::remove(folder / name, ec);
+    } else {
+      for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
+                               "blocks_start.svg", "blocks_end.svg"})
+        fs::remove(folder / name, ec);
+      for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
+      for (const auto& entry : fs::directory_iterator(folder, ec))
+        if (entry.path().filename().string().rfind("step_", 0) == 0) fs::remove(entry.path(), ec);
+    }
   }
   fs::create_directories(folder, ec);
   if (ec) fail(folder, "created", ec.value());

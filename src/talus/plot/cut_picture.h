@@ -13,9 +13,9 @@ namespace talus::plot {
 /// per px), each under a temporary name first and then renamed into place. Blocks that were not cut from a
 /// region are not shown, nor are monitors outside the cut; an empty cut gives axes and title only. Throws
 /// std::runtime_error naming file and cause when a file cannot be drawn or written.
-/// @note  the SVG holds one path per origin and tint, lines put end to end: 100,000 blocks cut by
-/// through-going
-///        joints take some 100 kB
+/// @note  the SVG holds one path per origin and tint, lines put end to end: 100,000 blocks cut by joints that
+/// go
+///        through take some 100 kB
 void write_cut_picture(const Model& model, const Cut& cut, const std::filesystem::path& stem);
 
 }  // namespace talus::plot

@@ -159,11 +159,15 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides, Findings& findings) {
   PreparedRun run;
   Model model = read_model(file, text, overrides, findings);
+  if (!model.shapes_readable) findings.throw_if_errors();
   if (model.stages.empty())
     findings.error({1, 1, ""}, "stage", "the file has no [[stage]]: nothing would be run",
                    "add [[stage]] with name, kind = \"dynamic\" and duration");
-  if (!model.shapes_readable) findings.throw_if_errors();
-  Layout layout = make_layout(model, findings);
+  const int errors = findings.error_count();
+  const Cut cut = cut_or_read(model, findings);
+  if (findings.error_count() > errors)
+    findings.throw_if_errors();  // without blocks all else would look wrong
+  Layout layout = make_layout(model, cut, findings);
   findings.throw_if_errors();
   run.scene = build_scene(std::move(model), std::move(layout));
   run.plans = plan_stages(run.scene, findings);

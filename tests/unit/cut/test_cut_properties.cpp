@@ -157,20 +157,10 @@ bool make_one_polygon(const CutBlock& a, const CutBlock& b) {
 // No block is left below the limits unless nothing may take it: its neighbours are of other regions or
 // openings, or reach around an opening and touch it twice.
 std::string sliver_defect(const Model& model, const Cut& cut) {
-  std::vector<double> areas, widths;
-  for (const CutBlock& b : not_removed(model, cut.whole)) {
-    const PolygonMoments m = polygon_moments(cut.polygon(b));
-    areas.push_back(m.area), widths.push_back(polygon_width(m));
-  }
-  if (areas.empty()) return "";
-  std::sort(areas.begin(), areas.end());
-  std::sort(widths.begin(), widths.end());
-  const double area = model.cut.sliver_area_share * areas[areas.size() / 2];
-  const double width = model.cut.sliver_width_share * widths[widths.size() / 2];
   int kept = 0;
   for (const CutBlock& b : cut.blocks) {
     const PolygonMoments m = polygon_moments(cut.polygon(b));
-    if (m.area >= area && polygon_width(m) >= width) continue;
+    if (m.area >= cut.slivers.area_limit && polygon_width(m) >= cut.slivers.width_limit) continue;
     ++kept;
     for (const CutBlock& other : cut.blocks)
       if (other.id != b.id && other.region == b.region && other.opening == b.opening &&

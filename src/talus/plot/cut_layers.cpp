@@ -1,0 +1,149 @@
+#include "talus/plot/cut_layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+
+#include "talus/plot/edge_chains.h"
+
+namespace talus::plot {
+namespace {
+
+// Okabe and Ito's colours for all kinds of colour vision, without black and grey, which have a meaning of
+// their own here, and without yellow, which is lost in thin lines on white.
+constexpr std::array<Color, 6> kPalette{{{0.000, 0.447, 0.698},    // blue
+                                         {0.835, 0.369, 0.000},    // vermilion
+                                         {0.000, 0.620, 0.451},    // bluish green
+                                         {0.800, 0.475, 0.655},    // reddish purple
+                                         {0.902, 0.624, 0.000},    // orange
+                                         {0.337, 0.706, 0.914}}};  // sky blue
+
+// Of materials, pale enough for every line above to stand out.
+constexpr std::array<Color, 6> kTints{{{0.975, 0.955, 0.905},    // sand
+                                       {0.885, 0.930, 0.970},    // blue
+                                       {0.890, 0.950, 0.880},    // green
+                                       {0.970, 0.900, 0.890},    // rose
+                                       {0.925, 0.900, 0.960},    // violet
+                                       {0.930, 0.930, 0.930}}};  // grey
+constexpr Color kKeptTint{1.0, 0.925, 0.55}, kFixedTint{0.74, 0.74, 0.74};
+constexpr Color kBlack{0, 0, 0}, kDeadEndGrey{0.6, 0.6, 0.6};
+
+// Darker in every second round.
+Color palette_color(int index) {
+  const Color c = kPalette[at(index) % kPalette.size()];
+  const double shade = at(index) / kPalette.size() % 2 == 0 ? 1 : 0.5;
+  return {shade * c.r, shade * c.g, shade * c.b};
+}
+
+Pen pen_of(OriginKind kind, int color, double joint_width) {
+  switch (kind) {
+    case OriginKind::kOpening:
+      return {kBlack, std::clamp(2.0 * joint_width, 1.2, 2.4), {}};
+    case OriginKind::kSide:
+      return {kBlack, std::clamp(1.8 * joint_width, 1.0, 2.2), {}};
+    case OriginKind::kConstruction:
+      return {kMidGrey, joint_width, {4, 3}};
+    case OriginKind::kFault:
+      return {palette_color(color), std::clamp(2.2 * joint_width, 0.9, 2.8), {}};
+    default:
+      return {palette_color(color), joint_width, {}};
+  }
+}
+
+std::string degrees_text(double radians) {
+  const double tenths = std::round(radians * 180 / std::numbers::pi * 10);
+  return fmt::format("{}{:g}\u00b0", tenths < 0 ? "\u2212" : "", std::abs(tenths) / 10);
+}
+
+std::string label_of(const Cut& cut, const Origin& origin) {
+  if (origin.kind == OriginKind::kSide) return "outline";
+  if (origin.kind == OriginKind::kConstruction) return "construction cut";
+  if (origin.kind == OriginKind::kJointSet)
+    for (const JointSetNote& note : cut.joint_sets)
+      if (note.name == origin.name)
+        return origin.name + ": " + degrees_text(note.angle) + ", " + counted(at(note.traces), "trace");
+  return origin.name;
+}
+
+}  // namespace
+
+double joint_line_width(const Cut& cut, double scale) {
+  constexpr double kShare = 0.055;
+  if (cut.blocks.empty()) return 1;
+  std::vector<double> areas;
+  for (const CutBlock& block : cut.blocks) areas.push_back(std::abs(signed_area(cut.polygon(block))));
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), middle, areas.end());
+  return std::clamp(kShare * std::sqrt(*middle) * scale, 0.15, 1.6);
+}
+
+std::vector<Layer> make_areas(const Model& model, const Cut& cut) {
+  constexpr int kFixed = INT_MAX - 1, kKept = INT_MAX;  // behind all materials
+  std::map<int, Layer> areas;
+  for (const CutBlock& block : cut.blocks) {
+    const CutRegion& region = cut.regions[at(block.region)];
+    int key = region.kind == BlockKind::kFixed ? kFixed : region.material;
+    if (block.opening >= 0) key = kKept;
+    std::vector<int>& edges = areas[key].edges;
+    edges.insert(edges.end(), block.edge.begin(), block.edge.end());
+  }
+  std::vector<Layer> list;
+  for (auto& [key, area] : areas) {
+    area.edges = outline_edges(std::move(area.edges));
+    area.pen.color = key == kKept ? kKeptTint : key == kFixed ? kFixedTint : kTints[at(key) % kTints.size()];
+    area.label = key == kKept ? "kept in openings" : key == kFixed ? "fixed" : "";
+    if (at(key) < model.materials.size()) area.label = model.materials[at(key)].name;
+    list.push_back(std::move(area));
+  }
+  return list;
+}
+
+std::vector<Layer> make_lines(const Cut& cut, double joint_width) {
+  constexpr std::size_t kOpenings = 0, kSides = 1, kOthers = 2;
+  std::vector<Layer> lines(kOthers + cut.origins.size());
+  const auto place = [&cut](std::size_t origin) {
+    const OriginKind kind = cut.origins[origin].kind;
+    return kind == OriginKind::kOpening ? kOpenings : kind == OriginKind::kSide ? kSides : kOthers + origin;
+  };
+  int color = 0, openings = 0;  // origins keep their colour even when none of their edges is left
+  std::string names;
+  for (std::size_t o = 0; o < cut.origins.size(); ++o) {
+    const Origin& origin = cut.origins[o];
+    Layer& own = lines[place(o)];
+    own.pen = pen_of(origin.kind, color, joint_width);
+    own.label = label_of(cut, origin);
+    color += place(o) >= kOthers && origin.kind != OriginKind::kConstruction;
+    if (place(o) == kOpenings) names += (openings++ == 0 ? "" : ", ") + origin.name;
+  }
+  lines[kOpenings].label = (openings == 1 ? "opening " : "openings ") + names;
+
+  std::vector<int> edges;
+  for (const CutBlock& block : cut.blocks) edges.insert(edges.end(), block.edge.begin(), block.edge.end());
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (const int edge : edges) lines[place(at(cut.edge_origin[at(edge)]))].edges.push_back(edge);
+  std::erase_if(lines, [](const Layer& layer) { return layer.edges.empty(); });
+  return lines;
+}
+
+Pen dead_end_pen(double joint_width) { return {kDeadEndGrey, 0.8 * joint_width, {}}; }
+
+std::vector<std::pair<Vec2, Vec2>> visible_dead_ends(const Model& model, const Cut& cut) {
+  const auto is_in_empty_opening = [&model](Vec2 p) {
+    const auto holds = [p](const OpeningInput& o) { return !o.kept && contains(o.polygon, p); };
+    return std::any_of(model.openings.begin(), model.openings.end(), holds);
+  };
+  std::vector<std::pair<Vec2, Vec2>> segments;
+  for (const Polyline& line : cut.dead_ends)
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+      if (!is_in_empty_opening(0.5 * (line[k] + line[k + 1]))) segments.push_back({line[k], line[k + 1]});
+  return segments;
+}
+
+}  // namespace talus::plot

@@ -1,0 +1,38 @@
+#pragma once
+// What a cut picture shows of the cut, sorted by how it is drawn: areas by material, lines by where they come
+// from, dead ends. Colours, widths and labels are chosen here; nothing is drawn.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "talus/cut/cut.h"
+#include "talus/model/model.h"
+#include "talus/plot/sheet.h"
+
+namespace talus::plot {
+
+/// Edges of the cut that are drawn in one go.
+struct Layer {
+  Pen pen;  // its colour fills an area
+  std::string label;
+  std::vector<int> edges;
+};
+
+/// Width [px] that leaves the blocks to be seen, from an arch of 20 to a slope of 100 000: a share of the
+/// size of the median block.
+/// @param scale  [px/m]
+double joint_line_width(const Cut& cut, double scale);
+
+/// Areas in one tint with the edges around them: materials, then fixed rock, then rock kept in openings.
+std::vector<Layer> make_areas(const Model& model, const Cut& cut);
+
+/// Lines of one origin, each edge once, most important first. Openings share a layer, and so do sides.
+std::vector<Layer> make_lines(const Cut& cut, double joint_width);
+
+Pen dead_end_pen(double joint_width);
+
+/// Segments [m] of the dead ends in the rock that is left: in an empty opening they would not mean anything.
+std::vector<std::pair<Vec2, Vec2>> visible_dead_ends(const Model& model, const Cut& cut);
+
+}  // namespace talus::plot

@@ -75,6 +75,15 @@ TEST_CASE("masonry: overlap, origin, and a region that the courses do not fit") 
   CHECK(areas_in_cm2(cut_of(model)) == areas);
 }
 
+TEST_CASE("masonry: courses below the origin are shifted by turns, too") {
+  const auto areas = areas_in_cm2(cut_of(wall(2, 1)));
+  Model model = wall(2, 1);
+  model.masonry[0].origin = {0, 2};  // ten courses above the lowest
+  CHECK(areas_in_cm2(cut_of(model)) == areas);
+  model.masonry[0].origin = {0, 1.8};  // nine: now three courses are shifted
+  CHECK(cut_of(model).whole.size() == 2 * 5 + 3 * 6);
+}
+
 TEST_CASE("masonry: only its region is divided, and its two kinds of joints have names") {
   Model model = wall(2, 1);
   add_region(model, "lintel", box_polygon(0.8, 0.3, 1.2, 0.7));

@@ -154,13 +154,15 @@ bool make_one_polygon(const CutBlock& a, const CutBlock& b) {
   return stretches == 1 && shared > 0;
 }
 
-// No block is left below the limits unless nothing may take it: its neighbours are of other regions or
-// openings, or reach around an opening and touch it twice.
+// No block is left below the limits, or thinner than 1e-5 of its length, unless nothing may take it: its
+// neighbours are of other regions or openings, or reach around an opening and touch it twice.
 std::string sliver_defect(const Model& model, const Cut& cut) {
   int kept = 0;
   for (const CutBlock& b : cut.blocks) {
     const PolygonMoments m = polygon_moments(cut.polygon(b));
-    if (m.area >= cut.slivers.area_limit && polygon_width(m) >= cut.slivers.width_limit) continue;
+    const double width = polygon_width(m), length = m.area / width;
+    if (m.area >= cut.slivers.area_limit && width >= cut.slivers.width_limit && width >= 1e-5 * length)
+      continue;
     ++kept;
     for (const CutBlock& other : cut.blocks)
       if (other.id != b.id && other.region == b.region && other.opening == b.opening &&
@@ -203,22 +205,17 @@ std::string policy_defect(Model model, const Cut& merged) {
   return "";
 }
 
-// Limits are shares of the median block: where most blocks are slivers it bounds nothing, and hair-thin ones
-// stay.
-bool has_sound_limits(const Cut& cut) {
-  double length = 0;
-  for (const CutRegion& r : cut.regions) length = std::max(length, perimeter(r.polygon));
-  return cut.slivers.median_width > 1e-4 * length;
-}
-
 // The blocks of the layout: simple, and what flat corners take away is less than a strip of one cell.
 std::string shape_defect(const Model& model, const Cut& cut) {
   const std::vector<BlockShape> shapes = shapes_of(model, cut, cut.blocks);
   if (shapes.size() != cut.blocks.size()) return "not one shape per block";
+  std::set<int> kept;  // slivers that nothing could take, however thin
+  for (const Sliver& row : cut.slivers.rows)
+    if (row.action == SliverAction::kKept) kept.insert(row.id);
   for (size_t i = 0; i < shapes.size(); ++i) {
     const Polygon whole = cut.polygon(cut.blocks[i]), shape = shapes[i].polygon;
     std::string defect = polygon_defect(shape);
-    if (!has_sound_limits(cut) && defect.starts_with("has no area")) defect.clear();
+    if (kept.count(cut.blocks[i].id) && defect.starts_with("has no area")) defect.clear();
     if (!defect.empty()) return shapes[i].name + " " + defect;
     if (std::abs(signed_area(shape) - signed_area(whole)) > cut.grid * perimeter(whole))
       return shapes[i].name + " lost area with its flat corners";

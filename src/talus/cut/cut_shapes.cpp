@@ -36,13 +36,12 @@ void add_cut_block(const Cut& cut, const CutBlock& block, const Model& model, Bl
   }
   // corners a few cells apart may cross a line drawn past another of them
   bool crossed = kept.size() < 3;
-  const auto is_short = [&](size_t k) { return norm(place(k + 1) - place(k)) < kShort * cut.grid; };
-  for (size_t k = 0; k < n && !crossed && kept.size() < n; ++k) {
-    if (!is_short(k)) continue;
+  if (!crossed && kept.size() < n) {
     Polygon trial;
     for (const size_t i : kept) trial.push_back(place(i));
-    crossed = !polygon_defect(trial).empty();
-    break;
+    bool is_small = polygon_width(polygon_moments(cut.polygon(block))) < kShort * cut.grid;
+    for (size_t k = 0; k < n; ++k) is_small = is_small || norm(place(k + 1) - place(k)) < kShort * cut.grid;
+    crossed = is_small && !polygon_defect(trial).empty();
   }
   if (crossed) {
     kept.clear();

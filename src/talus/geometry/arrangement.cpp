@@ -14,8 +14,9 @@ namespace talus {
 
 namespace {
 
-// Noding moves a line by less than one cell of the grid, and again by as much where a cut was added.
-constexpr double kMoved = 1.5, kMovedTwice = 2.5;
+// Noding moves a line by less than one cell of the grid, and again by as much in every round of cuts that
+// open holes.
+constexpr double kMoved = 1.5, kMovedTwice = 16;
 
 // A cut through a hole may meet another hole; each round opens at least one.
 constexpr int kMostRounds = 100;

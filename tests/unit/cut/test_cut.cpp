@@ -184,6 +184,18 @@ TEST_CASE("a needle of joints that touches nothing is opened, too") {
   }
 }
 
+TEST_CASE("faults half a cell apart that end in the rock enclose needles: opened without moving the faults") {
+  Model model = rock_model({{67.755727279765438, 21.635700557909299},
+                            {-90.688487868390894, 110.51423122046329},
+                            {-31.624626810411002, 16.08519571505613},
+                            {-85.838786411006396, -91.661212691315527},
+                            {60.919421359764151, -42.234275634878607}});
+  add_fault(model, {{6.2411648017572521, 55.489868260529597}, {-20.878008098036787, 29.069833111636349}});
+  add_fault(model, {{6.2411652970533602, 55.489867752126763}, {-20.878007602740677, 29.069832603233511}});
+  add_fault(model, {{6.2411654044125031, 55.489867641926637}, {-20.878007495381535, 29.069832493033388}});
+  CHECK(partition_defect(cut_of(model)) == "");
+}
+
 TEST_CASE("a region within a region: later ones in the file hold") {
   Model model = rock_model(box_polygon(0, 0, 10, 10));
   add_region(model, "ore", box_polygon(2, 2, 6, 6));

@@ -229,3 +229,11 @@ TEST_CASE("layout of a cut: corners within a cell of each other do not make the 
   REQUIRE(is_simple(CellCut(cut).ring(cut.blocks[0])));
   CHECK(polygon_defect(shape_of(cut)) == "");
 }
+
+TEST_CASE("layout of a cut: a block two cells wide does not cross itself either, though its edges are long") {
+  const std::vector<Cell> corners{{0, 0},    {2525, 616}, {297, 73}, {420, 104}, {408, 102},
+                                  {302, 76}, {185, 47},   {55, 15},  {-90, -21}};
+  const Cut cut = one_block(corners, {0, 1, 1, 2, 3, 2, 4, 1, 0});
+  REQUIRE(is_simple(CellCut(cut).ring(cut.blocks[0])));
+  CHECK(polygon_defect(shape_of(cut)).find("itself") == std::string::npos);
+}

@@ -285,8 +285,8 @@ TEST_CASE("two sets at 3 m in 200 x 300 m: as many blocks as counted by cutting 
     double angle_a, offset_a, angle_b, offset_b;
     size_t blocks;
   };
-  // docs: shared numbers of the tunnel; offsets of .37 and .81 of a spacing along the normal (sin dip, cos
-  // dip)
+  // counted independently by splitting polygons line after line; offsets of .37 and .81 of a spacing along
+  // the normal (sin dip, cos dip)
   for (const Case& c :
        {Case{105, -1.11, 55, 2.43, 5311}, Case{75, 0, 125, 0, 5307}, Case{-60.7, 1.11, 34.7, 2.43, 6865},
         Case{-63.5, 1.11, -55, 2.43, 1205}, Case{-72.4, 1.11, -0.01, 2.43, 6552}}) {

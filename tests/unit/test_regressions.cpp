@@ -73,8 +73,7 @@ TEST_CASE("regression: blocks of a bonded pair that lie apart, or meet at a corn
   State state = start_state(apart);
   CHECK_FALSE(is_tied(apart.bonds, state, 0, 1));
   state.displacement[1] = {-0.51, -0.51};
-  CandidateFinder candidates;
-  CHECK_FALSE(find_contacts(apart.blocks, apart.bonds, state, 0.05, candidates).empty());
+  CHECK_FALSE(find_contacts(apart.blocks, apart.bonds, state, 0.05).empty());
 
   const Scene corner = scene_of({box(0, 0, 1, 1), box(1, 1, 2, 2)}, 0);
   CHECK_FALSE(is_tied(corner.bonds, start_state(corner), 0, 1));

@@ -27,7 +27,7 @@ inline bool operator==(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
 inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 /// z component of a x b; > 0 when b lies counter-clockwise of a.
 inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
-inline double norm(Vec2 a) { return std::hypot(a.x, a.y); }
+inline double norm(Vec2 a) { return std::sqrt(a.x * a.x + a.y * a.y); }
 /// `a` turned 90 degrees counter-clockwise.
 inline Vec2 turn_left(Vec2 a) { return {-a.y, a.x}; }
 /// `a` turned 90 degrees clockwise: the tangent tau that belongs to a normal n.

@@ -71,11 +71,18 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
     set.inertia.push_back(inertia);
     set.inertia_inverse.push_back(inverse(inertia));
     set.polar_inertia.push_back(trace(inertia));
+    const Eigen2 e = eigen_symmetric(inertia);
+    set.axis.push_back(e.direction1);
+    set.principal.push_back({e.s1, e.s2});
     set.moduli.push_back(shape.kind == BlockKind::kDeformable
                              ? plane_moduli(material.young, material.poisson, model.plane)
                              : PlaneModuli{});
     set.size.push_back(std::sqrt(m.area));
-    for (const Vec2 p : shape.polygon) set.arm.push_back(p - m.centroid);
+    set.radius.push_back(0);
+    for (const Vec2 p : shape.polygon) {
+      set.arm.push_back(p - m.centroid);
+      set.radius.back() = std::max(set.radius.back(), norm(set.arm.back()));
+    }
     set.vertex_begin.push_back(static_cast<int>(set.arm.size()));
   }
   return set;
@@ -123,6 +130,7 @@ void clamp_moments(BlockSet& blocks, double dt) {
     blocks.inertia[k] = s1 * outer(d1, d1) + s2 * outer(d2, d2);
     blocks.inertia_inverse[k] = inverse(blocks.inertia[k]);
     blocks.polar_inertia[k] = s1 + s2;
+    blocks.principal[k] = {s1, s2};
     ++blocks.clamped;
     blocks.largest_clamp = std::max(blocks.largest_clamp, s2 / e.s2);
   }

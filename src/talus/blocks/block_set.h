@@ -30,9 +30,12 @@ struct BlockSet {
   std::vector<double> mass;       // [count] [kg]
   std::vector<Mat2> inertia;  // [count] S0 = density x integral X X^T dV [kg m2], as used (lumped, clamped)
   std::vector<Mat2> inertia_inverse;  // [count] deformable: S0^-1; otherwise unused
+  std::vector<Vec2> axis;             // [count] (cos, sin) of the principal axes of S0
+  std::vector<Vec2> principal;        // [count] principal moments of S0 along them [kg m2]
   std::vector<double> polar_inertia;  // [count] trace of S0: moment of inertia of a rigid block [kg m2]
   std::vector<PlaneModuli> moduli;    // [count]
   std::vector<double> size;           // [count] square root of the area [m]
+  std::vector<double> radius;         // [count] distance of the farthest corner from the centroid [m]
 
   std::vector<int> vertex_begin;  // [count + 1]
   std::vector<Vec2> arm;          // [n_vertices] reference arms X from the centroid, counter-clockwise [m]

@@ -13,7 +13,7 @@ struct Polar {
 
 Polar polar_strain(const Mat2& H) {
   const double a = 2 + H.xx + H.yy, b = H.yx - H.xy;
-  const double r = std::hypot(a, b);
+  const double r = std::sqrt(a * a + b * b);
   const double c = a / r, s = b / r;
   // c - 1, each way without cancellation: small turns here, turns near half a circle there
   const double c1 = a > 0 ? -b * b / (r * (r + a)) : (a - r) / r;
@@ -38,20 +38,22 @@ State initial_state(const BlockSet& blocks, const Layout& layout) {
   return s;
 }
 
-Mat2 piola_stress(const PlaneModuli& k, const Mat2& H) {
+ElasticState elastic_state(const PlaneModuli& k, const Mat2& H) {
   const Polar p = polar_strain(H);
   const double txx = k.c11 * p.exx + k.c12 * p.eyy, tyy = k.c12 * p.exx + k.c11 * p.eyy,
                txy = 2 * k.c33 * p.exy;
-  // P = R T; T is coaxial with U for an isotropic law, so this is the derivative of the energy and P F^T is
+  ElasticState e;
+  // R T; T is coaxial with U for an isotropic law, so this is the derivative of the energy and P F^T is
   // symmetric: no torque comes from the stress
-  return {p.c * txx - p.s * txy, p.c * txy - p.s * tyy, p.s * txx + p.c * txy, p.s * txy + p.c * tyy};
+  e.stress = {p.c * txx - p.s * txy, p.c * txy - p.s * tyy, p.s * txx + p.c * txy, p.s * txy + p.c * tyy};
+  e.density = 0.5 * (p.exx * txx + p.eyy * tyy) + p.exy * txy;
+  e.rotation = {p.c, p.s};
+  return e;
 }
 
-double strain_energy_density(const PlaneModuli& k, const Mat2& H) {
-  const Polar p = polar_strain(H);
-  return 0.5 *
-         (k.c11 * (p.exx * p.exx + p.eyy * p.eyy) + 2 * k.c12 * p.exx * p.eyy + 4 * k.c33 * p.exy * p.exy);
-}
+Mat2 piola_stress(const PlaneModuli& k, const Mat2& H) { return elastic_state(k, H).stress; }
+
+double strain_energy_density(const PlaneModuli& k, const Mat2& H) { return elastic_state(k, H).density; }
 
 Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   const auto k = static_cast<size_t>(i);

@@ -46,12 +46,37 @@ struct ContactKey {
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 
-/// What a contact carries to the next step.
-struct ContactMemory {
+/// One contact point and what it carries to the next step. A corner that passed on to another edge keeps its
+/// force but not its anchor.
+struct Contact {
   ContactKey key;
-  std::array<double, 2> force{};  // normal, tangential [N]
-  double stretch = 0;             // elastic slip of the contact [m]
-  double anchor = 0;              // slip coordinate at which the contact sticks [m]
+  int joint = -1;                          // -1: hard and frictionless
+  int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of the face it ends, -1: none
+  int partner = -1;                        // the other end of that face: its place in the list of the pair
+  double length = 0;                       // [m] half that face
+  std::array<double, 2> force{};           // normal, tangential [N]
+  double stretch = 0;                      // elastic slip [m]
+  double anchor = 0;                       // slip coordinate at which it sticks [m]; NaN: it slid
+  enum Memory : char { kNone, kPassed, kWhole } memory = kNone;
+};
+
+/// Two blocks near each other. Their contact points are sought anew when they have moved against each other
+/// by more than `reuse` since; until then the same points are followed.
+struct ContactPair {
+  int a = -1, b = -1;        // a < b
+  int begin = 0, count = 0;  // contact points, in State::contacts
+  int face = -1;             // first of their faces in the bond set, -1: none
+  double reuse = -1;         // [m]; < 0: not sought yet
+  Vec2 arm;                  // reference arm, on the larger block, of the centroid of the smaller one then
+  Mat2 turn;                 // F of the smaller block less F of the larger one then
+};
+
+/// Where the blocks were when the list of pairs was made.
+struct CandidateList {
+  std::vector<Vec2> displacement;
+  std::vector<Mat2> strain_part;
+  double skin = 0, margin = -1;  // [m]
+  int rebuilds = 0;
 };
 
 /// Condition of a face that was intact at the start and may break.
@@ -61,16 +86,20 @@ struct FaceState {
 };
 
 /// Work done since the start [J], by cause; > 0: energy given to the blocks. `joints`: elastic joints, stored
-/// and lost.
+/// and lost. `implicit`: what block-implicit elasticity adds to the elastic force of the step's beginning.
 struct WorkDone {
-  double loads = 0, supports = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0, damping = 0;
+  double loads = 0, supports = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0, damping = 0,
+         implicit = 0;
 
   WorkDone& operator+=(const WorkDone& o) {
     loads += o.loads, supports += o.supports, bonds += o.bonds, joints += o.joints;
     contact_closing += o.contact_closing, friction += o.friction, damping += o.damping;
+    implicit += o.implicit;
     return *this;
   }
-  double total() const { return loads + supports + bonds + joints + contact_closing + friction + damping; }
+  double total() const {
+    return loads + supports + bonds + joints + contact_closing + friction + damping + implicit;
+  }
 };
 
 struct State {
@@ -88,7 +117,9 @@ struct State {
   std::vector<std::array<double, 2>> bond_force;     // [n_bond_points] normal, tangential [N]
   std::vector<FaceState> face;                       // [n_bond_faces]
   std::vector<std::array<double, 2>> support_force;  // [n_supported_points] x, y [N]
-  std::vector<ContactMemory> contacts;               // sorted by key
+  CandidateList candidates;
+  std::vector<ContactPair> pairs;  // sorted by (a, b)
+  std::vector<Contact> contacts;   // pair by pair
 
   WorkDone work;               // through the middle of the step before
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
@@ -115,6 +146,16 @@ inline Vec2 acting_arm(const BlockSet& b, const State& s, size_t i, Vec2 X) {
 
 /// Velocity at an acting arm.
 inline Vec2 velocity_at(const BlockRate& v, Vec2 acting) { return v.a + v.G * acting; }
+
+/// What the shape of a deformable block says of its elastic state.
+struct ElasticState {
+  Mat2 stress;         // first Piola-Kirchhoff stress P [Pa]
+  double density = 0;  // strain energy per reference volume [J/m3]
+  Vec2 rotation;       // (cos, sin) of the rotation of F
+};
+
+/// @param H  F - I
+ElasticState elastic_state(const PlaneModuli& c, const Mat2& H);
 
 /// First Piola-Kirchhoff stress P of a deformable block: linear elastic in the rotated frame (theory 1.5)
 /// [Pa].

@@ -7,25 +7,12 @@ namespace talus {
 
 namespace {
 
-const ContactMemory* recall(const State& state, const ContactKey& key) {
-  const auto it = std::lower_bound(state.contacts.begin(), state.contacts.end(), key,
-                                   [](const ContactMemory& m, const ContactKey& k) { return m.key < k; });
-  return it != state.contacts.end() && it->key == key ? &*it : nullptr;
-}
-
-// The same corner on another edge of the same block, when it has passed on to it.
-const ContactMemory* recall_neighbour(const State& state, const ContactKey& key) {
-  const ContactKey from{key.block_a, key.vertex, key.block_b, 0};
-  const auto it = std::lower_bound(state.contacts.begin(), state.contacts.end(), from,
-                                   [](const ContactMemory& m, const ContactKey& k) { return m.key < k; });
-  const bool same = it != state.contacts.end() && it->key.block_a == key.block_a &&
-                    it->key.vertex == key.vertex && it->key.block_b == key.block_b;
-  return same ? &*it : nullptr;
-}
-
 // Tributary length of a contact that is no end of a face, as share of the smaller block: what a rounded
 // corner has.
 constexpr double kCornerLength = 0.02;
+
+// Contacts to a chunk.
+constexpr size_t kGrain = 1024;
 
 // Bias of a hard normal row: it may close the gap and not more; an overlap is pushed back except for the
 // slop.
@@ -36,88 +23,93 @@ double hard_bias(double gap, double slop, double dt) {
 
 }  // namespace
 
-std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& bonds, const State& state,
-                                        double margin, CandidateFinder& candidates, double look_ahead) {
-  std::vector<ContactPoint> contacts;
-  for (const auto& [a, b] : candidates.pairs(blocks, state, margin)) {
-    if (!is_tied(bonds, state, a, b)) touch_blocks(blocks, state, a, b, margin, contacts, look_ahead);
-  }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const ContactPoint& x, const ContactPoint& y) { return x.key < y.key; });
-  return contacts;
-}
+void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
+                      const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
+                      RowSet& rows, std::vector<ContactPlace>& place) {
+  const size_t first = rows.points.size();
+  rows.points.resize(first + state.contacts.size());
+  rows.impulse.resize(first + state.contacts.size());
+  place.resize(state.contacts.size());
+  // the last: neither friction nor stiffness
+  std::vector<JointProperty> joints = model.joints;
+  joints.emplace_back();
+  std::vector<double> friction;
+  for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_angle));
+  const size_t plain = joints.size() - 1;
 
-void add_contact_rows(const BlockSet& blocks, const Layout& joints_of, const Model& model,
-                      const std::vector<ContactPoint>& contacts, const State& state,
-                      const std::vector<BlockRate>& before, const RowTiming& timing, RowSet& rows) {
-  const auto first = static_cast<int>(rows.points.size());
-  for (const ContactPoint& c : contacts) {
+  const auto add = [&](const ContactPair& pair, size_t i) {
+    const Contact& c = state.contacts[i];
     const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
-    const double size = std::min(blocks.size[a], blocks.size[b]);
-    const int joint = joints_of.joint_at(c.key.block_a, c.face_edge_a, c.key.block_b,
-                                         c.face_edge_b >= 0 ? c.face_edge_b : c.key.edge);
-    const JointProperty property = joint < 0 ? JointProperty{} : model.joints[static_cast<size_t>(joint)];
+    const size_t joint = c.joint < 0 ? plain : static_cast<size_t>(c.joint);
+    const JointProperty& property = joints[joint];
+    const CornerEdge over =
+        corner_over_edge(blocks, state, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+    const int next = c.key.edge + 1 == blocks.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
+    const Vec2 b0 = blocks.corner(c.key.block_b, c.key.edge), edge = blocks.corner(c.key.block_b, next) - b0;
+    const double slip = -over.along * norm(edge);
+    place[i] = {over.gap, slip};
+
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a = acting_arm(blocks, state, a, c.arm_a);
-    p.arm_b = acting_arm(blocks, state, b, c.arm_b);
-    p.normal = c.normal;
+    p.arm_a = acting_arm(blocks, state, a, blocks.corner(c.key.block_a, c.key.vertex));
+    p.arm_b = acting_arm(blocks, state, b, b0 + std::clamp(over.along, 0.0, 1.0) * edge);
+    p.normal = over.normal;
     p.cone = true;
-    p.friction = std::tan(property.friction_angle);
+    p.friction = friction[joint];
     p.row[0].lower = 0;
     const bool soft = property.normal_stiffness > 0;
-    p.row[0].bias = soft ? c.gap / timing.dt : hard_bias(c.gap, model.contact.slop * size, timing.dt);
+    const double size = std::min(blocks.size[a], blocks.size[b]);
+    p.row[0].bias = soft ? over.gap / timing.dt : hard_bias(over.gap, model.contact.slop * size, timing.dt);
 
     Impulse guess{};
-    const ContactMemory* m = recall(state, c.key);
-    if (!m) m = recall_neighbour(state, c.key);
-    if (m) {
-      guess = {m->force[0] * timing.dt_kick, m->force[1] * timing.dt_kick};
+    if (c.memory != Contact::kNone) {
+      guess = {c.force[0] * timing.dt_kick, c.force[1] * timing.dt_kick};
       // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
-      const bool slid = std::isnan(m->anchor) || !(m->key == c.key);
-      p.row[1].bias = (slid ? m->stretch : c.slip - m->anchor) / timing.dt;
+      const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
+      p.row[1].bias = (anew ? c.stretch : slip - c.anchor) / timing.dt;
     }
-    const auto u = relative_velocity(p, before);
-    if (property.restitution >= 0 && c.gap + timing.dt * u[0] <= 0 && u[0] < 0)
-      p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
-    if (soft || property.shear_stiffness > 0) {
-      const bool in_face = c.partner.block_a >= 0;
-      const double length = in_face ? c.length : kCornerLength * size;
-      add_compliance(property, length * blocks.thickness, in_face, timing, u, p);
+    if (property.restitution >= 0 || soft || property.shear_stiffness > 0) {
+      const auto u = relative_velocity(p, before);
+      if (property.restitution >= 0 && over.gap + timing.dt * u[0] <= 0 && u[0] < 0)
+        p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
+      if (soft || property.shear_stiffness > 0) {
+        const bool in_face = c.partner >= 0;
+        const double length = in_face ? c.length : kCornerLength * size;
+        add_compliance(property, length * blocks.thickness, in_face, timing, u, p);
+        if (in_face) p.partner = static_cast<int>(first) + pair.begin + c.partner;
+      }
     }
-    rows.add(p, guess);
-  }
-  // the other end of each compliant face
-  for (size_t i = 0; i < contacts.size(); ++i) {
-    PointRows& p = rows.points[static_cast<size_t>(first) + i];
-    if (p.cross[0] == 0 && p.cross[1] == 0) continue;
-    const auto it = std::lower_bound(contacts.begin(), contacts.end(), contacts[i].partner,
-                                     [](const ContactPoint& x, const ContactKey& k) { return x.key < k; });
-    p.partner = first + static_cast<int>(it - contacts.begin());
-  }
+    rows.points[first + i] = p;
+    rows.impulse[first + i] = guess;
+  };
+  workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
+    for (size_t q = begin; q < end; ++q) {
+      const ContactPair& pair = state.pairs[q];
+      for (int k = 0; k < pair.count; ++k) add(pair, static_cast<size_t>(pair.begin + k));
+    }
+  });
 }
 
-void remember_contacts(const std::vector<ContactPoint>& contacts, const RowSet& rows, size_t first,
-                       const RowTiming& timing, State& state) {
-  std::vector<ContactMemory> memory;
-  memory.reserve(contacts.size());
-  for (size_t i = 0; i < contacts.size(); ++i) {
-    const PointRows& p = rows.points[first + i];
-    const Impulse& impulse = rows.impulse[first + i];
-    ContactMemory m;
-    m.key = contacts[i].key;
-    m.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
-    double elastic = p.row[1].compliance * impulse[1];
-    if (p.partner >= 0) elastic += p.cross[1] * rows.impulse[static_cast<size_t>(p.partner)][1];
-    m.stretch = -elastic * timing.dt / position_factor(timing.alpha);
-    const bool slid = slides(p, impulse);
-    const ContactMemory* before = recall(state, m.key);
-    m.anchor = slid                                    ? std::nan("")
-               : before && !std::isnan(before->anchor) ? before->anchor
-                                                       : contacts[i].slip - (before ? before->stretch : 0);
-    memory.push_back(m);
-  }
-  state.contacts = std::move(memory);
+void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
+                       const RowTiming& timing, const Workers& workers, State& state) {
+  const double factor = timing.dt / position_factor(timing.alpha);
+  workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const PointRows& p = rows.points[first + i];
+      const Impulse& impulse = rows.impulse[first + i];
+      Contact& c = state.contacts[i];
+      double elastic = p.row[1].compliance * impulse[1];
+      if (p.partner >= 0) elastic += p.cross[1] * rows.impulse[static_cast<size_t>(p.partner)][1];
+      const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
+      if (slides(p, impulse))
+        c.anchor = std::nan("");
+      else if (!anchored)
+        c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
+      c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+      c.stretch = -elastic * factor;
+      c.memory = Contact::kWhole;
+    }
+  });
 }
 
 }  // namespace talus

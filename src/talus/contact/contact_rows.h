@@ -1,30 +1,30 @@
 #pragma once
 // Contact points and their joint law as rows, and what they carry to the next step.
 
-#include <map>
 #include <vector>
 
-#include "talus/contact/bonds.h"
 #include "talus/contact/compliance.h"
-#include "talus/contact/find.h"
+#include "talus/contact/pairs.h"
 
 namespace talus {
 
-/// All contact points of blocks not tied by bonds, sorted by key; arguments as touch_blocks().
-std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& bonds, const State& state,
-                                        double margin, CandidateFinder& candidates, double look_ahead = 0);
+/// Where a contact is now.
+struct ContactPlace {
+  double gap = 0;   // [m] > 0 apart
+  double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge
+};
 
-/// Rows of `contacts`: normal row, friction with a stick anchor, compliant where the joint has stiffness.
-/// First guess and anchor come from the contact of the same key in `state`; a corner that passed on to
-/// another edge of the same block keeps its force.
+/// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has
+/// stiffness. First guess and anchor come from the memory of each contact.
 /// @param before  rates half a step ago
-void add_contact_rows(const BlockSet& blocks, const Layout& joints_of, const Model& model,
-                      const std::vector<ContactPoint>& contacts, const State& state,
-                      const std::vector<BlockRate>& before, const RowTiming& timing, RowSet& rows);
+/// @param place   gets gap and slip of each contact [n_contacts]
+void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
+                      const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
+                      RowSet& rows, std::vector<ContactPlace>& place);
 
 /// Stores force and anchor of each contact in the state.
 /// @param first  index of the first contact row in `rows`
-void remember_contacts(const std::vector<ContactPoint>& contacts, const RowSet& rows, size_t first,
-                       const RowTiming& timing, State& state);
+void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
+                       const RowTiming& timing, const Workers& workers, State& state);
 
 }  // namespace talus

@@ -125,6 +125,7 @@ struct SolverInput {
   double tolerance = 1e-8;  // share of the smallest block's size
   int max_iterations = 60;
   int max_sweeps = 20000;
+  bool second_solver = true;  // a step that misses the tolerance is tried by the other method
   bool stop_on_failure = true;
 };
 
@@ -137,6 +138,7 @@ struct StageInput {
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;
+  bool implicit = false;     // block-implicit elasticity
   double damping_mass = 0;   // [1/s]
   double damping_local = 0;  // [-]
   double unbalanced = 1e-5;

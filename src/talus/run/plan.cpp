@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/contact/contact_rows.h"
+#include "talus/contact/pairs.h"
 #include "talus/run/histories.h"
 
 namespace talus {
@@ -100,11 +100,9 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   p.bond_faces = static_cast<int>(scene.bonds.faces.size());
   p.supported = static_cast<int>(scene.supported.size());
   const State state = start_state(scene);
-  CandidateFinder candidates;
   double least = scene.blocks.size[0];
   for (const double s : scene.blocks.size) least = std::min(least, s);
-  p.contacts =
-      static_cast<int>(find_contacts(scene.blocks, scene.bonds, state, 0.02 * least, candidates).size());
+  p.contacts = static_cast<int>(find_contacts(scene.blocks, scene.bonds, state, 0.02 * least).size());
 
   const OutputInput& out = scene.model.output;
   p.frames = 1;

@@ -14,8 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
-const char* const kKinds[] = {"deformable", "rigid", "fixed", "driven"};
+constexpr int kFormat = 2;
 
 // JSON knows no infinity: an open bound is null.
 ordered_json bound(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
@@ -64,37 +63,35 @@ PointRows read_point(const ordered_json& j) {
   return p;
 }
 
-// A block set that knows what solvers ask of it: kinds and inverse masses.
-BlockSet read_blocks(const ordered_json& list, std::vector<BlockRate>& rate) {
-  BlockSet set;
-  for (const ordered_json& j : list) {
-    const std::string kind = j.at("kind");
-    const auto at = std::find(std::begin(kKinds), std::end(kKinds), kind);
-    if (at == std::end(kKinds)) throw std::runtime_error("unknown kind of block " + kind);
-    ++set.count;
-    set.kind.push_back(static_cast<BlockKind>(at - std::begin(kKinds)));
-    set.mass.push_back(j.at("mass"));
-    set.inertia_inverse.push_back(mat(j.at("inertia_inverse")));
-    set.polar_inertia.push_back(j.at("polar_inertia"));
-    rate.push_back({vec(j.at("velocity")), mat(j.at("gradient_rate"))});
-  }
-  return set;
+ordered_json mobility_json(const Mobility& m) {
+  return {{"mass", m.mass},
+          {"stretch", m.stretch},
+          {"shear", m.shear},
+          {"left", vec(m.left)},
+          {"right", vec(m.right)}};
+}
+
+Mobility read_mobility(const ordered_json& j) {
+  Mobility m;
+  m.mass = j.at("mass");
+  for (size_t k = 0; k < 3; ++k) m.stretch[k] = j.at("stretch").at(k), m.shear[k] = j.at("shear").at(k);
+  m.left = vec(j.at("left")), m.right = vec(j.at("right"));
+  return m;
 }
 
 }  // namespace
 
 std::string problem_text(const Instant& i) {
   const BlockSet& b = i.scene.blocks;
-  ordered_json j = {{"talus_problem", kFormat}, {"title", i.scene.model.title},
-                    {"t [s]", i.state.time},    {"step", i.state.step},
-                    {"dt [s]", i.plan.dt},      {"mobility_scale", i.work.mobility_scale}};
+  ordered_json j = {{"talus_problem", kFormat},
+                    {"title", i.scene.model.title},
+                    {"t [s]", i.state.time},
+                    {"step", i.state.step},
+                    {"dt [s]", i.plan.dt}};
   j["blocks"] = ordered_json::array();
   for (size_t k = 0; k < static_cast<size_t>(b.count); ++k) {
     j["blocks"].push_back({{"name", b.name[k]},
-                           {"kind", kKinds[static_cast<int>(b.kind[k])]},
-                           {"mass", b.mass[k]},
-                           {"inertia_inverse", mat(b.inertia_inverse[k])},
-                           {"polar_inertia", b.polar_inertia[k]},
+                           {"mobility", mobility_json(i.work.mobility[k])},
                            {"velocity", vec(i.work.rate_free[k].a)},
                            {"gradient_rate", mat(i.work.rate_free[k].G)}});
   }
@@ -109,32 +106,45 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
   Replay replay;
   try {
     const ordered_json j = ordered_json::parse(text);
-    if (j.at("talus_problem") != kFormat) throw std::runtime_error("its format is not 1");
+    if (j.at("talus_problem") != kFormat)
+      throw std::runtime_error(fmt::format("its format is not {}", kFormat));
     std::vector<BlockRate> rate;
-    const BlockSet blocks = read_blocks(j.at("blocks"), rate);
+    std::vector<Mobility> mobility;
+    for (const ordered_json& b : j.at("blocks")) {
+      mobility.push_back(read_mobility(b.at("mobility")));
+      rate.push_back({vec(b.at("velocity")), mat(b.at("gradient_rate"))});
+    }
+    const auto blocks = static_cast<int>(mobility.size());
     for (const ordered_json& p : j.at("points"))
       replay.rows.add(read_point(p), {p.at("guess").at(0), p.at("guess").at(1)});
     const auto points = static_cast<int>(replay.rows.points.size());
     for (const PointRows& p : replay.rows.points)
-      if (p.block_a < 0 || p.block_a >= blocks.count || p.block_b >= blocks.count || p.partner >= points)
+      if (p.block_a < 0 || p.block_a >= blocks || p.block_b >= blocks || p.partner >= points)
         throw std::runtime_error("a point names a block or partner that is not there");
-    const double dt = j.at("dt [s]"), scale = j.at("mobility_scale");
-    replay.points = points, replay.blocks = blocks.count;
-    if (options.method == SolverKind::kNewton)
-      replay.solve = solve_newton(blocks, rate, scale, options, 0.1 * tolerance / dt, replay.rows);
-    else
-      replay.solve = solve_gauss_seidel(blocks, rate, scale, options, 0.1 * tolerance, dt, replay.rows);
-    for (size_t r = 0; r < replay.rows.points.size(); ++r) {
-      const PointRows& p = replay.rows.points[r];
-      for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
-        if (block < 0) continue;
-        const auto k = static_cast<size_t>(block);
-        const BlockRate v = accelerate(blocks, k, scale * impulse_on(p, replay.rows.impulse[r], sign));
-        rate[k].a += v.a;
-        rate[k].G += v.G;
-      }
+    for (int i = 0; i < points; ++i) {
+      const int partner = replay.rows.points[static_cast<size_t>(i)].partner;
+      if (partner >= 0 && replay.rows.points[static_cast<size_t>(partner)].partner != i)
+        throw std::runtime_error(fmt::format("point {} is not the partner of its partner", i));
     }
-    replay.error = contact_error(blocks, replay.rows, rate, scale, dt);
+    const double dt = j.at("dt [s]");
+    replay.points = points, replay.blocks = blocks;
+    if (options.method == SolverKind::kNewton) {
+      replay.solve = solve_newton(mobility, rate, options, 0.1 * tolerance / dt, replay.rows);
+      for (size_t r = 0; r < replay.rows.points.size(); ++r) {
+        const PointRows& p = replay.rows.points[r];
+        for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
+          if (block < 0) continue;
+          const auto k = static_cast<size_t>(block);
+          const BlockRate v = accelerate(mobility[k], impulse_on(p, replay.rows.impulse[r], sign));
+          rate[k].a += v.a;
+          rate[k].G += v.G;
+        }
+      }
+    } else {
+      replay.solve =
+          GaussSeidel().solve(mobility, options, 0.1 * tolerance, dt, Workers(), replay.rows, rate);
+    }
+    replay.error = contact_error(mobility, replay.rows, rate, dt);
   } catch (const std::exception& e) {
     throw FileError(
         fmt::format("{}: is no step written by talus run --dump-step: {}", file.string(), e.what()));

@@ -42,7 +42,7 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
     f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
     f.kind = r < i.work.first_contact ? 1 : r < i.work.first_support ? 0 : 2;
-    if (f.kind == 0) f.gap = i.work.contacts[r - i.work.first_contact].gap;
+    if (f.kind == 0) f.gap = i.work.places[r - i.work.first_contact].gap;
     frames.push_back(f);
   }
   return frames;

@@ -32,7 +32,7 @@ class Runner {
     } catch (const NumericalError& e) {
       result_.failure = e.what();
     }
-    result_.candidate_rebuilds = work_.candidates.rebuilds();
+    result_.candidate_rebuilds = state_.candidates.rebuilds;
     for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
     result_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
     result_.cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
@@ -52,7 +52,8 @@ class Runner {
     state_.energy_start += kinetic_energy(scene_.blocks, state_.rate);
     settings_ = {stage.damping_mass, stage.damping_local,
                  scene_.model.solver.tolerance * smallest_block(scene_.blocks),
-                 stage.kind == StageKind::kDynamic};
+                 stage.kind == StageKind::kDynamic, stage.implicit};
+    work_.mobility.clear();  // of other inertias
     state_.largest_kinetic = 0;
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
     StageResult& out = result_.stages.back();

@@ -68,8 +68,9 @@ Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::Ve
 
 }  // namespace
 
-ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const std::vector<int>& points,
-                             const std::vector<BlockRate>& rate, double scale) {
+ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet& set,
+                             const std::vector<int>& points, const std::vector<BlockRate>& rate) {
+  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   ContactProblem problem;
   problem.point = points;
   std::unordered_map<int, int> local_of;  // looked up only, never walked: its order does not matter
@@ -79,8 +80,8 @@ ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const st
     const PointRows& p = set.points[static_cast<size_t>(points[i])];
     problem.rows.push_back(p);
     const int local = static_cast<int>(i);
-    if (p.block_a >= 0 && blocks.moves_freely(p.block_a)) sides.push_back({p.block_a, {local, 1, p.arm_a}});
-    if (p.block_b >= 0 && blocks.moves_freely(p.block_b)) sides.push_back({p.block_b, {local, -1, p.arm_b}});
+    if (moves(p.block_a)) sides.push_back({p.block_a, {local, 1, p.arm_a}});
+    if (moves(p.block_b)) sides.push_back({p.block_b, {local, -1, p.arm_b}});
   }
   std::stable_sort(sides.begin(), sides.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -94,7 +95,7 @@ ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const st
       for (size_t j = begin; j < end; ++j) {
         const Side &s = sides[i].second, &r = sides[j].second;
         const Mat2 w =
-            (scale * s.sign * r.sign) * influence(blocks, static_cast<size_t>(sides[i].first), s.arm, r.arm);
+            (s.sign * r.sign) * influence(mobility[static_cast<size_t>(sides[i].first)], s.arm, r.arm);
         const Vec2 ns = problem.rows[static_cast<size_t>(s.local)].normal,
                    nr = problem.rows[static_cast<size_t>(r.local)].normal;
         const Vec2 ds[2] = {ns, turn_right(ns)}, dr[2] = {nr, turn_right(nr)};

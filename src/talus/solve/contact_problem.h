@@ -5,6 +5,7 @@
 #include <Eigen/Sparse>
 #include <vector>
 
+#include "talus/rows/mobility.h"
 #include "talus/rows/rows.h"
 
 namespace talus {
@@ -22,9 +23,9 @@ struct Smoothing {
 
 /// Rows 2 i and 2 i + 1 are the normal and tangential row of point `point[i]` of the row set.
 struct ContactProblem {
-  std::vector<int> point;       // [n] indices into the row set
-  std::vector<PointRows> rows;  // [n] copies, in that order
-  SparseMatrix influence;       // W = H M^-1 H^T scaled, plus the compliance on the diagonal [2n x 2n] [1/kg]
+  std::vector<int> point;         // [n] indices into the row set
+  std::vector<PointRows> rows;    // [n] copies, in that order
+  SparseMatrix influence;         // W = H M^-1 H^T, plus the compliance on the diagonal [2n x 2n] [1/kg]
   Eigen::VectorXd velocity_free;  // e at p = 0: H v* + bias [2n] [m/s]
   Eigen::VectorXd diagonal;       // of `influence` [2n] [1/kg]
 
@@ -35,9 +36,8 @@ struct ContactProblem {
 
 /// @param points  the island: indices into `set`
 /// @param rate    v*, the rates before the rows act
-/// @param scale   factor on M^-1 (mass-proportional damping)
-ContactProblem build_problem(const BlockSet& blocks, const RowSet& set, const std::vector<int>& points,
-                             const std::vector<BlockRate>& rate, double scale);
+ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet& set,
+                             const std::vector<int>& points, const std::vector<BlockRate>& rate);
 
 /// H(p), in velocities: Wii (p - Proj(p - e / Wii)); equals e where p is inside its bounds. [2n] [m/s]
 Eigen::VectorXd residual(const ContactProblem& problem, const Eigen::VectorXd& p);

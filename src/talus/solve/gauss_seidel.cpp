@@ -1,90 +1,343 @@
 #include "talus/solve/gauss_seidel.h"
 
 #include <algorithm>
-
-#include "talus/solve/contact_error.h"
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace talus {
 
 namespace {
 
-// The error is measured after this many sweeps: it costs as much as one.
-constexpr int kSweepsBetweenChecks = 10;
+using wide::kLanes;
 
-class Sweeper {
- public:
-  Sweeper(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale, RowSet& set)
-      : blocks_(blocks), scale_(scale), set_(set), rate_(rate) {
-    for (size_t i = 0; i < set.points.size(); ++i) {
-      const PointRows& p = set.points[i];
-      double w[2] = {p.row[0].compliance, p.row[1].compliance};
-      for (int k = 0; k < 2; ++k) {
-        const Vec2 d = k == 0 ? p.normal : turn_right(p.normal);
-        if (p.block_a >= 0)
-          w[k] += scale * dot(d, influence(blocks, static_cast<size_t>(p.block_a), p.arm_a, p.arm_a) * d);
-        if (p.block_b >= 0)
-          w[k] += scale * dot(d, influence(blocks, static_cast<size_t>(p.block_b), p.arm_b, p.arm_b) * d);
+constexpr double kEndless = 1e300;  // an open bound: products with it stay numbers
+
+// Colours before couples are solved one after the other: as many as a word has bits.
+constexpr int kMostColours = 63;
+
+bool is_tie(const PointRows& p) {
+  return !p.cone || p.row[0].lower != 0 || p.cohesion != 0 || std::isfinite(p.row[0].upper) ||
+         std::isfinite(p.row[1].lower) || std::isfinite(p.row[1].upper);
+}
+
+// The point as its couple sees it: blocks exchanged where it names them the other way round.
+struct Seen {
+  Vec2 normal, arm_a, arm_b;
+};
+Seen seen_from(const PointRows& p, int block_a) {
+  if (p.block_a == block_a) return {p.normal, p.arm_a, p.arm_b};
+  return {-p.normal, p.arm_b, p.arm_a};
+}
+
+template <class Record>
+void write_empty(Record& r, int lane, int point) {
+  auto& p = r.point[point];
+  const auto l = static_cast<size_t>(lane);
+  p.nx[l] = 1, p.ny[l] = 0;
+  p.ax[l] = p.ay[l] = p.bx[l] = p.by[l] = 0;
+  p.bias_n[l] = 1, p.bias_t[l] = 0;
+  p.p_n[l] = p.p_t[l] = 0;
+  p.i_nn[l] = p.i_tt[l] = 1, p.i_nt[l] = 0;
+  p.mu[l] = 0;
+}
+
+void write_bounds(wide::ContactLanes&, int, const PointRows*) {}
+void write_bounds(wide::TieLanes& p, int lane, const PointRows* rows) {
+  const auto l = static_cast<size_t>(lane);
+  const auto clip = [](double v) { return std::clamp(v, -kEndless, kEndless); };
+  p.lower_n[l] = rows ? clip(rows->row[0].lower) : 0, p.upper_n[l] = rows ? clip(rows->row[0].upper) : 0;
+  p.lower_t[l] = rows ? clip(rows->row[1].lower) : 0, p.upper_t[l] = rows ? clip(rows->row[1].upper) : 0;
+  p.cohesion[l] = rows && !rows->cone ? kEndless : rows ? rows->cohesion : 0;
+}
+
+template <class Record>
+void write_point(const std::vector<Mobility>& mobility, const PointRows& rows, const Impulse& impulse,
+                 Record& r, int lane, int point, int block_a) {
+  auto& p = r.point[point];
+  const auto l = static_cast<size_t>(lane);
+  const Seen s = seen_from(rows, block_a);
+  const int block_b = rows.block_a == block_a ? rows.block_b : rows.block_a;
+  const Vec2 a = block_a >= 0 ? turned_back(mobility[static_cast<size_t>(block_a)].right, s.arm_a) : Vec2{};
+  const Vec2 b = block_b >= 0 ? turned_back(mobility[static_cast<size_t>(block_b)].right, s.arm_b) : Vec2{};
+  p.nx[l] = s.normal.x, p.ny[l] = s.normal.y;
+  p.ax[l] = a.x, p.ay[l] = a.y, p.bx[l] = b.x, p.by[l] = b.y;
+  p.bias_n[l] = rows.row[0].bias, p.bias_t[l] = rows.row[1].bias;
+  p.p_n[l] = impulse[0], p.p_t[l] = impulse[1];
+  p.i_nn[l] = rows.row[0].compliance, p.i_tt[l] = rows.row[1].compliance;
+  p.mu[l] = rows.cone ? rows.friction : 0;
+}
+
+}  // namespace
+
+bool GaussSeidel::layout_holds(const RowSet& set) {
+  bool same = seen_.size() == set.points.size();
+  seen_.resize(set.points.size());
+  for (size_t i = 0; i < seen_.size(); ++i) {
+    const PointRows& p = set.points[i];
+    const Point now{p.block_a, p.block_b, p.partner, is_tie(p)};
+    same = same && seen_[i] == now;
+    seen_[i] = now;
+  }
+  return same;
+}
+
+void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
+  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
+  // couples: the two ends of a face, else neighbours in the list with the same two blocks
+  const auto n = static_cast<int>(seen_.size());
+  std::vector<Rows> couples;
+  const auto at = [this](int i) -> const Point& { return seen_[static_cast<size_t>(i)]; };
+  const auto same_blocks = [&](int i, int j) {
+    const Point &p = at(i), &q = at(j);
+    return p.tie == q.tie && ((p.block_a == q.block_a && p.block_b == q.block_b) ||
+                              (p.block_a == q.block_b && p.block_b == q.block_a));
+  };
+  for (int i = 0; i < n; ++i) {
+    const int partner = at(i).partner;
+    if (partner > i) couples.push_back({{i, partner}});
+    if (partner >= 0) continue;
+    if (i + 1 < n && at(i + 1).partner < 0 && same_blocks(i, i + 1)) {
+      couples.push_back({{i, i + 1}});
+      ++i;
+    } else {
+      couples.push_back({{i, -1}});
+    }
+  }
+
+  // the lowest colour that neither block has
+  std::vector<uint64_t> used(mobility.size(), 0);
+  std::vector<int> colour_of(couples.size());
+  std::array<size_t, kMostColours + 1> contacts{}, ties{};
+  for (size_t c = 0; c < couples.size(); ++c) {
+    const Point& p = at(couples[c].row[0]);
+    uint64_t taken = 0;
+    if (moves(p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
+    if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
+    const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
+    colour_of[c] = colour;
+    ++(p.tie ? ties : contacts)[static_cast<size_t>(colour)];
+    if (colour == kMostColours) continue;
+    if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
+    if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
+  }
+
+  // places: by colour, in the order of the list; those without a colour one to a record
+  colour_.clear();
+  size_t contact_at = 0, tie_at = 0;
+  std::array<size_t, kMostColours + 1> contact_next{}, tie_next{};
+  for (size_t k = 0; k <= kMostColours; ++k) {
+    const bool in_order = k == kMostColours;
+    const auto records = [&](size_t count) { return in_order ? count : (count + kLanes - 1) / kLanes; };
+    contact_next[k] = contact_at * kLanes, tie_next[k] = tie_at * kLanes;
+    if (contacts[k] + ties[k] == 0) continue;
+    Colour colour{contact_at, contact_at + records(contacts[k]), tie_at, tie_at + records(ties[k]), in_order};
+    contact_at = colour.contact_end, tie_at = colour.tie_end;
+    colour_.push_back(colour);
+  }
+  contact_rows_.assign(contact_at * kLanes, {{-1, -1}});
+  tie_rows_.assign(tie_at * kLanes, {{-1, -1}});
+  for (size_t c = 0; c < couples.size(); ++c) {
+    const auto k = static_cast<size_t>(colour_of[c]);
+    const bool tie = at(couples[c].row[0]).tie;
+    size_t& next = (tie ? tie_next : contact_next)[k];
+    (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
+    next += k == kMostColours ? kLanes : 1;
+  }
+  contacts_.clear();
+  contacts_.resize(contact_at);
+  ties_.clear();
+  ties_.resize(tie_at);
+
+  // blocks that do not move are written to lines that nobody reads, one for each record that has any
+  ground_ = static_cast<int>(mobility.size());
+  int line = ground_ + 1;
+  const auto set_blocks = [&](auto& records, const std::vector<Rows>& rows) {
+    for (size_t r = 0; r < records.size(); ++r) {
+      auto& record = records[r];
+      bool still = false;
+      for (size_t l = 0; l < kLanes; ++l) {
+        const int row = rows[r * kLanes + l].row[0];
+        const int a = row < 0 ? -1 : at(row).block_a, b = row < 0 ? -1 : at(row).block_b;
+        record.a[l] = a < 0 ? ground_ : a, record.b[l] = b < 0 ? ground_ : b;
+        record.into_a[l] = moves(a) ? a : line, record.into_b[l] = moves(b) ? b : line;
+        still = still || !moves(a) || !moves(b);
       }
-      diagonal_.push_back({w[0], w[1]});
-      push(i, set.impulse[i]);  // the first guess
+      line += still;
     }
-  }
+  };
+  set_blocks(contacts_, contact_rows_);
+  set_blocks(ties_, tie_rows_);
+  lines_.clear();
+  lines_.resize(static_cast<size_t>(line));
+}
 
-  void sweep() {
-    for (size_t i = 0; i < set_.points.size(); ++i) {
-      relax(i, 0);
-      relax(i, 1);
+void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
+                              const Workers& workers) {
+  workers.for_chunks(mobility.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Mobility& m = mobility[i];
+      wide::BlockLine& line = lines_[i];
+      const Mat2 g = transpose(rotation(m.left)) * rate[i].G * rotation(m.right);
+      const double values[] = {rate[i].a.x, rate[i].a.y, g.xx, g.xy, g.yx, g.yy, m.mass, 0};
+      const double answer[] = {m.stretch[0], m.stretch[1], m.stretch[2], m.shear[0],
+                               m.shear[1],   m.shear[2],   m.left.x,     m.left.y};
+      std::copy(values, values + 8, line.rate);
+      std::copy(answer, answer + 8, line.answer);
     }
+  });
+}
+
+void GaussSeidel::read_lines(const std::vector<Mobility>& mobility, const Workers& workers,
+                             std::vector<BlockRate>& rate) const {
+  workers.for_chunks(mobility.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Mobility& m = mobility[i];
+      if (!m.moves()) continue;
+      const double* v = lines_[i].rate;
+      rate[i] = {{v[0], v[1]},
+                 rotation(m.left) * Mat2{v[2], v[3], v[4], v[5]} * transpose(rotation(m.right))};
+    }
+  });
+}
+
+void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const RowSet& set,
+                                const Workers& workers) {
+  const auto write = [&](auto& records, const std::vector<Rows>& rows, auto prepare) {
+    workers.for_chunks(records.size(), 256, [&](size_t begin, size_t end) {
+      for (size_t r = begin; r < end; ++r) {
+        auto& record = records[r];
+        for (int l = 0; l < kLanes; ++l) {
+          const Rows& couple = rows[r * kLanes + static_cast<size_t>(l)];
+          const int a = couple.row[0] < 0 ? -1 : seen_[static_cast<size_t>(couple.row[0])].block_a;
+          record.cross_n[static_cast<size_t>(l)] = record.cross_t[static_cast<size_t>(l)] = 0;
+          for (int k = 0; k < 2; ++k) {
+            const int row = couple.row[k];
+            if (row < 0) {
+              write_empty(record, l, k);
+              write_bounds(record.point[k], l, nullptr);
+              continue;
+            }
+            const PointRows& p = set.points[static_cast<size_t>(row)];
+            write_point(mobility, p, set.impulse[static_cast<size_t>(row)], record, l, k, a);
+            write_bounds(record.point[k], l, &p);
+            if (p.partner < 0) continue;
+            record.cross_n[static_cast<size_t>(l)] = p.cross[0],
+            record.cross_t[static_cast<size_t>(l)] = p.cross[1];
+          }
+        }
+      }
+      prepare(lines_.data(), records.data() + begin, end - begin);
+    });
+  };
+  write(contacts_, contact_rows_, kernels_->prepare_contacts);
+  write(ties_, tie_rows_, kernels_->prepare_ties);
+}
+
+void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
+  const auto read = [&](const auto& records, const std::vector<Rows>& rows) {
+    workers.for_chunks(records.size(), 256, [&](size_t begin, size_t end) {
+      for (size_t r = begin; r < end; ++r)
+        for (size_t l = 0; l < kLanes; ++l)
+          for (size_t k = 0; k < 2; ++k) {
+            const int row = rows[r * kLanes + l].row[k];
+            if (row < 0) continue;
+            const auto& p = records[r].point[k];
+            set.impulse[static_cast<size_t>(row)] = {p.p_n[l], p.p_t[l]};
+          }
+    });
+  };
+  read(contacts_, contact_rows_);
+  read(ties_, tie_rows_);
+}
+
+namespace {
+
+// Records of one colour to a thread: enough for the work to outweigh the handing over.
+size_t grain(size_t records, int threads) {
+  return std::max<size_t>(
+      48, (records + 4 * static_cast<size_t>(threads) - 1) / (4 * static_cast<size_t>(threads)));
+}
+
+}  // namespace
+
+void GaussSeidel::push(const Workers& workers) {
+  for (const Colour& c : colour_) {
+    const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
+    const auto of = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
+    workers.for_chunks(contacts, of(contacts), [&](size_t begin, size_t end) {
+      kernels_->push_contacts(lines_.data(), contacts_.data() + c.contact_begin + begin, end - begin);
+    });
+    workers.for_chunks(ties, of(ties), [&](size_t begin, size_t end) {
+      kernels_->push_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin);
+    });
   }
+}
 
-  const std::vector<BlockRate>& rate() const { return rate_; }
+namespace {
 
- private:
-  void relax(size_t i, size_t k) {
-    const PointRows& p = set_.points[i];
-    double& impulse = set_.impulse[i][k];
-    double e = relative_velocity(p, rate_)[k] + p.row[k].bias + p.row[k].compliance * impulse;
-    if (p.partner >= 0) e += p.cross[k] * set_.impulse[static_cast<size_t>(p.partner)][k];
-    const Bounds b = bounds_of(p, static_cast<int>(k), set_.impulse[i][0]);
-    const double next = std::clamp(impulse - e / diagonal_[i][k], b.lower, b.upper);
-    Impulse change{};
-    change[k] = next - impulse;
-    impulse = next;
-    if (change[k] != 0) push(i, change);
+// Largest of all: the order does not matter.
+struct Largest {
+  wide::SweepSums sums;
+  Largest& operator+=(const Largest& o) {
+    sums.largest = std::max(sums.largest, o.sums.largest);
+    return *this;
   }
-
-  void push(size_t i, const Impulse& change) {
-    const PointRows& p = set_.points[i];
-    const auto move = [&](int block, double sign) {
-      if (block < 0) return;
-      const auto b = static_cast<size_t>(block);
-      const BlockRate v = accelerate(blocks_, b, scale_ * impulse_on(p, change, sign));
-      rate_[b].a += v.a;
-      rate_[b].G += v.G;
-    };
-    move(p.block_a, 1);
-    move(p.block_b, -1);
-  }
-
-  const BlockSet& blocks_;
-  double scale_;
-  RowSet& set_;
-  std::vector<BlockRate> rate_;
-  std::vector<std::array<double, 2>> diagonal_;
 };
 
 }  // namespace
 
-SolveReport solve_gauss_seidel(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
-                               const SolverInput& options, double tolerance, double dt, RowSet& set) {
+wide::SweepSums GaussSeidel::sweep(const Workers& workers) {
+  Largest all;
+  for (const Colour& c : colour_) {
+    const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
+    const auto of = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
+    if (contacts > 0)
+      all += workers.sum_chunks<Largest>(contacts, of(contacts), [&](size_t begin, size_t end, Largest& l) {
+        kernels_->sweep_contacts(lines_.data(), contacts_.data() + c.contact_begin + begin, end - begin,
+                                 l.sums);
+      });
+    if (ties > 0)
+      all += workers.sum_chunks<Largest>(ties, of(ties), [&](size_t begin, size_t end, Largest& l) {
+        kernels_->sweep_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin, l.sums);
+      });
+  }
+  return all.sums;
+}
+
+size_t GaussSeidel::memory() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return bytes(seen_) + bytes(contact_rows_) + bytes(tie_rows_) + bytes(contacts_) + bytes(ties_) +
+         bytes(lines_);
+}
+
+SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const SolverInput& options,
+                               double tolerance, double dt, const Workers& workers, RowSet& set,
+                               std::vector<BlockRate>& rate) {
   SolveReport report;
   report.converged = set.points.empty();
-  Sweeper sweeper(blocks, rate, scale, set);
+  if (report.converged) return report;
+  if (!layout_holds(set)) lay_out(mobility);
+  write_lines(mobility, rate, workers);
+  write_records(mobility, set, workers);
+  push(workers);
+
+  // the change of a sweep tells when it is worth asking the judge, who costs as much as some sweeps
+  int ask_again = 0;
   while (!report.converged && report.iterations < options.max_sweeps) {
-    sweeper.sweep();
+    const double change = sweep(workers).largest * dt;
     ++report.iterations;
-    const bool look = report.iterations <= 3 || report.iterations % kSweepsBetweenChecks == 0;
-    if (look) report.converged = contact_error(blocks, set, sweeper.rate(), scale, dt).worst <= tolerance;
+    if (!(change <= 0.5 * tolerance) && std::isfinite(change)) continue;
+    if (report.iterations < ask_again) continue;
+    read_records(workers, set);
+    read_lines(mobility, workers, rate);
+    report.converged = contact_error(mobility, set, rate, dt, workers).worst <= tolerance;
+    ask_again = report.iterations + std::max(2, report.iterations / 5);
+    if (!std::isfinite(change)) break;
+  }
+  if (!report.converged) {
+    read_records(workers, set);
+    read_lines(mobility, workers, rate);
   }
   return report;
 }

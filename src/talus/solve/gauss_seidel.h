@@ -1,17 +1,64 @@
 #pragma once
-// Projected Gauss-Seidel on the rows, point by point, normal before tangential. Plain and scalar: the second
-// opinion beside Newton, and the way for models too large for a factorisation. Theory: docs/theory.md 5.5.
+// Projected Gauss-Seidel on the rows: point by point with normal and tangential together, couple by couple in
+// the order of graph colours, four couples at a time, by any number of threads with the same bits.
+// Theory: docs/theory.md 5.5.
 
 #include "talus/model/model.h"
-#include "talus/rows/rows.h"
-#include "talus/solve/newton.h"
+#include "talus/solve/report.h"
+#include "talus/solve/wide.h"
 
 namespace talus {
 
-/// Solves for the impulses of `set` (first guess in, solution out); arguments as solve_newton.
-/// @param tolerance  contact error at which to stop [m]
-/// @param dt         over which the velocities act [s]
-SolveReport solve_gauss_seidel(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
-                               const SolverInput& options, double tolerance, double dt, RowSet& set);
+/// Keeps its layout from step to step for as long as the same points join the same blocks.
+class GaussSeidel {
+ public:
+  /// Which kernels to run; for tests of one against the other.
+  explicit GaussSeidel(const wide::Kernels& kernels = wide::best_kernels()) : kernels_(&kernels) {}
+
+  /// Solves for the impulses of `set` (first guess in, solution out).
+  /// @param rate       in: v*, rates without the rows; out: rates with them
+  /// @param tolerance  contact error at which to stop [m]; at most options.max_sweeps sweeps
+  /// @param dt         over which the velocities act [s]
+  SolveReport solve(const std::vector<Mobility>& mobility, const SolverInput& options, double tolerance,
+                    double dt, const Workers& workers, RowSet& set, std::vector<BlockRate>& rate);
+
+  int colours() const { return static_cast<int>(colour_.size()); }
+  size_t memory() const;  // [bytes]
+
+ private:
+  struct Point {
+    int block_a, block_b, partner;
+    bool tie;
+    friend bool operator==(const Point&, const Point&) = default;
+  };
+  struct Rows {
+    int row[2];
+  };
+  // records of one colour: [contact_begin, contact_end) and the same of ties
+  struct Colour {
+    size_t contact_begin = 0, contact_end = 0, tie_begin = 0, tie_end = 0;
+    bool in_order = false;  // blocks may occur twice: one thread, record by record
+  };
+
+  bool layout_holds(const RowSet& set);
+  void lay_out(const std::vector<Mobility>& mobility);
+  void write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
+                   const Workers& workers);
+  void read_lines(const std::vector<Mobility>& mobility, const Workers& workers,
+                  std::vector<BlockRate>& rate) const;
+  void write_records(const std::vector<Mobility>& mobility, const RowSet& set, const Workers& workers);
+  void read_records(const Workers& workers, RowSet& set) const;
+  void push(const Workers& workers);
+  wide::SweepSums sweep(const Workers& workers);
+
+  const wide::Kernels* kernels_;
+  std::vector<Point> seen_;
+  std::vector<Colour> colour_;
+  std::vector<Rows> contact_rows_, tie_rows_;  // [records * lanes]
+  std::vector<wide::ContactRecord> contacts_;
+  std::vector<wide::TieRecord> ties_;
+  std::vector<wide::BlockLine> lines_;  // blocks, the ground, then lines nobody reads
+  int ground_ = 0;
+};
 
 }  // namespace talus

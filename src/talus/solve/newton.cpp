@@ -173,8 +173,8 @@ int solve_island(const ContactProblem& problem, const SolverInput& options, doub
 
 }  // namespace
 
-std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet& set) {
-  std::vector<int> parent(static_cast<size_t>(blocks.count));
+std::vector<std::vector<int>> find_islands(const std::vector<Mobility>& mobility, const RowSet& set) {
+  std::vector<int> parent(mobility.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](int i) {
     while (parent[static_cast<size_t>(i)] != i) {
@@ -184,14 +184,14 @@ std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet&
     }
     return i;
   };
-  const auto free_block = [&blocks](int i) { return i >= 0 && blocks.moves_freely(i); };
+  const auto free_block = [&mobility](int i) { return i >= 0 && mobility[static_cast<size_t>(i)].moves(); };
   for (const PointRows& p : set.points) {
     if (!free_block(p.block_a) || !free_block(p.block_b)) continue;
     const int a = root(p.block_a), b = root(p.block_b);
     parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
   }
   std::vector<std::vector<int>> islands;
-  std::vector<int> island_of(static_cast<size_t>(blocks.count), -1);
+  std::vector<int> island_of(mobility.size(), -1);
   for (size_t i = 0; i < set.points.size(); ++i) {
     const PointRows& p = set.points[i];
     const int block = free_block(p.block_a) ? p.block_a : p.block_b;
@@ -205,12 +205,12 @@ std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet&
   return islands;
 }
 
-SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
+SolveReport solve_newton(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                          const SolverInput& options, double tolerance, RowSet& set,
                          const Smoothing& smoothing) {
   SolveReport report;
-  for (const std::vector<int>& points : find_islands(blocks, set)) {
-    ContactProblem problem = build_problem(blocks, set, points, rate, scale);
+  for (const std::vector<int>& points : find_islands(mobility, set)) {
+    ContactProblem problem = build_problem(mobility, set, points, rate);
     problem.smoothing = smoothing;
     Eigen::VectorXd p(problem.size());
     for (size_t i = 0; i < points.size(); ++i) {

@@ -4,26 +4,19 @@
 
 #include "talus/model/model.h"
 #include "talus/solve/contact_problem.h"
+#include "talus/solve/report.h"
 
 namespace talus {
 
-struct SolveReport {
-  int iterations = 0;  // most over all islands
-  int islands = 0;
-  int largest_island = 0;  // points
-  bool converged = true;   // by the solver's own residual; the judge is contact_error()
-};
-
 /// Points that share a freely moving block, directly or through others. Each list rises; lists in order of
 /// their first point.
-std::vector<std::vector<int>> find_islands(const BlockSet& blocks, const RowSet& set);
+std::vector<std::vector<int>> find_islands(const std::vector<Mobility>& mobility, const RowSet& set);
 
 /// Solves for the impulses of `set` (first guess in, solution out).
 /// @param rate       v*, rates without the rows
-/// @param scale      factor on M^-1
 /// @param tolerance  residual at which to stop [m/s]
 /// @param smoothing  of the law, off by default
-SolveReport solve_newton(const BlockSet& blocks, const std::vector<BlockRate>& rate, double scale,
+SolveReport solve_newton(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                          const SolverInput& options, double tolerance, RowSet& set,
                          const Smoothing& smoothing = {});
 

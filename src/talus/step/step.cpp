@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "talus/base/error.h"
@@ -14,6 +16,14 @@ namespace {
 // Contact points are sought this far ahead, as share of the smaller block; a point further away than a block
 // can come in one step has no force and costs only its row.
 constexpr double kMarginShare = 0.02;
+
+// Blocks and rows to a chunk. Sums are taken chunk by chunk: these numbers are part of the result's last
+// bits.
+constexpr size_t kBlocks = 512, kRows = 1024;
+
+// Newton is asked to mend a failed step of Gauss-Seidel up to this many points: beyond, its factors would
+// fill the memory.
+constexpr size_t kMostNewtonPoints = 8000;
 
 double contact_margin(const BlockSet& blocks, const std::vector<BlockRate>& rate, double dt) {
   double least = blocks.size[0], fastest = 0;
@@ -28,21 +38,26 @@ double contact_margin(const BlockSet& blocks, const std::vector<BlockRate>& rate
   return margin;
 }
 
-// Gravity and elastic resistance of a block (theory 4.1).
-BlockForce force_without_rows(const BlockSet& b, Vec2 gravity, const State& state, size_t i) {
-  BlockForce force{b.mass[i] * gravity, {}};
-  if (b.kind[i] == BlockKind::kDeformable)
-    force.Q = (-b.volume[i]) * piola_stress(b.moduli[i], state.strain_part[i]);
-  return force;
-}
-
 // Norm of a generalised force as a force on the block's mass, sqrt(m F M^-1 F) [N]; the same in every frame.
 double force_norm(const BlockSet& b, size_t i, const BlockForce& force) {
   return std::sqrt(b.mass[i] * std::max(0.0, work(force, accelerate(b, i, force))));
 }
 
 BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a, u.G + v.G}; }
-BlockRate operator*(double s, const BlockRate& v) { return {s * v.a, s * v.G}; }
+BlockRate operator-(const BlockRate& u, const BlockRate& v) { return {u.a - v.a, u.G - v.G}; }
+
+// Adds the time of its life to one part of the profile.
+class Timed {
+ public:
+  Timed(Profile& profile, Profile::Part part) : seconds_(profile.seconds[part]) {}
+  ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 // Work of an impulse, 1/2 p (v0 + v1): `late` of p v1 belongs to the interval after it, the rest to the one
 // before.
@@ -53,6 +68,38 @@ void tally(double& before, double& after, const BlockForce& impulse, const Block
   after += later;
 }
 
+// Sums over the rows of a chunk.
+struct RowSums {
+  KickWork work;
+  int closed = 0;
+  double drift = 0;
+  std::vector<std::pair<int, BlockForce>> on_still;  // impulses on blocks whose motion is prescribed
+
+  RowSums& operator+=(const RowSums& o) {
+    work.before += o.work.before, work.after += o.work.after;
+    closed += o.closed, drift = std::max(drift, o.drift);
+    on_still.insert(on_still.end(), o.on_still.begin(), o.on_still.end());
+    return *this;
+  }
+};
+
+// Sums over the blocks of a chunk.
+struct BlockSums {
+  KickWork work;
+  double gravity = 0, strain = 0;  // energies of the positions
+  double kinetic = 0;              // before the kick, and what weight and elasticity did of it before now
+  double jump = 0;                 // of the energy that central differences conserve
+  double worst = 0, forces = 0;    // unbalanced force, and force
+  int moving = 0;
+
+  BlockSums& operator+=(const BlockSums& o) {
+    work.before += o.work.before, work.after += o.work.after;
+    gravity += o.gravity, strain += o.strain, kinetic += o.kinetic, jump += o.jump;
+    worst = std::max(worst, o.worst), forces += o.forces, moving += o.moving;
+    return *this;
+  }
+};
+
 class Kick {
  public:
   Kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state)
@@ -62,19 +109,29 @@ class Kick {
     work_.dt_kick = 0.5 * (state_.dt_before + dt_);
     work_.work = {};
     work_.rate_before = state_.rate;
-    const double damping = 0.5 * settings_.damping_mass * work_.dt_kick;
-    scale_ = 1 / (1 + damping);
-
-    predict(damping);
-    gather_rows();
-    solve();
-    for (size_t i = 0; i < state_.rate.size(); ++i)
-      work_.rate_now.push_back(state_.dt_before > 0 ? mean(work_.rate_before[i], state_.rate[i])
-                                                    : work_.rate_before[i]);
-    tally_loads_and_damping();
+    damping_ = 0.5 * settings_.damping_mass * work_.dt_kick;
+    {
+      const Timed timed(work_.profile, Profile::kIntegrate);
+      predict();
+    }
+    {
+      const Timed timed(work_.profile, Profile::kDetect);
+      const double margin = contact_margin(blocks_, state_.rate, dt_);
+      renew_pairs(blocks_, scene_.bonds, margin, work_.workers, state_);
+      report_.searched =
+          update_contacts(blocks_, scene_.bonds, scene_.layout, margin, dt_, work_.workers, state_).searched;
+    }
+    {
+      const Timed timed(work_.profile, Profile::kSetUp);
+      gather_rows();
+    }
+    {
+      const Timed timed(work_.profile, Profile::kSolve);
+      solve();
+    }
+    const Timed timed(work_.profile, Profile::kIntegrate);
     tally_rows();
-    measure_balance();
-    tally_energy();
+    tally_blocks();
     remember();
     return report_;
   }
@@ -82,25 +139,71 @@ class Kick {
  private:
   RowTiming timing() const { return {dt_, work_.dt_kick, scene_.model.contact.alpha}; }
   double history_end() const { return state_.history_time + (settings_.histories_run ? dt_ : 0); }
+  double share() const { return 1 / (1 + damping_); }
+  bool implicit(size_t i) const { return settings_.implicit && blocks_.kind[i] == BlockKind::kDeformable; }
 
-  // Rates at the end of the kick as they would be without rows (theory 4.2), damping included.
-  void predict(double damping) {
-    work_.rate_now.clear();
-    forces_.resize(state_.rate.size());
-    local_damping_.assign(state_.rate.size(), {});
+  // Weight, elastic force and rates at the end of the kick as they would be without rows (theory 4.2),
+  // damping included.
+  void predict() {
     const Model& model = scene_.model;
+    const size_t n = state_.rate.size();
+    forces_.resize(n);
+    elastic_.resize(n);
+    local_damping_.assign(settings_.damping_local > 0 ? n : 0, {});
     load_ = load_acceleration(model, scene_.loaded, blocks_.count, state_.history_time);
-    for (int i = 0; i < blocks_.count; ++i) {
-      const auto k = static_cast<size_t>(i);
-      if (!blocks_.moves_freely(i)) continue;
-      forces_[k] = force_without_rows(blocks_, model.gravity + load_[k], state_, k);
-      BlockRate& v = state_.rate[k];
-      if (settings_.damping_local > 0) local_damping_[k] = local_damping_impulse(k);
-      const BlockForce impulse = work_.dt_kick * forces_[k] + local_damping_[k];
-      v = scale_ * ((1 - damping) * v + accelerate(blocks_, k, impulse));
+    const bool renew = settings_.implicit || work_.mobility.size() != n || work_.mobility_share != share();
+    work_.mobility.resize(n);
+    work_.workers.for_chunks(n, kBlocks, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) predict_block(i, renew);
+    });
+    work_.mobility_share = settings_.implicit ? 0 : share();
+    drive_blocks(blocks_, model, scene_.layout, state_, history_end(), dt_, state_.rate);
+    work_.rate_free = state_.rate;
+  }
+
+  void predict_block(size_t k, bool renew) {
+    if (!blocks_.moves_freely(static_cast<int>(k))) {
+      if (renew) work_.mobility[k] = {};
+      return;
     }
-    drive_blocks(blocks_, scene_.model, scene_.layout, state_, history_end(), dt_, state_.rate);
-    rate_free_ = state_.rate;
+    BlockForce& force = forces_[k];
+    force = {blocks_.mass[k] * (scene_.model.gravity + load_[k]), {}};
+    if (blocks_.kind[k] == BlockKind::kDeformable) {
+      elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k]);
+      force.Q = (-blocks_.volume[k]) * elastic_[k].stress;
+    }
+    if (implicit(k))
+      work_.mobility[k] = mobility_implicit(blocks_, k, elastic_[k].rotation, share(), tangent_time2());
+    else if (renew)
+      work_.mobility[k] = mobility_of(blocks_, k, share());
+    BlockRate& v = state_.rate[k];
+    BlockForce impulse = work_.dt_kick * force;
+    if (settings_.damping_local > 0) impulse += local_damping_[k] = local_damping_impulse(k);
+    if (!implicit(k) && damping_ == 0) {
+      v = v + accelerate(blocks_, k, impulse);
+      return;
+    }
+    // M_eff (v+ - v-) = impulse - what the terms of v+ in M_eff and of v- in the step's laws differ by
+    impulse += (-2 * damping_) * momentum(blocks_, k, v);
+    if (implicit(k))
+      impulse += BlockForce{{}, (-(1 - old_share()) * tangent_time2()) * tangent_force(k, v.G)};
+    v = v + accelerate(work_.mobility[k], impulse);
+  }
+
+  // Block-implicit elasticity: the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family of 4.6.
+  double tangent_time2() const { return dt_ * work_.dt_kick / position_factor(scene_.model.contact.alpha); }
+  double old_share() const {
+    const double alpha = scene_.model.contact.alpha, r = (1 - alpha) / (1 + alpha);
+    return r * r;
+  }
+
+  // V K : G, the elastic tangent in the frame turned with the block.
+  Mat2 tangent_force(size_t i, const Mat2& G) const {
+    const Mat2 r = rotation(elastic_[i].rotation), e = transpose(r) * G;
+    const PlaneModuli& c = blocks_.moduli[i];
+    const double shear = c.c33 * (e.xy + e.yx);
+    return blocks_.volume[i] *
+           (r * Mat2{c.c11 * e.xx + c.c12 * e.yy, shear, shear, c.c12 * e.xx + c.c11 * e.yy});
   }
 
   // Share of the unbalanced force, set against the motion of the whole block in the metric of its mass: the
@@ -113,8 +216,7 @@ class Kick {
     if (speed == 0) return {};
     const BlockForce unbalanced = forces_[i] + state_.contact_force[i];
     const double push = std::sqrt(std::max(0.0, work(unbalanced, accelerate(blocks_, i, unbalanced))));
-    const double share = std::min(settings_.damping_local * push * work_.dt_kick / speed, 1.0);
-    return -share * moving;
+    return -std::min(settings_.damping_local * push * work_.dt_kick / speed, 1.0) * moving;
   }
 
   void gather_rows() {
@@ -124,47 +226,48 @@ class Kick {
     add_bond_rows(blocks_, scene_.bonds, model.joints, state_, work_.rate_before, timing(), work_.rows,
                   work_.bond_owner);
     work_.first_contact = work_.rows.points.size();
-    const double margin = contact_margin(blocks_, state_.rate, dt_);
-    work_.contacts = find_contacts(blocks_, scene_.bonds, state_, margin, work_.candidates, dt_);
-    add_contact_rows(blocks_, scene_.layout, model, work_.contacts, state_, work_.rate_before, timing(),
-                     work_.rows);
+    add_contact_rows(blocks_, model, state_, work_.rate_before, timing(), work_.workers, work_.rows,
+                     work_.places);
     work_.first_support = work_.rows.points.size();
     add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
-    report_.contacts = static_cast<int>(work_.contacts.size());
-    for (size_t i = 0; i < work_.contacts.size(); ++i)
-      if (work_.rows.points[work_.first_contact + i].row[0].compliance == 0)
-        report_.drift = std::max(report_.drift, -work_.contacts[i].gap);
+    report_.contacts = static_cast<int>(state_.contacts.size());
   }
 
   // The chosen solver, then, where its result misses the tolerance, the other; the better of the two stays.
   void solve() {
-    const SolverKind first = scene_.model.solver.method;
+    const SolverInput& options = scene_.model.solver;
+    const SolverKind first = options.method;
     work_.guess = work_.rows.impulse;
-    work_.rate_free = rate_free_;
-    work_.mobility_scale = scale_;
     solve_by(first);
-    if (!report_.failed || scene_.model.contact.law == ContactLaw::kSmoothed) return;
+    if (!report_.failed || scene_.model.contact.law == ContactLaw::kSmoothed || !options.second_solver)
+      return;
+    if (first == SolverKind::kGaussSeidel && work_.rows.points.size() > kMostNewtonPoints) return;
     const StepReport kept = report_;
     const std::vector<Impulse> kept_impulse = work_.rows.impulse;
+    const std::vector<BlockRate> kept_rate = state_.rate;
     work_.rows.impulse = work_.guess;
     solve_by(first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton);
     report_.second_solver = true;
     if (report_.error.worst <= kept.error.worst || std::isnan(kept.error.worst)) return;
     work_.rows.impulse = kept_impulse;
+    state_.rate = kept_rate;
     report_ = kept;
     report_.second_solver = true;
-    apply_rows();
   }
 
   void solve_by(SolverKind kind) {
     const SolverInput& options = scene_.model.solver;
     // the solvers stop earlier than the judge: it measures what is left after the result has been applied
     const double stop = 0.1 * settings_.tolerance;
-    if (kind == SolverKind::kNewton)
-      report_.solve = solve_newton(blocks_, rate_free_, scale_, options, stop / dt_, work_.rows, smoothing());
-    else
-      report_.solve = solve_gauss_seidel(blocks_, rate_free_, scale_, options, stop, dt_, work_.rows);
-    apply_rows();
+    state_.rate = work_.rate_free;
+    if (kind == SolverKind::kNewton) {
+      report_.solve = solve_newton(work_.mobility, state_.rate, options, stop / dt_, work_.rows, smoothing());
+      apply_rows();
+    } else {
+      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, stop, dt_, work_.workers, work_.rows,
+                                               state_.rate);
+    }
+    judge();
   }
 
   Smoothing smoothing() const {
@@ -174,105 +277,136 @@ class Kick {
   }
 
   void apply_rows() {
-    row_force_.assign(state_.rate.size(), {});
+    std::vector<BlockForce> sum(state_.rate.size());
     for (size_t r = 0; r < work_.rows.points.size(); ++r) {
       const PointRows& p = work_.rows.points[r];
       const Impulse& impulse = work_.rows.impulse[r];
-      if (p.block_a >= 0) row_force_[static_cast<size_t>(p.block_a)] += impulse_on(p, impulse, 1);
-      if (p.block_b >= 0) row_force_[static_cast<size_t>(p.block_b)] += impulse_on(p, impulse, -1);
+      if (p.block_a >= 0) sum[static_cast<size_t>(p.block_a)] += impulse_on(p, impulse, 1);
+      if (p.block_b >= 0) sum[static_cast<size_t>(p.block_b)] += impulse_on(p, impulse, -1);
     }
     for (size_t i = 0; i < state_.rate.size(); ++i)
-      state_.rate[i] = rate_free_[i] + scale_ * accelerate(blocks_, i, row_force_[i]);
-    report_.error = contact_error(blocks_, work_.rows, state_.rate, scale_, dt_);
+      state_.rate[i] = work_.rate_free[i] + accelerate(work_.mobility[i], sum[i]);
+  }
+
+  void judge() {
+    report_.error = contact_error(work_.mobility, work_.rows, state_.rate, dt_, work_.workers);
     // the smoothed law misses the exact one by design: there the solver's own residual is the judge
     const bool smoothed = scene_.model.contact.law == ContactLaw::kSmoothed;
     report_.failed = smoothed ? !report_.solve.converged : !(report_.error.worst <= settings_.tolerance);
     if (report_.error.point >= 0)
-      report_.worst = row_name(scene_, work_, static_cast<size_t>(report_.error.point));
-  }
-
-  void tally_loads_and_damping() {
-    KickWork& w = work_.work;
-    for (size_t i = 0; i < state_.rate.size(); ++i) {
-      if (!blocks_.moves_freely(static_cast<int>(i))) continue;
-      const BlockRate &v0 = work_.rate_before[i], &v1 = state_.rate[i];
-      const BlockForce viscous =
-          (-settings_.damping_mass * work_.dt_kick) * momentum(blocks_, i, mean(v0, v1));
-      const BlockForce load{(work_.dt_kick * blocks_.mass[i]) * load_[i], {}};
-      tally(w.before.loads, w.after.loads, load, v0, v1, late_share());
-      tally(w.before.damping, w.after.damping, viscous + local_damping_[i], v0, v1, late_share());
-    }
+      report_.worst = row_name(scene_, state_, work_, static_cast<size_t>(report_.error.point));
   }
 
   void tally_rows() {
-    KickWork& w = work_.work;
-    for (size_t r = 0; r < work_.rows.points.size(); ++r) {
-      const PointRows& p = work_.rows.points[r];
-      const Impulse& impulse = work_.rows.impulse[r];
-      const auto u0 = relative_velocity(p, work_.rate_before), u1 = relative_velocity(p, state_.rate);
-      const auto add = [&](size_t k, double WorkDone::*cause) {
-        w.before.*cause += 0.5 * impulse[k] * u0[k];
-        w.after.*cause += 0.5 * impulse[k] * u1[k];
-      };
-      if (r < work_.first_support && p.row[0].compliance + p.row[1].compliance > 0) {
-        add(0, p.row[0].compliance > 0 ? &WorkDone::joints : &WorkDone::contact_closing);
-        add(1, slides(p, impulse) ? &WorkDone::friction : &WorkDone::joints);
-        if (impulse[0] != 0 || impulse[1] != 0) ++report_.closed;
-      } else if (r < work_.first_contact) {
-        add(0, &WorkDone::bonds), add(1, &WorkDone::bonds);
-      } else if (r < work_.first_support) {
-        add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
-        if (impulse[0] != 0 || impulse[1] != 0) ++report_.closed;
-      } else {
-        add(0, &WorkDone::supports), add(1, &WorkDone::supports);
-      }
-    }
+    const RowSums sums = work_.workers.sum_chunks<RowSums>(work_.rows.points.size(), kRows,
+                                                           [this](size_t begin, size_t end, RowSums& s) {
+                                                             for (size_t r = begin; r < end; ++r)
+                                                               tally_row(r, s);
+                                                           });
+    work_.work.before += sums.work.before, work_.work.after += sums.work.after;
+    report_.closed = sums.closed;
+    report_.drift = sums.drift;
     // a driven block passes on the work that its drive does against the rows
-    for (size_t i = 0; i < state_.rate.size(); ++i) {
-      if (blocks_.moves_freely(static_cast<int>(i))) continue;
-      tally(w.before.supports, w.after.supports, -1.0 * row_force_[i], work_.rate_before[i], state_.rate[i],
-            0.5);
+    for (const auto& [block, impulse] : sums.on_still) {
+      const auto k = static_cast<size_t>(block);
+      tally(work_.work.before.supports, work_.work.after.supports, -1.0 * impulse, work_.rate_before[k],
+            state_.rate[k], 0.5);
     }
   }
 
-  void measure_balance() {
-    double worst = 0, sum = 0;
-    int n = 0;
-    for (size_t i = 0; i < state_.rate.size(); ++i) {
-      if (!blocks_.moves_freely(static_cast<int>(i))) continue;
-      const BlockForce rows = (1 / work_.dt_kick) * row_force_[i];
-      state_.contact_force[i] = rows;
-      worst = std::max(worst, force_norm(blocks_, i, forces_[i] + rows));
-      sum += 0.5 * (force_norm(blocks_, i, forces_[i]) + force_norm(blocks_, i, rows));
-      ++n;
+  void tally_row(size_t r, RowSums& s) const {
+    const PointRows& p = work_.rows.points[r];
+    const Impulse& impulse = work_.rows.impulse[r];
+    const bool contact = r >= work_.first_contact && r < work_.first_support;
+    if (contact && p.row[0].compliance == 0)
+      s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
+    if (impulse[0] == 0 && impulse[1] == 0) return;
+    for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
+      if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
+        s.on_still.emplace_back(block, impulse_on(p, impulse, sign));
+    const auto u0 = relative_velocity(p, work_.rate_before), u1 = relative_velocity(p, state_.rate);
+    const auto add = [&](size_t k, double WorkDone::*cause) {
+      s.work.before.*cause += 0.5 * impulse[k] * u0[k];
+      s.work.after.*cause += 0.5 * impulse[k] * u1[k];
+    };
+    if (r < work_.first_support && p.row[0].compliance + p.row[1].compliance > 0) {
+      add(0, p.row[0].compliance > 0 ? &WorkDone::joints : &WorkDone::contact_closing);
+      add(1, slides(p, impulse) ? &WorkDone::friction : &WorkDone::joints);
+      ++s.closed;
+    } else if (r < work_.first_contact) {
+      add(0, &WorkDone::bonds), add(1, &WorkDone::bonds);
+    } else if (contact) {
+      add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
+      ++s.closed;
+    } else {
+      add(0, &WorkDone::supports), add(1, &WorkDone::supports);
     }
-    report_.unbalanced = sum > 0 ? worst / (sum / n) : 0;
+  }
+
+  // Impulse that gives a block this change of its rates: the effective mass times it.
+  BlockForce impulse_for(size_t i, const BlockRate& change) const {
+    BlockForce impulse = (1 + damping_) * momentum(blocks_, i, change);
+    if (implicit(i)) impulse += BlockForce{{}, tangent_time2() * tangent_force(i, change.G)};
+    return impulse;
   }
 
   // Share of a kick that belongs to the step after it: half, unless the step length changes; all of it at the
   // start.
   double late_share() const { return 0.5 * dt_ / work_.dt_kick; }
 
-  void tally_energy() {
+  void tally_blocks() {
+    work_.rate_now.resize(state_.rate.size());
+    const BlockSums sums = work_.workers.sum_chunks<BlockSums>(
+        state_.rate.size(), kBlocks, [this](size_t begin, size_t end, BlockSums& s) {
+          for (size_t i = begin; i < end; ++i) tally_block(i, s);
+        });
+    work_.work.before += sums.work.before, work_.work.after += sums.work.after;
+    report_.unbalanced = sums.forces > 0 ? sums.worst / (sums.forces / sums.moving) : 0;
+
     Energy& e = report_.energy;
-    e = energy_now(blocks_, scene_.model.gravity, state_);
+    e.gravity = sums.gravity, e.strain = sums.strain;
     e.work = state_.work;
     e.work += work_.work.before;
     // kinetic energy half a step ago, and the part of this kick that came before now: 1/2 v- M v+ for equal
     // steps
-    e.kinetic = kinetic_energy(blocks_, work_.rate_before) + work_.work.before.total();
-    for (size_t i = 0; i < forces_.size(); ++i) {
-      if (!blocks_.moves_freely(static_cast<int>(i))) continue;
-      // weight and elastic resistance, whose energies are taken from the positions
-      const BlockForce own = work_.dt_kick * (forces_[i] + BlockForce{-blocks_.mass[i] * load_[i], {}});
-      double before = 0, after = 0;
-      tally(before, after, own, work_.rate_before[i], state_.rate[i], late_share());
-      e.kinetic += before;
-      // with unequal steps the energy that central differences conserve jumps, of second order in them: no
-      // work
-      state_.energy_start += before - (1 - late_share()) * work(own, work_.rate_before[i]);
-    }
+    e.kinetic = sums.kinetic + work_.work.before.total();
+    // with unequal steps the energy that central differences conserve jumps, of second order in them: no work
+    state_.energy_start += sums.jump;
     e.left_over = e.kinetic + e.strain - state_.energy_start - e.gravity - e.work.total();
+  }
+
+  void tally_block(size_t i, BlockSums& s) {
+    const BlockRate &v0 = work_.rate_before[i], &v1 = state_.rate[i];
+    work_.rate_now[i] = state_.dt_before > 0 ? mean(v0, v1) : v0;
+    if (!blocks_.moves_freely(static_cast<int>(i))) return;
+    const double late = late_share(), kick = work_.dt_kick;
+    const BlockForce viscous = (-settings_.damping_mass * kick) * momentum(blocks_, i, mean(v0, v1));
+    tally(s.work.before.loads, s.work.after.loads, {(kick * blocks_.mass[i]) * load_[i], {}}, v0, v1, late);
+    tally(s.work.before.damping, s.work.after.damping, viscous, v0, v1, late);
+    if (settings_.damping_local > 0)
+      tally(s.work.before.damping, s.work.after.damping, local_damping_[i], v0, v1, late);
+
+    BlockForce force = forces_[i];
+    if (implicit(i)) {
+      const BlockForce more{{}, (-tangent_time2()) * tangent_force(i, v1.G - old_share() * v0.G)};
+      tally(s.work.before.implicit, s.work.after.implicit, more, v0, v1, late);
+      force += (1 / kick) * more;
+    }
+    const BlockForce rows = (1 / kick) * impulse_for(i, v1 - work_.rate_free[i]);
+    state_.contact_force[i] = rows;
+    s.worst = std::max(s.worst, force_norm(blocks_, i, force + rows));
+    s.forces += 0.5 * (force_norm(blocks_, i, force) + force_norm(blocks_, i, rows));
+    ++s.moving;
+
+    s.gravity += blocks_.mass[i] * dot(scene_.model.gravity, state_.displacement[i]);
+    s.strain += blocks_.volume[i] * elastic_[i].density;
+    s.kinetic += 0.5 * work(momentum(blocks_, i, v0), v0);
+    // weight and elastic resistance, whose energies are taken from the positions
+    const BlockForce own = kick * (forces_[i] + BlockForce{-blocks_.mass[i] * load_[i], {}});
+    double before = 0, after = 0;
+    tally(before, after, own, v0, v1, late);
+    s.kinetic += before;
+    s.jump += before - (1 - late) * work(own, v0);
   }
 
   void remember() {
@@ -281,7 +415,7 @@ class Kick {
       state_.bond_force[static_cast<size_t>(work_.bond_owner[r])] = {p[0] / work_.dt_kick,
                                                                      p[1] / work_.dt_kick};
     }
-    remember_contacts(work_.contacts, work_.rows, work_.first_contact, timing(), state_);
+    remember_contacts(work_.rows, work_.first_contact, work_.places, timing(), work_.workers, state_);
     for (size_t i = 0; i < scene_.supported.size(); ++i) {
       const Impulse& p = work_.rows.impulse[work_.first_support + i];
       state_.support_force[i] = {p[0] / work_.dt_kick, -p[1] / work_.dt_kick};
@@ -295,9 +429,9 @@ class Kick {
   StepWork& work_;
   State& state_;
   StepReport report_;
-  double scale_ = 1;
-  std::vector<BlockForce> forces_, local_damping_, row_force_;
-  std::vector<BlockRate> rate_free_;
+  double damping_ = 0;  // half the share of its momentum that mass-proportional damping takes in the step
+  std::vector<BlockForce> forces_, local_damping_;
+  std::vector<ElasticState> elastic_;
   std::vector<Vec2> load_;  // acceleration by loads
 };
 
@@ -307,29 +441,47 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
   return Kick(scene, settings, dt, work, state).run();
 }
 
-void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, const StepWork& work,
+namespace {
+
+// Moves block k; false when the result is no block any more.
+bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
+  const BlockRate& v = state.rate[k];
+  if (!is_finite(v.a) || !is_finite(v.G)) return false;
+  state.displacement[k] += dt * v.a;
+  if (blocks.kind[k] == BlockKind::kDeformable) {
+    state.strain_part[k] += dt * v.G;
+    return det(kIdentity + state.strain_part[k]) > 0;
+  }
+  // the spin matrix acts on the turned arm: nothing to update
+  state.angle[k] += dt * v.G.yx;
+  state.strain_part[k] = rotation_minus_identity(state.angle[k]);
+  return true;
+}
+
+}  // namespace
+
+void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
            State& state, StepReport& report) {
+  const Timed timed(work.profile, Profile::kIntegrate);
   const BlockSet& blocks = scene.blocks;
-  for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
+  std::atomic<size_t> bad{state.rate.size()};
+  work.workers.for_chunks(state.rate.size(), kBlocks, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      if (drift_block(blocks, dt, k, state)) continue;
+      for (size_t least = bad; k < least && !bad.compare_exchange_weak(least, k);) {
+      }
+    }
+  });
+  if (bad < state.rate.size()) {
+    const size_t k = bad;
     const BlockRate& v = state.rate[k];
     if (!is_finite(v.a) || !is_finite(v.G))
       throw NumericalError(fmt::format(
           "the motion of block \"{}\" is not finite at t = {:.9g} s, step {}; worst contact row: {}",
           blocks.name[k], state.time, state.step, report.worst));
-    state.displacement[k] += dt * v.a;
-    if (blocks.kind[k] == BlockKind::kDeformable) {
-      state.strain_part[k] += dt * v.G;
-      const double volume_ratio = det(kIdentity + state.strain_part[k]);
-      if (!(volume_ratio > 0))
-        throw NumericalError(
-            fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
-                        blocks.name[k], volume_ratio, time_end, state.step));
-    } else {
-      state.angle[k] += dt * v.G.yx;
-      state.strain_part[k] = rotation_minus_identity(state.angle[k]);
-      // the spin matrix acts on the turned arm: nothing to update
-    }
+    throw NumericalError(
+        fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
+                    blocks.name[k], det(kIdentity + state.strain_part[k]), time_end, state.step));
   }
   state.work += work.work.before;
   state.work += work.work.after;
@@ -340,12 +492,12 @@ void drift(const Scene& scene, const StepSettings& settings, double dt, double t
   ++state.step;
 }
 
-std::string row_name(const Scene& scene, const StepWork& work, size_t row) {
+std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {
   const PointRows& p = work.rows.points[row];
   const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
   if (row < work.first_contact) return fmt::format("joint {} - {}", name(p.block_a), name(p.block_b));
   if (row < work.first_support) {
-    const ContactKey& k = work.contacts[row - work.first_contact].key;
+    const ContactKey& k = state.contacts[row - work.first_contact].key;
     return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
                        k.edge);
   }

@@ -5,8 +5,9 @@
 
 #include <string>
 
+#include <array>
+
 #include "talus/contact/contact_rows.h"
-#include "talus/solve/contact_error.h"
 #include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
 #include "talus/step/energy.h"
@@ -19,6 +20,7 @@ struct StepSettings {
   double damping_local = 0;   // [-]
   double tolerance = 0;       // largest contact error of a step [m]
   bool histories_run = true;  // false: their clock stands still (static stages)
+  bool implicit = false;      // block-implicit elasticity (theory 4.9)
 };
 
 /// Work that one kick does, half at the velocity before and half at the velocity after it: the second half
@@ -30,6 +32,7 @@ struct KickWork {
 struct StepReport {
   int contacts = 0;  // contact points found
   int closed = 0;    // of them, with a force
+  int searched = 0;  // pairs of blocks whose contact points were sought anew
   SolveReport solve;
   ContactError error;
   std::string worst;           // name of the row with the worst error
@@ -42,12 +45,23 @@ struct StepReport {
   int broken_faces = 0;  // in the drift that follows
 };
 
+/// Where the time of a run goes [s].
+struct Profile {
+  enum Part { kDetect, kSetUp, kSolve, kIntegrate, kOutput, kParts };
+  static constexpr std::array<const char*, kParts> kName{"detect", "set-up", "sweep", "integrate", "output"};
+  std::array<double, kParts> seconds{};
+};
+
 /// Memory reused from step to step, and what the step found at this instant.
 struct StepWork {
-  CandidateFinder candidates;
-  std::vector<ContactPoint> contacts;
-  RowSet rows;                  // bonds, contacts, supports, in this order
-  std::vector<int> bond_owner;  // [n bond rows] 2 * face + end
+  Workers workers;
+  Profile profile;
+  GaussSeidel gauss_seidel;
+  std::vector<Mobility> mobility;    // of this step
+  double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
+  std::vector<ContactPlace> places;  // of state.contacts
+  RowSet rows;                       // bonds, contacts, supports, in this order
+  std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
   size_t first_contact = 0, first_support = 0;
   std::vector<BlockRate> rate_before;
   std::vector<BlockRate> rate_now;  // mean of before and after: velocities at this instant
@@ -55,7 +69,6 @@ struct StepWork {
   KickWork work;
   std::vector<BlockRate> rate_free;  // rates as they would be without rows
   std::vector<Impulse> guess;        // of all rows
-  double mobility_scale = 1;         // factor on the inverse masses (mass-proportional damping)
 };
 
 /// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.
@@ -63,10 +76,10 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 
 /// Moves the blocks to `time_end` = state.time + dt with the rates of the kick; breaks faces.
 /// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
-void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, const StepWork& work,
+void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
            State& state, StepReport& report);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.
-std::string row_name(const Scene& scene, const StepWork& work, size_t row);
+std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row);
 
 }  // namespace talus

@@ -101,7 +101,8 @@ TEST_CASE("the analytic Jacobian equals difference quotients at random states") 
     const RowSet set = random_rows(random, blocks.count, 24);
     std::vector<int> points(set.points.size());
     for (size_t i = 0; i < points.size(); ++i) points[i] = static_cast<int>(i);
-    const ContactProblem problem = build_problem(blocks, set, points, random_rates(random, blocks), 0.9);
+    const ContactProblem problem =
+        build_problem(mobilities(blocks, 0.9), set, points, random_rates(random, blocks));
     Eigen::VectorXd p(problem.size());
     for (size_t i = 0; i < points.size(); ++i)
       for (size_t k = 0; k < 2; ++k) p[static_cast<Eigen::Index>(2 * i + k)] = set.impulse[i][k];
@@ -127,11 +128,11 @@ TEST_CASE("Newton solves random problems to round-off by the separate measure") 
       if (!p.cone) p.row[0].lower = 0, p.cone = true, p.friction = 0.2;
     for (Impulse& i : set.impulse) i = {};
     const std::vector<BlockRate> rate = random_rates(random, blocks);
-    const SolveReport report = solve_newton(blocks, rate, 1, {}, 1e-12, set);
+    const SolveReport report = solve_newton(mobilities(blocks, 1), rate, {}, 1e-12, set);
     if (!report.converged) continue;
     ++solved;
     // velocities of order 1 m/s over 1 s: round-off of a few hundred operations
-    CHECK(contact_error(blocks, set, after(blocks, set, rate), 1, 1).worst < 1e-11);
+    CHECK(contact_error(mobilities(blocks, 1), set, after(blocks, set, rate), 1).worst < 1e-11);
   }
   CHECK(solved >= 55);  // a semismooth Newton may cycle; the caller is told, never left with a wrong answer
 }
@@ -148,11 +149,11 @@ TEST_CASE("Newton handles redundant ties: the same edge tied at four points") {
   }
   std::vector<BlockRate> rate(2);
   rate[1] = {{1, -2}, {0.3, 0.1, -0.4, 0.2}};
-  const SolveReport report = solve_newton(blocks, rate, 1, {}, 1e-12, set);
+  const SolveReport report = solve_newton(mobilities(blocks, 1), rate, {}, 1e-12, set);
   CHECK(report.converged);
   CHECK(report.iterations <= 3);
   const auto now = after(blocks, set, rate);
-  CHECK(contact_error(blocks, set, now, 1, 1).worst < 1e-12);
+  CHECK(contact_error(mobilities(blocks, 1), set, now, 1).worst < 1e-12);
   // the tied edge stands still
   for (const PointRows& p : set.points) CHECK(norm(velocity_at(now[1], p.arm_a)) < 1e-12);
 }
@@ -171,7 +172,7 @@ TEST_CASE("one point on the floor: presses, slips and sticks as Coulomb says") {
     set.add(p, {0, 0});
     std::vector<BlockRate> rate(4);
     rate[3].a = velocity;
-    CHECK(solve_newton(blocks, rate, 1, {}, 1e-13, set).converged);
+    CHECK(solve_newton(mobilities(blocks, 1), rate, {}, 1e-13, set).converged);
     return set.impulse[0];
   };
   const double m = blocks.mass[3], I = blocks.polar_inertia[3];
@@ -196,7 +197,7 @@ TEST_CASE("islands: points are joined through freely moving blocks only") {
   add(3, 2);
   add(4, -1);
   add(5, 4);
-  const auto islands = find_islands(blocks, set);
+  const auto islands = find_islands(mobilities(blocks, 1), set);
   REQUIRE(islands.size() == 3);
   CHECK(islands[0] == std::vector<int>{0});
   CHECK(islands[1] == std::vector<int>{1, 2});
@@ -216,9 +217,9 @@ TEST_CASE("contact error: zero at a solution, the gap violated in metres otherwi
   std::vector<BlockRate> rate(2);
   rate[1].a = {-3, 0};
   // without a force the corner goes 3 m/s x 0.01 s into the other block
-  const ContactError wrong = contact_error(blocks, set, rate, 1, 0.01);
+  const ContactError wrong = contact_error(mobilities(blocks, 1), set, rate, 0.01);
   CHECK(wrong.worst == doctest::Approx(0.03).epsilon(1e-12));
   CHECK(wrong.point == 0);
   rate[1].a = {std::nan(""), 0};
-  CHECK(std::isnan(contact_error(blocks, set, rate, 1, 0.01).worst));
+  CHECK(std::isnan(contact_error(mobilities(blocks, 1), set, rate, 0.01).worst));
 }

@@ -1,0 +1,65 @@
+// talus on one scene: settles it, shakes or holds it, and prints one CSV line per phase like the rivals do.
+// Usage: talus-bench SCENE [--dt S] [--settle S] [--shake S] [--sweeps N] [--threads N] [--tolerance SHARE]
+//        [--stiffness PA_PER_M] [--explicit 1] [--profile 1]
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "talus_engine.h"
+
+namespace {
+
+using namespace talus::bench;
+
+// Takes an option of talus alone out of the list.
+double take(std::vector<char*>& arguments, const std::string& name, double otherwise) {
+  for (size_t i = 1; i + 1 < arguments.size(); ++i) {
+    if (name != arguments[i]) continue;
+    otherwise = std::strtod(arguments[i + 1], nullptr);
+    arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i),
+                    arguments.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+    break;
+  }
+  return otherwise;
+}
+
+void run(int argc, char** argv) {
+  std::vector<char*> arguments(argv, argv + argc);
+  EngineOptions own;
+  own.stiffness = take(arguments, "--stiffness", 0);
+  own.implicit = take(arguments, "--explicit", 0) == 0;
+  own.tolerance = take(arguments, "--tolerance", own.tolerance);
+  const bool profile = take(arguments, "--profile", 0) != 0;
+  const BenchOptions options = read_options(static_cast<int>(arguments.size()), arguments.data());
+  if (options.sweeps > 0) own.sweeps = options.sweeps;
+  own.threads = options.threads;
+  const BenchScene scene = named_scene(options.scene);
+  const double before = resident_bytes();
+  TalusEngine engine(scene, own);
+  run_scene(engine, scene, options, before);
+  if (!profile) return;
+  double all = 0;
+  for (const double s : engine.work().profile.seconds) all += s;
+  for (size_t i = 0; i < talus::Profile::kParts; ++i)
+    std::fprintf(stderr, "%-10s %8.3f s %5.1f %%\n", talus::Profile::kName[i],
+                 engine.work().profile.seconds[i], 100 * engine.work().profile.seconds[i] / all);
+  std::fprintf(stderr, "sweeps %d, searched %d, contacts %d, colours %d, error %.3g m at %s\n",
+               engine.report().solve.iterations, engine.report().searched, engine.report().contacts,
+               engine.work().gauss_seidel.colours(), engine.report().error.worst,
+               engine.report().worst.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    run(argc, argv);
+    return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "talus-bench: %s\n", e.what());
+    return 2;
+  }
+}

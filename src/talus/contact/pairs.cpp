@@ -1,0 +1,281 @@
+#include "talus/contact/pairs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+
+// Skin of the list of pairs, as share of the smallest block.
+constexpr double kSkin = 0.1;
+
+// Contact points of a pair are followed, not sought, while the two have moved against each other by less than
+// half of what could change them, at most this share of the smaller block: faces stay faces and normals turn
+// by less than a thousandth meanwhile.
+constexpr double kReuse = 1e-3;
+
+// Pairs to a chunk.
+constexpr size_t kGrain = 256;
+
+double moved_since(const BlockSet& blocks, const State& state, const CandidateList& list, size_t i) {
+  const Mat2 h = state.strain_part[i] - list.strain_part[i];
+  return norm(state.displacement[i] - list.displacement[i]) + std::sqrt(contract(h, h)) * blocks.radius[i];
+}
+
+bool list_holds(const BlockSet& blocks, const State& state, double margin, const Workers& workers) {
+  const CandidateList& list = state.candidates;
+  if (list.margin != margin || list.displacement.size() != static_cast<size_t>(blocks.count)) return false;
+  std::atomic<bool> holds{true};
+  workers.for_chunks(list.displacement.size(), 2048, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end && holds.load(std::memory_order_relaxed); ++i)
+      if (!(moved_since(blocks, state, list, i) < 0.5 * list.skin)) holds = false;
+  });
+  return holds;
+}
+
+std::vector<Box> boxes_now(const BlockSet& blocks, const State& state) {
+  std::vector<Box> boxes;
+  const Vec2 origin = blocks.centroid[0];
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    const Vec2 from = blocks.centroid[k] - origin;
+    Box box{from + offset_now(state, k, blocks.corner(i, 0)), {}};
+    box.max = box.min;
+    for (int v = 1; v < blocks.vertex_count(i); ++v) {
+      const Vec2 p = from + offset_now(state, k, blocks.corner(i, v));
+      box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};
+      box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y)};
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+int first_face(const BondSet& bonds, int a, int b) {
+  const auto it = std::lower_bound(
+      bonds.faces.begin(), bonds.faces.end(), std::pair(a, b),
+      [](const BondFace& f, const std::pair<int, int>& p) { return std::pair(f.block_a, f.block_b) < p; });
+  const bool found = it != bonds.faces.end() && it->block_a == a && it->block_b == b;
+  return found ? static_cast<int>(it - bonds.faces.begin()) : -1;
+}
+
+bool held_by_faces(const BondSet& bonds, const State& state, const ContactPair& pair) {
+  if (pair.face < 0) return false;
+  for (auto f = static_cast<size_t>(pair.face); f < bonds.faces.size(); ++f) {
+    if (bonds.faces[f].block_a != pair.a || bonds.faces[f].block_b != pair.b) break;
+    if (!state.face[f].broken) return true;
+  }
+  return false;
+}
+
+// The smaller block of a pair and the larger one.
+struct BySize {
+  size_t small, large;
+};
+BySize by_size(const BlockSet& blocks, const ContactPair& p) {
+  const auto a = static_cast<size_t>(p.a), b = static_cast<size_t>(p.b);
+  return blocks.radius[a] <= blocks.radius[b] ? BySize{a, b} : BySize{b, a};
+}
+
+// How far the two have moved against each other since their contact points were sought, at the worst place of
+// the smaller block, where they touch.
+double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p) {
+  const auto [small, large] = by_size(blocks, p);
+  const Vec2 off = (blocks.centroid[small] - blocks.centroid[large] - p.arm) +
+                   (s.displacement[small] - s.displacement[large] - s.strain_part[large] * p.arm);
+  const Mat2 turn = s.strain_part[small] - s.strain_part[large] - p.turn;
+  return norm(off) + std::sqrt(contract(turn, turn)) * blocks.radius[small];
+}
+
+void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
+  const auto [small, large] = by_size(blocks, p);
+  const Vec2 now =
+      (blocks.centroid[small] - blocks.centroid[large]) + (s.displacement[small] - s.displacement[large]);
+  p.arm = inverse(kIdentity + s.strain_part[large]) * now;
+  p.turn = s.strain_part[small] - s.strain_part[large];
+}
+
+// A found point with what a known one at the same place remembers.
+Contact contact_of(const ContactPoint& point, const Layout& joints_of, const Contact* known, int n_known) {
+  Contact c;
+  c.key = point.key;
+  c.face_edge_a = point.face_edge_a, c.face_edge_b = point.face_edge_b;
+  c.partner = point.partner, c.length = point.length;
+  c.joint = joints_of.joint_at(point.key.block_a, point.face_edge_a, point.key.block_b,
+                               point.face_edge_b >= 0 ? point.face_edge_b : point.key.edge);
+  const Contact* from = nullptr;
+  for (int i = 0; i < n_known && !(from && from->key == c.key); ++i) {
+    const ContactKey& k = known[i].key;
+    if (k.block_a != c.key.block_a || k.vertex != c.key.vertex || known[i].memory == Contact::kNone) continue;
+    if (!from || k == c.key) from = &known[i];
+  }
+  if (!from) return c;
+  const bool same = from->key == c.key;
+  c.force = from->force, c.stretch = from->stretch;
+  c.anchor = same ? from->anchor : 0;
+  c.memory = same ? from->memory : Contact::kPassed;
+  return c;
+}
+
+// New lists of contact points of pairs whose number changed, found by one chunk.
+struct Changed {
+  std::vector<std::pair<size_t, int>> pair;  // and how many
+  std::vector<Contact> contact;
+};
+
+class Updater {
+ public:
+  Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of, double margin,
+          double look_ahead, State& state)
+      : blocks_(blocks),
+        bonds_(bonds),
+        joints_of_(joints_of),
+        margin_(margin),
+        look_ahead_(look_ahead),
+        state_(state) {}
+
+  SearchReport run(const Workers& workers) {
+    const size_t n = state_.pairs.size();
+    changed_.resize((n + kGrain - 1) / kGrain);
+    searched_.assign(changed_.size(), 0);
+    workers.for_chunks(n, kGrain, [&](size_t begin, size_t end) { look_at(begin, end); });
+    SearchReport report;
+    bool any = false;
+    for (size_t c = 0; c < changed_.size(); ++c) {
+      report.searched += searched_[c];
+      any = any || !changed_[c].pair.empty();
+    }
+    if (any) put_together();
+    return report;
+  }
+
+ private:
+  void look_at(size_t begin, size_t end) {
+    Changed& changed = changed_[begin / kGrain];
+    ContactSearch search;
+    const State& s = state_;
+    for (size_t i = begin; i < end; ++i) {
+      ContactPair& pair = state_.pairs[i];
+      if (held_by_faces(bonds_, s, pair))
+        continue;  // and so since it was made: intact faces have no contacts
+      if (pair.reuse >= 0 && moved_apart(blocks_, s, pair) <= pair.reuse) continue;
+      ++searched_[begin / kGrain];
+      double clearance = 0;
+      const auto& found = search.touch(blocks_, s, pair.a, pair.b, margin_, look_ahead_, clearance);
+      keep_pose(blocks_, s, pair);
+      const auto [small, large] = by_size(blocks_, pair);
+      const double size = std::min(blocks_.size[small], blocks_.size[large]);
+      pair.reuse =
+          std::max(0.5 * kSamePlace * size, std::min({0.5 * clearance, kReuse * size, 0.25 * margin_}));
+      const Contact* known = state_.contacts.data() + pair.begin;
+      const size_t at = changed.contact.size();
+      for (const ContactPoint& p : found)
+        changed.contact.push_back(contact_of(p, joints_of_, known, pair.count));
+      if (static_cast<int>(found.size()) == pair.count) {
+        std::copy(changed.contact.begin() + static_cast<std::ptrdiff_t>(at), changed.contact.end(),
+                  state_.contacts.begin() + pair.begin);
+        changed.contact.resize(at);
+      } else {
+        changed.pair.emplace_back(i, static_cast<int>(found.size()));
+      }
+    }
+  }
+
+  void put_together() {
+    std::vector<Contact> all;
+    all.reserve(state_.contacts.size() + 64);
+    size_t next = 0;  // pair not yet copied
+    const auto copy_until = [&](size_t end) {
+      for (; next < end; ++next) {
+        ContactPair& p = state_.pairs[next];
+        const auto from = state_.contacts.begin() + p.begin;
+        p.begin = static_cast<int>(all.size());
+        all.insert(all.end(), from, from + p.count);
+      }
+    };
+    for (const Changed& c : changed_) {
+      auto from = c.contact.begin();
+      for (const auto& [pair, count] : c.pair) {
+        copy_until(pair);
+        state_.pairs[pair].begin = static_cast<int>(all.size());
+        state_.pairs[pair].count = count;
+        all.insert(all.end(), from, from + count);
+        from += count;
+        ++next;
+      }
+    }
+    copy_until(state_.pairs.size());
+    state_.contacts = std::move(all);
+  }
+
+  const BlockSet& blocks_;
+  const BondSet& bonds_;
+  const Layout& joints_of_;
+  const double margin_, look_ahead_;
+  State& state_;
+  std::vector<Changed> changed_;
+  std::vector<int> searched_;
+};
+
+}  // namespace
+
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, const Workers& workers,
+                 State& state) {
+  if (blocks.count == 0 || list_holds(blocks, state, margin, workers)) return false;
+  CandidateList& list = state.candidates;
+  const bool same_margin = list.margin == margin;
+  ++list.rebuilds;
+  list.margin = margin;
+  list.displacement = state.displacement;
+  list.strain_part = state.strain_part;
+  list.skin = kSkin * *std::min_element(blocks.size.begin(), blocks.size.end());
+
+  const std::vector<ContactPair> before = std::move(state.pairs);
+  std::vector<ContactPair> now;
+  std::vector<Contact> contacts;
+  auto known = before.begin();
+  for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin + list.skin)) {
+    if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
+    if (std::binary_search(bonds.tied.begin(), bonds.tied.end(), std::pair(a, b))) continue;
+    while (known != before.end() && std::pair(known->a, known->b) < std::pair(a, b)) ++known;
+    ContactPair pair;
+    if (known != before.end() && known->a == a && known->b == b) {
+      pair = *known;
+      // another margin may find other points
+      if (!same_margin) pair.reuse = -1;
+    } else {
+      pair.a = a, pair.b = b;
+      pair.face = first_face(bonds, a, b);
+    }
+    const auto from = state.contacts.begin() + pair.begin;
+    pair.begin = static_cast<int>(contacts.size());
+    contacts.insert(contacts.end(), from, from + pair.count);
+    now.push_back(pair);
+  }
+  now.shrink_to_fit();
+  state.pairs = std::move(now);
+  state.contacts = std::move(contacts);
+  return true;
+}
+
+SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
+                             double margin, double look_ahead, const Workers& workers, State& state) {
+  return Updater(blocks, bonds, joints_of, margin, look_ahead, state).run(workers);
+}
+
+std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& bonds, const State& state,
+                                        double margin, double look_ahead) {
+  std::vector<ContactPoint> contacts;
+  ContactSearch search;
+  for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin)) {
+    if ((!blocks.moves_freely(a) && !blocks.moves_freely(b)) || is_tied(bonds, state, a, b)) continue;
+    double clearance = 0;
+    const auto& found = search.touch(blocks, state, a, b, margin, look_ahead, clearance);
+    contacts.insert(contacts.end(), found.begin(), found.end());
+  }
+  return contacts;
+}
+
+}  // namespace talus

@@ -1,0 +1,16 @@
+#pragma once
+// What a solver says of its work, whichever it was.
+
+#include "talus/solve/contact_error.h"
+
+namespace talus {
+
+struct SolveReport {
+  int iterations = 0;    // Newton: most over all islands; Gauss-Seidel: sweeps
+  int second_phase = 0;  // of them, accelerated ones
+  int islands = 0;
+  int largest_island = 0;  // points
+  bool converged = true;   // by the solver's own residual; the judge is contact_error()
+};
+
+}  // namespace talus

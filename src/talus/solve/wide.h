@@ -1,0 +1,82 @@
+#pragma once
+// Rows laid out for sweeps four couples at a time: a couple is two points of the same two blocks, the ends of
+// a face as a rule. Blocks are lines of the cache; within a colour no moving block occurs twice, so that the
+// couples of a colour can be solved in any order and by any number of threads with the same bits.
+// Theory: docs/theory.md 5.5.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace talus::wide {
+
+constexpr int kLanes = 4;
+
+// One number of each of four couples. The compiler makes of it what the machine has: one register of AVX2 or
+// two of SSE2. No product is contracted with a sum, so that both give the same bits.
+using Lanes = double __attribute__((vector_size(32)));
+
+/// Motion of a block and its answer to impulses (rows/mobility.h), in the axes of the mobility.
+struct alignas(64) BlockLine {
+  double rate[8] = {};                          // a.x, a.y, G'xx, G'xy, G'yx, G'yy, 1/m, unused
+  double answer[8] = {0, 0, 0, 0, 0, 0, 1, 0};  // stretch[3], shear[3], cos and sin of the left axes
+};
+
+/// Contact points: normal impulse >= 0, friction without cohesion.
+struct ContactLanes {
+  Lanes nx, ny;          // normal
+  Lanes ax, ay, bx, by;  // arms in the right axes of each block
+  Lanes bias_n, bias_t;
+  Lanes p_n, p_t;            // impulses
+  Lanes u_nn, u_nt, u_tt;    // influence of the point on itself, without compliance
+  Lanes i_nn, i_nt, i_tt;    // inverse of influence plus compliance; before prepare(): the compliances
+  Lanes slide_up, slide_dn;  // 1 / (w_nn +- mu w_nt)
+  Lanes mu;
+};
+
+/// Points with any bounds: ties, faces with strength, supports.
+struct TieLanes {
+  Lanes nx, ny, ax, ay, bx, by, bias_n, bias_t, p_n, p_t, u_nn, u_nt, u_tt, i_nn, i_nt, i_tt;
+  Lanes lower_n, upper_n, lower_t, upper_t;
+  Lanes mu, cohesion;      // bound mu p_n + cohesion; without a cone: no friction, endless cohesion
+  Lanes w_nn, w_nt, w_tt;  // influence plus compliance
+};
+
+template <class Point>
+struct alignas(64) Record {
+  int32_t a[kLanes], b[kLanes];            // lines of the blocks
+  int32_t into_a[kLanes], into_b[kLanes];  // where they are written: lines of still blocks are not
+  Lanes cross_n, cross_t;                  // compliance with the other point's impulse
+  Point point[2];
+};
+
+using ContactRecord = Record<ContactLanes>;
+using TieRecord = Record<TieLanes>;
+
+/// Sums of a sweep.
+struct SweepSums {
+  double largest = 0;  // change of impulse times influence [m/s]
+};
+
+/// The kernels for one kind of processor. Each works on records [0, count) in order.
+struct Kernels {
+  const char* name;
+  /// Influence and inverses from normals, arms and compliances.
+  void (*prepare_contacts)(const BlockLine*, ContactRecord*, size_t count);
+  void (*prepare_ties)(const BlockLine*, TieRecord*, size_t count);
+  /// Adds the impulses to the blocks.
+  void (*push_contacts)(BlockLine*, const ContactRecord*, size_t count);
+  void (*push_ties)(BlockLine*, const TieRecord*, size_t count);
+  /// Solves each point with all others held.
+  void (*sweep_contacts)(BlockLine*, ContactRecord*, size_t count, SweepSums&);
+  void (*sweep_ties)(BlockLine*, TieRecord*, size_t count, SweepSums&);
+};
+
+/// The fastest kernels that this processor runs, or the plain ones. All give the same bits.
+const Kernels& best_kernels();
+const Kernels& plain_kernels();
+const Kernels& avx2_kernels();  // @pre the processor knows AVX2
+bool has_avx2();
+
+}  // namespace talus::wide

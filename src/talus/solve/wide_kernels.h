@@ -1,0 +1,213 @@
+// The sweep over wide records. Included once by each file that is compiled for one kind of processor; all in
+// a nameless namespace, so that no two of them share a function.
+
+#include "talus/solve/wide.h"
+
+namespace talus::wide {
+
+namespace {
+
+using Mask = int64_t __attribute__((vector_size(32)));
+
+inline Lanes all(double v) { return Lanes{v, v, v, v}; }
+inline Lanes larger(Lanes x, Lanes y) { return x > y ? x : y; }
+inline Lanes smaller(Lanes x, Lanes y) { return x < y ? x : y; }
+inline Lanes size(Lanes x) {
+  return reinterpret_cast<Lanes>(reinterpret_cast<Mask>(x) &
+                                 Mask{INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX});
+}
+
+// Four numbers of each of four places, as lanes; and back.
+inline void load(const double* p0, const double* p1, const double* p2, const double* p3, Lanes out[4]) {
+  const Lanes r0 = *reinterpret_cast<const Lanes*>(p0), r1 = *reinterpret_cast<const Lanes*>(p1),
+              r2 = *reinterpret_cast<const Lanes*>(p2), r3 = *reinterpret_cast<const Lanes*>(p3);
+  const Lanes t0 = __builtin_shuffle(r0, r1, Mask{0, 4, 2, 6}),
+              t1 = __builtin_shuffle(r0, r1, Mask{1, 5, 3, 7}),
+              t2 = __builtin_shuffle(r2, r3, Mask{0, 4, 2, 6}),
+              t3 = __builtin_shuffle(r2, r3, Mask{1, 5, 3, 7});
+  out[0] = __builtin_shuffle(t0, t2, Mask{0, 1, 4, 5});
+  out[1] = __builtin_shuffle(t1, t3, Mask{0, 1, 4, 5});
+  out[2] = __builtin_shuffle(t0, t2, Mask{2, 3, 6, 7});
+  out[3] = __builtin_shuffle(t1, t3, Mask{2, 3, 6, 7});
+}
+
+inline void store(const Lanes in[4], double* p0, double* p1, double* p2, double* p3) {
+  const Lanes t0 = __builtin_shuffle(in[0], in[1], Mask{0, 4, 2, 6}),
+              t1 = __builtin_shuffle(in[0], in[1], Mask{1, 5, 3, 7}),
+              t2 = __builtin_shuffle(in[2], in[3], Mask{0, 4, 2, 6}),
+              t3 = __builtin_shuffle(in[2], in[3], Mask{1, 5, 3, 7});
+  *reinterpret_cast<Lanes*>(p0) = __builtin_shuffle(t0, t2, Mask{0, 1, 4, 5});
+  *reinterpret_cast<Lanes*>(p1) = __builtin_shuffle(t1, t3, Mask{0, 1, 4, 5});
+  *reinterpret_cast<Lanes*>(p2) = __builtin_shuffle(t0, t2, Mask{2, 3, 6, 7});
+  *reinterpret_cast<Lanes*>(p3) = __builtin_shuffle(t1, t3, Mask{2, 3, 6, 7});
+}
+
+// Four blocks, one in each lane.
+struct Four {
+  Lanes v[8];  // as BlockLine::rate
+  Lanes k[8];  // as BlockLine::answer
+
+  Four(const BlockLine* lines, const int32_t* id) {
+    const BlockLine &l0 = lines[id[0]], &l1 = lines[id[1]], &l2 = lines[id[2]], &l3 = lines[id[3]];
+    load(l0.rate, l1.rate, l2.rate, l3.rate, v);
+    load(l0.rate + 4, l1.rate + 4, l2.rate + 4, l3.rate + 4, v + 4);
+    load(l0.answer, l1.answer, l2.answer, l3.answer, k);
+    load(l0.answer + 4, l1.answer + 4, l2.answer + 4, l3.answer + 4, k + 4);
+  }
+  void write(BlockLine* lines, const int32_t* id) const {
+    BlockLine &l0 = lines[id[0]], &l1 = lines[id[1]], &l2 = lines[id[2]], &l3 = lines[id[3]];
+    store(v, l0.rate, l1.rate, l2.rate, l3.rate);
+    store(v + 4, l0.rate + 4, l1.rate + 4, l2.rate + 4, l3.rate + 4);
+  }
+  // velocity of the point at arm (x, y), along the axes of the plane
+  void velocity(Lanes x, Lanes y, Lanes& vx, Lanes& vy) const {
+    const Lanes wx = v[2] * x + v[3] * y, wy = v[4] * x + v[5] * y;
+    vx = v[0] + (k[6] * wx - k[7] * wy);
+    vy = v[1] + (k[7] * wx + k[6] * wy);
+  }
+  // answer to the impulse (fx, fy) at arm (x, y)
+  void push(Lanes x, Lanes y, Lanes fx, Lanes fy) {
+    const Lanes gx = k[6] * fx + k[7] * fy, gy = k[6] * fy - k[7] * fx;
+    const Lanes qxx = gx * x, qxy = gx * y, qyx = gy * x, qyy = gy * y;
+    v[0] += v[6] * fx;
+    v[1] += v[6] * fy;
+    v[2] += k[0] * qxx + k[1] * qyy;
+    v[3] += k[3] * qxy + k[4] * qyx;
+    v[4] += k[4] * qxy + k[5] * qyx;
+    v[5] += k[1] * qxx + k[2] * qyy;
+  }
+  // adds n . w n, n . w t, t . w t of the block's influence w of the arm on itself, t = n turned clockwise
+  void influence(Lanes x, Lanes y, Lanes nx, Lanes ny, Lanes& nn, Lanes& nt, Lanes& tt) const {
+    const Lanes ex = k[6] * nx + k[7] * ny, ey = k[6] * ny - k[7] * nx;
+    const Lanes wxx = v[6] + k[0] * x * x + k[3] * y * y, wxy = (k[1] + k[4]) * x * y,
+                wyy = v[6] + k[2] * y * y + k[5] * x * x;
+    nn += ex * ex * wxx + all(2) * ex * ey * wxy + ey * ey * wyy;
+    nt += ex * ey * (wxx - wyy) + (ey * ey - ex * ex) * wxy;
+    tt += ey * ey * wxx - all(2) * ex * ey * wxy + ex * ex * wyy;
+  }
+};
+
+template <class Point>
+inline void push_point(Four& a, Four& b, const Point& p, Lanes d_n, Lanes d_t) {
+  const Lanes fx = d_n * p.nx + d_t * p.ny, fy = d_n * p.ny - d_t * p.nx;
+  a.push(p.ax, p.ay, fx, fy);
+  b.push(p.bx, p.by, -fx, -fy);
+}
+
+// Impulses of a point that satisfy its laws when the residual at zero impulse is (q_n, q_t).
+inline void solve_point(const ContactLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
+  const Lanes zero{};
+  const Lanes stick_n = -(p.i_nn * q_n + p.i_nt * q_t), stick_t = -(p.i_nt * q_n + p.i_tt * q_t);
+  const auto sticks = (stick_n > zero) & (size(stick_t) <= p.mu * stick_n);
+  // where it slides it does so the way it would have been held from
+  const Lanes slide_n = larger(-q_n * (stick_t > zero ? p.slide_up : p.slide_dn), zero);
+  const Lanes limit = p.mu * slide_n;
+  n = sticks ? stick_n : slide_n;
+  t = sticks ? stick_t : (stick_t > zero ? limit : -limit);
+}
+
+inline void solve_point(const TieLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
+  const Lanes stick_n = -(p.i_nn * q_n + p.i_nt * q_t), stick_t = -(p.i_nt * q_n + p.i_tt * q_t);
+  const auto cone = [&](Lanes x) { return larger(p.mu * x + p.cohesion, Lanes{}); };
+  const auto holds = (stick_n >= p.lower_n) & (stick_n <= p.upper_n) & (size(stick_t) <= cone(stick_n)) &
+                     (stick_t >= p.lower_t) & (stick_t <= p.upper_t);
+  // elsewhere one row after the other
+  const Lanes one_n = larger(smaller(-(q_n + p.w_nt * p.p_t) / p.w_nn, p.upper_n), p.lower_n);
+  const Lanes limit = cone(one_n);
+  Lanes one_t = -(q_t + p.w_nt * one_n) / p.w_tt;
+  one_t = larger(smaller(one_t, smaller(limit, p.upper_t)), larger(-limit, p.lower_t));
+  n = holds ? stick_n : one_n;
+  t = holds ? stick_t : one_t;
+}
+
+template <class Point>
+inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count, SweepSums& sums) {
+  Lanes largest{};
+  for (size_t r = 0; r < count; ++r) {
+    Record<Point>& record = records[r];
+    Four a(lines, record.a), b(lines, record.b);
+    for (int i = 0; i < 2; ++i) {
+      Point& p = record.point[i];
+      const Point& other = record.point[1 - i];
+      Lanes ax, ay, bx, by;
+      a.velocity(p.ax, p.ay, ax, ay);
+      b.velocity(p.bx, p.by, bx, by);
+      const Lanes dx = ax - bx, dy = ay - by;
+      const Lanes q_n =
+          p.nx * dx + p.ny * dy + p.bias_n + record.cross_n * other.p_n - p.u_nn * p.p_n - p.u_nt * p.p_t;
+      const Lanes q_t =
+          p.ny * dx - p.nx * dy + p.bias_t + record.cross_t * other.p_t - p.u_nt * p.p_n - p.u_tt * p.p_t;
+      Lanes n, t;
+      solve_point(p, q_n, q_t, n, t);
+      const Lanes d_n = n - p.p_n, d_t = t - p.p_t;
+      p.p_n = n, p.p_t = t;
+      largest = larger(largest, larger(size(d_n) * p.u_nn, size(d_t) * p.u_tt));
+      push_point(a, b, p, d_n, d_t);
+    }
+    a.write(lines, record.into_a);
+    b.write(lines, record.into_b);
+  }
+  for (int l = 0; l < kLanes; ++l) sums.largest = largest[l] > sums.largest ? largest[l] : sums.largest;
+}
+
+template <class Point>
+inline void push_records(BlockLine* lines, const Record<Point>* records, size_t count) {
+  for (size_t r = 0; r < count; ++r) {
+    const Record<Point>& record = records[r];
+    Four a(lines, record.a), b(lines, record.b);
+    for (const Point& p : record.point) push_point(a, b, p, p.p_n, p.p_t);
+    a.write(lines, record.into_a);
+    b.write(lines, record.into_b);
+  }
+}
+
+// Influence of each point on itself, and the inverse with its compliance.
+template <class Point>
+inline void measure(const Four& a, const Four& b, Point& p, Lanes& w_nn, Lanes& w_nt, Lanes& w_tt) {
+  Lanes nn{}, nt{}, tt{};
+  a.influence(p.ax, p.ay, p.nx, p.ny, nn, nt, tt);
+  b.influence(p.bx, p.by, p.nx, p.ny, nn, nt, tt);
+  w_nn = nn + p.i_nn, w_tt = tt + p.i_tt;
+  // where friction would turn the sign of the normal law (a steep arm), or nothing is left of the
+  // determinant, the two rows are solved as if apart: sweeps come to the same end
+  const auto apart = (p.mu * size(nt) > all(0.9) * w_nn) | (nt * nt > all(0.999) * w_nn * w_tt);
+  nt = apart ? Lanes{} : nt;
+  w_nt = nt;
+  p.u_nn = nn, p.u_nt = nt, p.u_tt = tt;
+  const Lanes one = all(1) / (w_nn * w_tt - nt * nt);
+  p.i_nn = w_tt * one, p.i_nt = -nt * one, p.i_tt = w_nn * one;
+}
+
+void prepare_contacts(const BlockLine* lines, ContactRecord* records, size_t count) {
+  for (size_t r = 0; r < count; ++r) {
+    const Four a(lines, records[r].a), b(lines, records[r].b);
+    for (ContactLanes& p : records[r].point) {
+      Lanes w_nn, w_nt, w_tt;
+      measure(a, b, p, w_nn, w_nt, w_tt);
+      p.slide_up = all(1) / (w_nn + p.mu * w_nt);
+      p.slide_dn = all(1) / (w_nn - p.mu * w_nt);
+    }
+  }
+}
+
+void prepare_ties(const BlockLine* lines, TieRecord* records, size_t count) {
+  for (size_t r = 0; r < count; ++r) {
+    const Four a(lines, records[r].a), b(lines, records[r].b);
+    for (TieLanes& p : records[r].point) measure(a, b, p, p.w_nn, p.w_nt, p.w_tt);
+  }
+}
+
+void push_contacts(BlockLine* l, const ContactRecord* r, size_t count) { push_records(l, r, count); }
+void push_ties(BlockLine* l, const TieRecord* r, size_t count) { push_records(l, r, count); }
+void sweep_contacts(BlockLine* l, ContactRecord* r, size_t count, SweepSums& s) {
+  sweep_records(l, r, count, s);
+}
+void sweep_ties(BlockLine* l, TieRecord* r, size_t count, SweepSums& s) { sweep_records(l, r, count, s); }
+
+constexpr Kernels make_kernels(const char* name) {
+  return {name, prepare_contacts, prepare_ties, push_contacts, push_ties, sweep_contacts, sweep_ties};
+}
+
+}  // namespace
+
+}  // namespace talus::wide

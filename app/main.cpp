@@ -78,7 +78,15 @@ int check(const ModelArguments& args) {
   return talus::kExitOk;
 }
 
-int run(const ModelArguments& args, const std::string& folder, bool force, bool quiet, int64_t dump_step) {
+struct RunArguments {
+  std::string folder;
+  bool force = false, quiet = false, profile = false;
+  int64_t dump_step = -1;
+  int threads = 0;  // 0: as many as pay
+};
+
+int run(const ModelArguments& args, const RunArguments& how) {
+  const auto& [folder, force, quiet, profile, dump_step, threads] = how;
   const std::string text = talus::read_text_file(args.file);
   talus::Findings findings(args.file, text);
   talus::PreparedRun prepared = prepare(args, findings, text);
@@ -92,10 +100,13 @@ int run(const ModelArguments& args, const std::string& folder, bool force, bool 
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   progress.stop_when(&stop_requested);
-  const talus::RunResult result = talus::run_stages(prepared.scene, prepared.plans, state, progress);
+  const talus::RunResult result = talus::run_stages(
+      prepared.scene, prepared.plans, state, progress,
+      talus::Workers(threads > 0 ? threads : talus::threads_for(prepared.scene.blocks.count)));
   progress.finish();
   recorder.finish(result, args.overrides, findings);
   fmt::print(out, "{}", talus::closing_text(prepared.scene, result, folder));
+  if (profile) fmt::print(out, "{}", talus::profile_text(result));
   if (!result.failure.empty())
     throw talus::NumericalError(result.failure + fmt::format("\nresults up to then are in {}", folder));
   return result.interrupted ? talus::kExitInterrupted : talus::kExitOk;
@@ -126,15 +137,22 @@ int run_command(int argc, char** argv) {
       "interrupted.\nHelp on a verb: talus VERB --help");
 
   ModelArguments model;
+  RunArguments how;
   std::string folder;
-  bool force = false, quiet = false, json = false;
-  int64_t dump_step = -1;
+  bool force = false, json = false;
   CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
   add_model_arguments(*run_verb, model);
-  run_verb->add_option("-o,--output", folder, "folder for the results")->required();
-  run_verb->add_flag("--force", force, "replace the results of an earlier run in that folder");
-  run_verb->add_flag("-q,--quiet", quiet, "say nothing but errors");
-  run_verb->add_option("--dump-step", dump_step,
+  run_verb->add_option("-o,--output", how.folder, "folder for the results")->required();
+  run_verb->add_flag("--force", how.force, "replace the results of an earlier run in that folder");
+  run_verb->add_flag("-q,--quiet", how.quiet, "say nothing but errors");
+  run_verb
+      ->add_option("--threads", how.threads,
+                   "threads inside a step, 0: as many as pay; results are the same for any number")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  run_verb->add_flag("--profile", how.profile,
+                     "print the share of each part of a step in the time of the run");
+  run_verb->add_option("--dump-step", how.dump_step,
                        "also write the contact equations of this step, as step_N.json, for talus replay");
   run_verb->footer(
       "Example: talus run examples/impact_bar/impact_bar.toml -o out/bar --set grid.bar.cells=[20,1]");
@@ -185,7 +203,7 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? talus::kExitOk : talus::kExitUsage;
   }
-  if (*run_verb) return run(model, folder, force, quiet, dump_step);
+  if (*run_verb) return run(model, how);
   if (*check_verb) return check(model);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*replay_verb) return replay(problem, method, tolerance);

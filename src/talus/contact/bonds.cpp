@@ -174,16 +174,18 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
         p.row[0].lower = -joint.tensile_strength * half_area * timing.dt_kick;
         if (joint.normal_stiffness > 0 || joint.shear_stiffness > 0) {
           add_compliance(joint, half_area, true, timing, relative_velocity(p, before), p);
-          p.partner = static_cast<int>(rows.points.size()) + (end == 0 ? 1 : -1);
+          p.partner = static_cast<int>(rows.size()) + (end == 0 ? 1 : -1);
         }
         p.cone = true;
         p.friction = std::tan(joint.friction_angle);
         p.cohesion = joint.cohesion * half_area * timing.dt_kick;
       }
       // the two tangential rows of a face between rigid blocks say the same: from equal guesses they stay
-      // equal
+      // equal. Where a block deforms, unequal ones belong to a balance that must not be disturbed
       const auto& force = state.bond_force[2 * f + static_cast<size_t>(end)];
-      const double shear = 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]);
+      const bool rigid = blocks.kind[a] != BlockKind::kDeformable && blocks.kind[b] != BlockKind::kDeformable;
+      const double shear =
+          rigid ? 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]) : force[1];
       rows.add(p, {force[0] * timing.dt_kick, shear * timing.dt_kick});
       owner.push_back(static_cast<int>(2 * f) + end);
     }

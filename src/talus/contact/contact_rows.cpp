@@ -21,14 +21,20 @@ double hard_bias(double gap, double slop, double dt) {
   return std::min(gap + 0.5 * slop, 0.0) / dt;
 }
 
+// What of a distance lies beyond the slop. Contacts that stick redundantly, as two corners at one place do,
+// have anchors that differ by what was left of the errors of earlier steps; no motion brings both home, and
+// forces would grow without end over it.
+double beyond(double off, double slop) {
+  if (std::abs(off) <= slop) return 0;
+  return off > 0 ? off - slop : off + slop;
+}
+
 }  // namespace
 
 void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
                       const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
                       RowSet& rows, std::vector<ContactPlace>& place) {
-  const size_t first = rows.points.size();
-  rows.points.resize(first + state.contacts.size());
-  rows.impulse.resize(first + state.contacts.size());
+  const size_t first = rows.add_more(state.contacts.size());
   place.resize(state.contacts.size());
   // the last: neither friction nor stiffness
   std::vector<JointProperty> joints = model.joints;
@@ -58,15 +64,16 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     p.friction = friction[joint];
     p.row[0].lower = 0;
     const bool soft = property.normal_stiffness > 0;
-    const double size = std::min(blocks.size[a], blocks.size[b]);
-    p.row[0].bias = soft ? over.gap / timing.dt : hard_bias(over.gap, model.contact.slop * size, timing.dt);
+    const double size = std::min(blocks.size[a], blocks.size[b]), slop = model.contact.slop * size;
+    p.row[0].bias = soft ? over.gap / timing.dt : hard_bias(over.gap, slop, timing.dt);
 
     Impulse guess{};
     if (c.memory != Contact::kNone) {
       guess = {c.force[0] * timing.dt_kick, c.force[1] * timing.dt_kick};
       // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
       const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
-      p.row[1].bias = (anew ? c.stretch : slip - c.anchor) / timing.dt;
+      const double off = anew ? c.stretch : slip - c.anchor;
+      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, 0.5 * slop)) / timing.dt;
     }
     if (property.restitution >= 0 || soft || property.shear_stiffness > 0) {
       const auto u = relative_velocity(p, before);

@@ -117,10 +117,10 @@ struct LoadInput {
 
 enum class JacobianKind { kAnalytic, kDifference };
 
-enum class SolverKind { kNewton, kGaussSeidel };
+enum class SolverKind { kAuto, kNewton, kGaussSeidel };
 
 struct SolverInput {
-  SolverKind method = SolverKind::kNewton;
+  SolverKind method = SolverKind::kAuto;
   JacobianKind jacobian = JacobianKind::kAnalytic;
   double tolerance = 1e-8;  // share of the smallest block's size
   int max_iterations = 60;
@@ -142,7 +142,7 @@ struct StageInput {
   double damping_mass = 0;   // [1/s]
   double damping_local = 0;  // [-]
   double unbalanced = 1e-5;
-  Where where, where_step;
+  Where where, where_step, where_clamp;
 };
 
 enum class MonitorKind { kPoint, kBlock, kSupport, kContact };

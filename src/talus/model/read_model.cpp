@@ -401,8 +401,11 @@ class ModelReader : private SectionReader {
     const Fields f = read_table("solver");
     model_.solver.jacobian =
         f.get<std::string>("jacobian") == "difference" ? JacobianKind::kDifference : JacobianKind::kAnalytic;
-    model_.solver.method =
-        f.get<std::string>("method") == "gauss_seidel" ? SolverKind::kGaussSeidel : SolverKind::kNewton;
+    const auto method = f.get<std::string>("method");
+    model_.solver.method = method == "gauss_seidel" ? SolverKind::kGaussSeidel
+                           : method == "newton"     ? SolverKind::kNewton
+                                                    : SolverKind::kAuto;
+    model_.solver.second_solver = f.get("second_solver", true);
     model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
     if (model_.solver.method == SolverKind::kGaussSeidel && model_.contact.law == ContactLaw::kSmoothed)
       findings_.error(f.where("method"), f.path_of("method"), "gauss_seidel solves the exact law only",
@@ -423,6 +426,7 @@ class ModelReader : private SectionReader {
       s.time_step = f.get("time_step", s.time_step);
       s.safety = f.get("safety", s.safety);
       s.moment_clamp = f.get("moment_clamp", false);
+      s.implicit = f.get<std::string>("elasticity") == "implicit";
       s.damping_mass = f.get("damping_mass", 0.0);
       s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);
       s.unbalanced = f.get("unbalanced", s.unbalanced);
@@ -430,9 +434,22 @@ class ModelReader : private SectionReader {
       s.where_step = f.where("time_step");
       if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
         findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
-      if (s.moment_clamp && std::isnan(s.time_step))
+      s.where_clamp = f.where("moment_clamp");
+      if (s.moment_clamp && s.implicit)
+        findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
+                        "has nothing to do where elasticity = \"implicit\": no block limits the step",
+                        "leave one of the two out");
+      else if (s.moment_clamp && !model_.masonry.empty())
+        findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
+                        "changes how blocks rock, and this model has masonry",
+                        "use elasticity = \"implicit\", or leave time_step to \"auto\"");
+      else if (s.moment_clamp && std::isnan(s.time_step))
         findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"), "needs a time_step to clamp for",
                         "give time_step = \"... s\"");
+      if (s.implicit && f.given("safety"))
+        findings_.error(f.where("safety"), f.path_of("safety"),
+                        "is a share of the stable limit, which elasticity = \"implicit\" does not have",
+                        "leave it out");
       if (!std::isnan(s.time_step) && f.given("safety"))
         findings_.error(f.where("safety"), f.path_of("safety"),
                         "belongs to time_step = \"auto\"; the stage gives its own time_step");

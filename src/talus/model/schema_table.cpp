@@ -657,11 +657,16 @@ std::vector<SectionSpec> build_schema() {
        "Solution of the contact constraint equations.",
        {{.name = "method",
          .type = K::kChoice,
-         .default_text = "\"newton\"",
-         .choices = {"newton", "gauss_seidel"},
+         .default_text = "\"auto\"",
+         .choices = {"auto", "newton", "gauss_seidel"},
          .doc = "`newton`: semismooth, per island of touching blocks. `gauss_seidel`: projected, point by "
-                "point. A step "
-                "that one does not solve is tried by the other."},
+                "point, by all threads. `auto`: what is faster for the number of contact points "
+                "(docs/performance.md has the table)."},
+        {.name = "second_solver",
+         .type = K::kBool,
+         .default_text = "true",
+         .doc = "A step that misses the tolerance is tried by the other method (by Newton up to 8000 contact "
+                "points)."},
         {.name = "jacobian",
          .type = K::kChoice,
          .default_text = "\"analytic\"",
@@ -715,12 +720,21 @@ std::vector<SectionSpec> build_schema() {
          .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
          .default_text = "0.8",
          .doc = "With \"auto\": share of the stable limit."},
+        {.name = "elasticity",
+         .type = K::kChoice,
+         .default_text = "\"explicit\"",
+         .choices = {"explicit", "implicit"},
+         .doc =
+             "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "
+             "is part of its mass matrix (theory 4.9), so that no block limits the time step; \"auto\" is "
+             "then the time in which a wave crosses two blocks of median size."},
         {.name = "moment_clamp",
          .type = K::kBool,
          .default_text = "false",
          .doc =
              "With a given `time_step`: raise the moment of inertia of blocks too thin for it (counted and "
-             "reported; refused where a block of median size would need it)."},
+             "reported; refused where a block of median size would need it, and on masonry, whose bricks "
+             "rock)."},
         {.name = "damping_mass",
          .dimension = D::kRate,
          .range = kNonNegative,

@@ -39,13 +39,6 @@ BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate) {
   }
 }
 
-std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate) {
-  Vec2 v;
-  if (p.block_a >= 0) v += velocity_at(rate[static_cast<size_t>(p.block_a)], p.arm_a);
-  if (p.block_b >= 0) v -= velocity_at(rate[static_cast<size_t>(p.block_b)], p.arm_b);
-  return {dot(p.normal, v), dot(turn_right(p.normal), v)};
-}
-
 BlockForce impulse_on(const PointRows& p, const Impulse& impulse, double sign) {
   const Vec2 f = sign * (impulse[0] * p.normal + impulse[1] * turn_right(p.normal));
   return {f, outer(f, sign > 0 ? p.arm_a : p.arm_b)};

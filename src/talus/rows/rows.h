@@ -41,8 +41,24 @@ struct RowSet {
   std::vector<PointRows> points;
   std::vector<Impulse> impulse;  // in: first guess; out: solution
 
-  void clear() { points.clear(), impulse.clear(); }
-  void add(const PointRows& p, const Impulse& guess) { points.push_back(p), impulse.push_back(guess); }
+  void add(const PointRows& p, const Impulse& guess) {
+    const size_t i = add_more(1);
+    points[i] = p, impulse[i] = guess;
+  }
+  /// Room for `count` more points, to be written by the caller; returns the index of the first. Between
+  /// restart() and finish() old points are written over, not made anew.
+  size_t add_more(size_t count) {
+    const size_t first = next_;
+    next_ += count;
+    if (points.size() < next_) points.resize(next_), impulse.resize(next_);
+    return first;
+  }
+  void restart() { next_ = 0; }
+  void finish() { points.resize(next_), impulse.resize(next_); }
+  size_t size() const { return next_; }
+
+ private:
+  size_t next_ = 0;
 };
 
 /// Bounds of row k of a point when its normal impulse is p_n.
@@ -73,7 +89,12 @@ BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force);
 BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate);
 
 /// Relative velocity (normal, tangential) of a point pair when the blocks move at `rate`.
-std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate);
+inline std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate) {
+  Vec2 v;
+  if (p.block_a >= 0) v += velocity_at(rate[static_cast<size_t>(p.block_a)], p.arm_a);
+  if (p.block_b >= 0) v -= velocity_at(rate[static_cast<size_t>(p.block_b)], p.arm_b);
+  return {dot(p.normal, v), dot(turn_right(p.normal), v)};
+}
 
 /// Impulse of a point as generalised impulse on block a (`sign` = 1) or block b (-1).
 BlockForce impulse_on(const PointRows& p, const Impulse& impulse, double sign);

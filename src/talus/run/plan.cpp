@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/contact/pairs.h"
 #include "talus/run/histories.h"
@@ -28,6 +29,19 @@ double median_step(const BlockSet& blocks) {
   return steps[steps.size() / 2];
 }
 
+// Time in which a pressure wave crosses two blocks of median size: the step at which errors of time and of
+// sub-division are of one size.
+double crossing_time(const Scene& scene) {
+  const BlockSet& b = scene.blocks;
+  std::vector<double> times;
+  for (size_t i = 0; i < static_cast<size_t>(b.count); ++i)
+    if (b.kind[i] == BlockKind::kDeformable)
+      times.push_back(2 * b.size[i] / std::sqrt(b.moduli[i].c11 * b.volume[i] / b.mass[i]));
+  if (times.empty()) return 0;
+  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  return times[times.size() / 2];
+}
+
 int64_t rows_of(double duration, int64_t steps, double interval) {
   if (interval <= 0) return steps;
   return static_cast<int64_t>(std::min(static_cast<double>(steps), duration / interval));
@@ -48,7 +62,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     plan.dt_bound = bound.dt;
     plan.bound_block = bound.block;
     const std::string path = "stage." + stage.name;
-    double wanted = stage.safety * bound.dt;
+    double wanted = stage.implicit ? crossing_time(scene) : stage.safety * bound.dt;
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;
     } else if (bound.block < 0) {
@@ -66,7 +80,10 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     }
     plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
     plan.dt = stage.duration / static_cast<double>(plan.steps);
-    if (plan.dt >= bound.dt && stage.moment_clamp) {
+    if (stage.implicit) {
+      plan.dt_bound = std::numeric_limits<double>::infinity();
+      plan.bound_block = -1;
+    } else if (plan.dt >= bound.dt && stage.moment_clamp) {
       const double clamp_dt = plan.dt * std::sqrt(1 + stage.damping_local);
       if (clamp_dt > median_step(scene.blocks)) {
         findings.error(stage.where_step, path + ".time_step",
@@ -87,7 +104,9 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
       findings.error(stage.where_step, path + ".time_step",
                      fmt::format("{:.4g} s is above the stable limit {:.4g} s, set by block \"{}\"", plan.dt,
                                  bound.dt, bound_name),
-                     "use \"auto\", a smaller step, or moment_clamp = true if a few slivers set the limit");
+                     "use \"auto\", a smaller step, elasticity = \"implicit\", or moment_clamp = true if a "
+                     "few slivers set "
+                     "the limit");
     }
     plans.push_back(plan);
   }

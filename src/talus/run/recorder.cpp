@@ -19,6 +19,8 @@ double wall_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+constexpr const char* kMethod[] = {"auto", "newton", "gauss_seidel"};  // as SolverKind
+
 // Whether an instant reaches the next multiple of the interval, which then moves on. Interval 0: always.
 bool is_due(double time, double dt, double interval, double& next) {
   if (interval <= 0) return true;
@@ -172,7 +174,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
     j["stages"].push_back(stage);
   }
   j["solver"] = {
-      {"method", scene.model.solver.method == SolverKind::kNewton ? "newton" : "gauss_seidel"},
+      {"method", kMethod[static_cast<int>(scene.model.solver.method)]},
       {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
       {"contact_solves", r.steps},
       {"failed_steps", r.failed_steps},

@@ -20,8 +20,11 @@ double smallest_block(const BlockSet& blocks) {
 
 class Runner {
  public:
-  Runner(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer)
-      : scene_(scene), plans_(plans), state_(state), observer_(observer), unclamped_(scene.blocks) {}
+  Runner(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
+         const Workers& workers)
+      : scene_(scene), plans_(plans), state_(state), observer_(observer), unclamped_(scene.blocks) {
+    work_.workers = workers;
+  }
 
   RunResult run() {
     const auto wall = std::chrono::steady_clock::now();
@@ -33,6 +36,8 @@ class Runner {
       result_.failure = e.what();
     }
     result_.candidate_rebuilds = state_.candidates.rebuilds;
+    result_.threads = work_.workers.threads();
+    result_.profile = work_.profile;
     for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
     result_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
     result_.cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
@@ -66,7 +71,7 @@ class Runner {
       }
       StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report);
-      observer_.at({scene_, state_, work_, report, plan, index, n == 0, false});
+      show({scene_, state_, work_, report, plan, index, n == 0, false});
       note(report);  // after the observers: a step that ends the run is seen too
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
       drift(scene_, settings_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_,
@@ -90,6 +95,13 @@ class Runner {
     }
   }
 
+  void show(const Instant& instant) {
+    const auto start = std::chrono::steady_clock::now();
+    observer_.at(instant);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    work_.profile.seconds[Profile::kOutput] += spent.count();
+  }
+
   // Velocity left, as share of its peak in the stage.
   double speed_left(const StepReport& report) const {
     const double peak = std::max(state_.largest_kinetic, report.energy.kinetic);
@@ -109,7 +121,7 @@ class Runner {
     State copy = state_;
     const StepReport report = kick(scene_, settings_, plan.dt, work_, copy);
     note(report);
-    observer_.at({scene_, copy, work_, report, plan, index, false, true});
+    show({scene_, copy, work_, report, plan, index, false, true});
   }
 
   void note(const StepReport& r) {
@@ -152,8 +164,26 @@ class Runner {
 
 }  // namespace
 
-RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer) {
-  return Runner(scene, plans, state, observer).run();
+RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
+                     const Workers& workers) {
+  return Runner(scene, plans, state, observer, workers).run();
+}
+
+int threads_for(int blocks) {
+  // below this many blocks to a thread the handing over of work costs as much as it gains
+  constexpr int kBlocksPerThread = 2000;
+  return std::clamp(blocks / kBlocksPerThread, 1, Workers(0).threads());
+}
+
+std::string profile_text(const RunResult& result) {
+  double all = 0;
+  for (const double s : result.profile.seconds) all += s;
+  std::string text = fmt::format("profile ({} thread{}, {} steps)\n", result.threads,
+                                 result.threads == 1 ? "" : "s", result.steps);
+  for (size_t i = 0; i < Profile::kParts; ++i)
+    text += fmt::format("  {:<10} {:10.3f} s {:6.1f} %\n", Profile::kName[i], result.profile.seconds[i],
+                        all > 0 ? 100 * result.profile.seconds[i] / all : 0.0);
+  return text;
 }
 
 PreparedRun prepare_run(const std::string& file, const std::string& text,

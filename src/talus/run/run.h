@@ -31,6 +31,8 @@ struct RunResult {
   bool interrupted = false;
   std::string failure;  // text of the NumericalError that ended the run, "" otherwise
   double wall_seconds = 0, cpu_seconds = 0;
+  int threads = 1;
+  Profile profile;
 
   /// largest_left_over / largest_energy, 0 when nothing moved.
   double closure() const { return largest_energy > 0 ? largest_left_over / largest_energy : 0; }
@@ -39,7 +41,15 @@ struct RunResult {
 /// Runs all stages from `state` on, showing every instant to the observer. Numerical trouble ends the run and
 /// is told in `failure`; errors of the observer (files) pass through.
 /// @param plans  one per stage, from plan_stages() without errors
-RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer);
+/// @note  the results have the same bits for any number of threads
+RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
+                     const Workers& workers = Workers());
+
+/// Threads that pay for a model of so many blocks, at most as many as the machine has processors.
+int threads_for(int blocks);
+
+/// What --profile prints: the share of each part of a step in the time of the run.
+std::string profile_text(const RunResult& result);
 
 /// Reads, checks and plans a model. Throws InputError with all findings; warnings are left in `findings`.
 struct PreparedRun {

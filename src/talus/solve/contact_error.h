@@ -1,6 +1,9 @@
 #pragma once
 // How far impulses are from the contact law, measured apart from any solver. Theory: docs/theory.md 5.3.
 
+#include <array>
+#include <cmath>
+
 #include "talus/base/parallel.h"
 #include "talus/rows/mobility.h"
 #include "talus/rows/rows.h"
@@ -10,7 +13,18 @@ namespace talus {
 struct ContactError {
   double worst = 0;  // [m]
   int point = -1;    // where, index in the row set
+
+  /// The worse of the two: the first of equals, NaN before all else.
+  ContactError& operator+=(const ContactError& o) {
+    if (!std::isnan(worst) && (std::isnan(o.worst) || o.worst > worst)) *this = o;
+    return *this;
+  }
 };
+
+/// |p - Proj(p - e / Wii)| Wii of the worse row of point i [m/s], NaN when a number is not finite.
+/// @param u  relative velocity of the point after the impulses have acted
+double point_error(const std::vector<Mobility>& mobility, const RowSet& set, size_t i,
+                   const std::array<double, 2>& u);
 
 /// Largest |p - Proj(p - e / Wii)| Wii dt over all rows (5.2); NaN, with its point, when a number is not
 /// finite.

@@ -16,6 +16,13 @@ constexpr double kEndless = 1e300;  // an open bound: products with it stay numb
 // Colours before couples are solved one after the other: as many as a word has bits.
 constexpr int kMostColours = 63;
 
+// Sweeps before the second phase: most steps end within them.
+constexpr int kPlainSweeps = 30;
+
+// Growth of the change from sweep to sweep at which the second phase starts afresh. Forces that move at a
+// steady rate along redundant rows, until one of them lets go, have a ratio of one and some round-off.
+constexpr double kStillGood = 1.2;
+
 bool is_tie(const PointRows& p) {
   return !p.cone || p.row[0].lower != 0 || p.cohesion != 0 || std::isfinite(p.row[0].upper) ||
          std::isfinite(p.row[1].lower) || std::isfinite(p.row[1].upper);
@@ -75,7 +82,7 @@ bool GaussSeidel::layout_holds(const RowSet& set) {
   seen_.resize(set.points.size());
   for (size_t i = 0; i < seen_.size(); ++i) {
     const PointRows& p = set.points[i];
-    const Point now{p.block_a, p.block_b, p.partner, is_tie(p)};
+    const Point now{std::min(p.block_a, p.block_b), std::max(p.block_a, p.block_b), p.partner, is_tie(p)};
     same = same && seen_[i] == now;
     seen_[i] = now;
   }
@@ -90,8 +97,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
   const auto at = [this](int i) -> const Point& { return seen_[static_cast<size_t>(i)]; };
   const auto same_blocks = [&](int i, int j) {
     const Point &p = at(i), &q = at(j);
-    return p.tie == q.tie && ((p.block_a == q.block_a && p.block_b == q.block_b) ||
-                              (p.block_a == q.block_b && p.block_b == q.block_a));
+    return p.tie == q.tie && p.block_a == q.block_a && p.block_b == q.block_b;
   };
   for (int i = 0; i < n; ++i) {
     const int partner = at(i).partner;
@@ -144,9 +150,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
     (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
     next += k == kMostColours ? kLanes : 1;
   }
-  contacts_.clear();
   contacts_.resize(contact_at);
-  ties_.clear();
   ties_.resize(tie_at);
 
   // blocks that do not move are written to lines that nobody reads, one for each record that has any
@@ -287,7 +291,8 @@ struct Largest {
 
 }  // namespace
 
-wide::SweepSums GaussSeidel::sweep(const Workers& workers) {
+// Largest change of an impulse times the influence of its point on itself [m/s].
+double GaussSeidel::sweep(const Workers& workers) {
   Largest all;
   for (const Colour& c : colour_) {
     const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
@@ -302,7 +307,81 @@ wide::SweepSums GaussSeidel::sweep(const Workers& workers) {
         kernels_->sweep_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin, l.sums);
       });
   }
-  return all.sums;
+  return all.sums.largest;
+}
+
+namespace {
+
+// Work of the second phase goes in chunks of fixed size: its sums decide how it goes on.
+constexpr size_t kRecords = 64, kLines = 512;
+
+double sum_of(wide::Lanes x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+
+}  // namespace
+
+void GaussSeidel::keep(const Workers& workers) {
+  const auto keep_impulses = [&](const auto& records, std::vector<Direction>& direction) {
+    direction.resize(2 * records.size());
+    workers.for_chunks(records.size(), kRecords, [&](size_t begin, size_t end) {
+      for (size_t i = 2 * begin; i < 2 * end; ++i) {
+        const auto& p = records[i / 2].point[i % 2];
+        direction[i].old_n = p.p_n, direction[i].old_t = p.p_t;
+      }
+    });
+  };
+  keep_impulses(contacts_, contact_direction_);
+  keep_impulses(ties_, tie_direction_);
+  rate_direction_.resize(static_cast<size_t>(ground_));
+  workers.for_chunks(rate_direction_.size(), kLines, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      std::copy(lines_[i].rate, lines_[i].rate + 6, rate_direction_[i].old.begin());
+  });
+}
+
+// Nonlinear conjugate gradients with the sweep as the gradient: goes on along the directions of the sweeps
+// before, by the ratio of their changes; where changes grow it starts afresh. Impulses and rates go together,
+// as the rates are linear in the impulses. The next sweep puts them back within their bounds.
+void GaussSeidel::extrapolate(const Workers& workers, bool first) {
+  const auto squared = [&](const auto& records, const std::vector<Direction>& direction) {
+    return workers.sum_chunks<double>(records.size(), kRecords, [&](size_t begin, size_t end, double& sum) {
+      wide::Lanes s{};
+      for (size_t i = 2 * begin; i < 2 * end; ++i) {
+        const auto& p = records[i / 2].point[i % 2];
+        const wide::Lanes n = p.p_n - direction[i].old_n, t = p.p_t - direction[i].old_t;
+        s += n * n * p.u_nn + t * t * p.u_tt;
+      }
+      sum += sum_of(s);
+    });
+  };
+  const double now = squared(contacts_, contact_direction_) + squared(ties_, tie_direction_);
+  const double ratio = first || change_squared_ == 0 ? 0 : now / change_squared_;
+  change_squared_ = now;
+  const double share = ratio <= kStillGood ? std::min(ratio, 1.0) : 0;
+  const auto go_on = [&](auto& records, std::vector<Direction>& direction) {
+    workers.for_chunks(records.size(), kRecords, [&](size_t begin, size_t end) {
+      const wide::Lanes s{share, share, share, share};
+      for (size_t i = 2 * begin; i < 2 * end; ++i) {
+        auto& p = records[i / 2].point[i % 2];
+        Direction& d = direction[i];
+        const wide::Lanes along_n = share > 0 ? s * d.d_n : wide::Lanes{},
+                          along_t = share > 0 ? s * d.d_t : wide::Lanes{};
+        d.d_n = along_n + (p.p_n - d.old_n), d.d_t = along_t + (p.p_t - d.old_t);
+        p.p_n += along_n, p.p_t += along_t;
+      }
+    });
+  };
+  go_on(contacts_, contact_direction_);
+  go_on(ties_, tie_direction_);
+  workers.for_chunks(rate_direction_.size(), kLines, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      RateDirection& d = rate_direction_[i];
+      for (size_t k = 0; k < 6; ++k) {
+        const double along = share > 0 ? share * d.d[k] : 0;
+        d.d[k] = along + (lines_[i].rate[k] - d.old[k]);
+        lines_[i].rate[k] += along;
+      }
+    }
+  });
 }
 
 size_t GaussSeidel::memory() const {
@@ -324,16 +403,23 @@ SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const Solv
 
   // the change of a sweep tells when it is worth asking the judge, who costs as much as some sweeps
   int ask_again = 0;
+  bool first = true;
   while (!report.converged && report.iterations < options.max_sweeps) {
-    const double change = sweep(workers).largest * dt;
+    const bool second = report.iterations >= kPlainSweeps;
+    if (second) keep(workers);
+    const double change = sweep(workers) * dt;
     ++report.iterations;
-    if (!(change <= 0.5 * tolerance) && std::isfinite(change)) continue;
-    if (report.iterations < ask_again) continue;
-    read_records(workers, set);
-    read_lines(mobility, workers, rate);
-    report.converged = contact_error(mobility, set, rate, dt, workers).worst <= tolerance;
-    ask_again = report.iterations + std::max(2, report.iterations / 5);
     if (!std::isfinite(change)) break;
+    if (change <= 0.5 * tolerance && report.iterations >= ask_again) {
+      read_records(workers, set);
+      read_lines(mobility, workers, rate);
+      report.converged = contact_error(mobility, set, rate, dt, workers).worst <= tolerance;
+      ask_again = report.iterations + std::max(2, report.iterations / 5);
+    }
+    if (!second || report.converged || report.iterations == options.max_sweeps) continue;
+    extrapolate(workers, first);
+    first = false;
+    ++report.second_phase;
   }
   if (!report.converged) {
     read_records(workers, set);

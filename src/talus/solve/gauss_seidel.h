@@ -3,6 +3,8 @@
 // the order of graph colours, four couples at a time, by any number of threads with the same bits.
 // Theory: docs/theory.md 5.5.
 
+#include <array>
+
 #include "talus/model/model.h"
 #include "talus/solve/report.h"
 #include "talus/solve/wide.h"
@@ -27,7 +29,7 @@ class GaussSeidel {
 
  private:
   struct Point {
-    int block_a, block_b, partner;
+    int block_a, block_b, partner;  // the lower block first
     bool tie;
     friend bool operator==(const Point&, const Point&) = default;
   };
@@ -49,7 +51,9 @@ class GaussSeidel {
   void write_records(const std::vector<Mobility>& mobility, const RowSet& set, const Workers& workers);
   void read_records(const Workers& workers, RowSet& set) const;
   void push(const Workers& workers);
-  wide::SweepSums sweep(const Workers& workers);
+  double sweep(const Workers& workers);
+  void keep(const Workers& workers);
+  void extrapolate(const Workers& workers, bool first);
 
   const wide::Kernels* kernels_;
   std::vector<Point> seen_;
@@ -59,6 +63,17 @@ class GaussSeidel {
   std::vector<wide::TieRecord> ties_;
   std::vector<wide::BlockLine> lines_;  // blocks, the ground, then lines nobody reads
   int ground_ = 0;
+
+  // second phase: impulses and rates before a sweep, and the direction in which they go on
+  struct Direction {
+    wide::Lanes old_n, old_t, d_n, d_t;
+  };
+  struct RateDirection {
+    std::array<double, 6> old, d;
+  };
+  std::vector<Direction> contact_direction_, tie_direction_;  // [records * 2]
+  std::vector<RateDirection> rate_direction_;                 // [lines that are read]
+  double change_squared_ = 0;  // of the sweep before, in the metric of the influence
 };
 
 }  // namespace talus

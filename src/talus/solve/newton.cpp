@@ -13,9 +13,27 @@ namespace talus {
 namespace {
 
 // Redundant ties (a ring of tied triangles around a corner, two edges at four points) make W singular though
-// the equations stay consistent. A share of the diagonal makes the factor exist; each iteration then removes
-// all but this share of what is left, and the part of p that no motion feels is left where it was.
-constexpr double kRegularisation = 1e-9;
+// the equations stay consistent. A share of the diagonal makes the factor exist, and refinement against the
+// true matrix takes its effect away from all that a motion feels. The share is not smaller because it alone
+// holds back forces where a guess of what is closed makes the equations contradict each other: these grow to
+// the contradiction over the share.
+constexpr double kRegularisation = 1e-5;
+constexpr int kRefinements = 12;
+
+// Solves a x = rhs with the factor of a + diag(added); what no motion feels is left where refinement stalls.
+template <class Factor, class Matrix>
+Eigen::VectorXd refined(const Factor& factor, const Matrix& a, const Eigen::VectorXd& rhs) {
+  Eigen::VectorXd x = factor.solve(rhs);
+  double left = rhs.lpNorm<Eigen::Infinity>();
+  for (int n = 0; n < kRefinements; ++n) {
+    const Eigen::VectorXd r = rhs - a * x;
+    const double now = r.lpNorm<Eigen::Infinity>();
+    if (!(now < 0.5 * left) || now == 0) break;
+    left = now;
+    x += factor.solve(r);
+  }
+  return x;
+}
 
 // Solves jacobian d = -h, using that most rows are either free, where the Jacobian is the symmetric W, or
 // held.
@@ -47,8 +65,8 @@ class Direction {
     }
     if (n_free == 0) return true;
 
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd rhs(n_free), added(n_free);
+    std::vector<Eigen::Triplet<double>> entries, added;
+    Eigen::VectorXd rhs(n_free);
     for (int r = 0; r < problem_.size(); ++r) {
       const int row = free_index[static_cast<size_t>(r)];
       if (row < 0) continue;
@@ -60,16 +78,16 @@ class Direction {
         else
           rhs[row] -= it.value() * d[it.col()];
       }
-      added[row] = kRegularisation * problem_.diagonal[r];
-      entries.emplace_back(row, row, added[row]);
+      added.emplace_back(row, row, kRegularisation * problem_.diagonal[r]);
     }
     Eigen::SparseMatrix<double> a(n_free, n_free);
     a.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(a);
+    entries.insert(entries.end(), added.begin(), added.end());
+    Eigen::SparseMatrix<double> held(n_free, n_free);
+    held.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(held);
     if (factor.info() != Eigen::Success) return false;
-    // one refinement against the matrix without the added share: what W can feel is then solved to round-off
-    Eigen::VectorXd x = factor.solve(rhs);
-    x += factor.solve(Eigen::VectorXd(rhs - (a * x - added.cwiseProduct(x))));
+    const Eigen::VectorXd x = refined(factor, a, rhs);
     if (!x.allFinite()) return false;
     for (int r = 0; r < problem_.size(); ++r) {
       const int row = free_index[static_cast<size_t>(r)];
@@ -81,17 +99,14 @@ class Direction {
   // The bound of a sliding row follows its normal impulse: not symmetric.
   bool solve_general(const std::vector<RowState>& states, const Eigen::VectorXd& h,
                      Eigen::VectorXd& d) const {
-    Eigen::SparseMatrix<double> a = jacobian(problem_, states);
+    const Eigen::SparseMatrix<double> a = jacobian(problem_, states);
+    Eigen::SparseMatrix<double> held = a;
     for (int r = 0; r < problem_.size(); ++r)
-      if (states[static_cast<size_t>(r)].free) a.coeffRef(r, r) += kRegularisation * problem_.diagonal[r];
-    a.makeCompressed();
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(a);
+      if (states[static_cast<size_t>(r)].free) held.coeffRef(r, r) += kRegularisation * problem_.diagonal[r];
+    held.makeCompressed();
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(held);
     if (factor.info() != Eigen::Success) return false;
-    d = factor.solve(-h);
-    Eigen::VectorXd left = -h - a * d;  // refined as above
-    for (int r = 0; r < problem_.size(); ++r)
-      if (states[static_cast<size_t>(r)].free) left[r] += kRegularisation * problem_.diagonal[r] * d[r];
-    d += factor.solve(left);
+    d = refined(factor, a, -h);
     return d.allFinite();
   }
 

@@ -25,6 +25,12 @@ constexpr size_t kBlocks = 512, kRows = 1024;
 // fill the memory.
 constexpr size_t kMostNewtonPoints = 8000;
 
+// Sweeps after which a step that Newton can solve is given to it.
+constexpr int kSweepsBeforeNewton = 500;
+
+// Up to so many points `auto` takes Newton, which is as fast there and reaches round-off.
+constexpr size_t kNewtonFaster = 200;
+
 double contact_margin(const BlockSet& blocks, const std::vector<BlockRate>& rate, double dt) {
   double least = blocks.size[0], fastest = 0;
   for (size_t i = 0; i < rate.size(); ++i) {
@@ -73,11 +79,12 @@ struct RowSums {
   KickWork work;
   int closed = 0;
   double drift = 0;
+  ContactError error;
   std::vector<std::pair<int, BlockForce>> on_still;  // impulses on blocks whose motion is prescribed
 
   RowSums& operator+=(const RowSums& o) {
     work.before += o.work.before, work.after += o.work.after;
-    closed += o.closed, drift = std::max(drift, o.drift);
+    closed += o.closed, drift = std::max(drift, o.drift), error += o.error;
     on_still.insert(on_still.end(), o.on_still.begin(), o.on_still.end());
     return *this;
   }
@@ -98,6 +105,14 @@ struct BlockSums {
     worst = std::max(worst, o.worst), forces += o.forces, moving += o.moving;
     return *this;
   }
+};
+
+// What one solver made of a step.
+struct Attempt {
+  std::vector<Impulse> impulse;
+  std::vector<BlockRate> rate;
+  RowSums rows;
+  StepReport report;
 };
 
 class Kick {
@@ -149,7 +164,7 @@ class Kick {
     const size_t n = state_.rate.size();
     forces_.resize(n);
     elastic_.resize(n);
-    local_damping_.assign(settings_.damping_local > 0 ? n : 0, {});
+    local_damping_.resize(settings_.damping_local > 0 ? n : 0);
     load_ = load_acceleration(model, scene_.loaded, blocks_.count, state_.history_time);
     const bool renew = settings_.implicit || work_.mobility.size() != n || work_.mobility_share != share();
     work_.mobility.resize(n);
@@ -220,46 +235,60 @@ class Kick {
   }
 
   void gather_rows() {
-    work_.rows.clear();
+    work_.rows.restart();
     work_.bond_owner.clear();
     const Model& model = scene_.model;
     add_bond_rows(blocks_, scene_.bonds, model.joints, state_, work_.rate_before, timing(), work_.rows,
                   work_.bond_owner);
-    work_.first_contact = work_.rows.points.size();
+    work_.first_contact = work_.rows.size();
     add_contact_rows(blocks_, model, state_, work_.rate_before, timing(), work_.workers, work_.rows,
                      work_.places);
-    work_.first_support = work_.rows.points.size();
+    work_.first_support = work_.rows.size();
     add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
+    work_.rows.finish();
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
 
-  // The chosen solver, then, where its result misses the tolerance, the other; the better of the two stays.
+  // The chosen solver, then, where its result misses the tolerance, the other from where it ended, then
+  // Gauss-Seidel for as long as the model allows; the best stays.
   void solve() {
     const SolverInput& options = scene_.model.solver;
-    const SolverKind first = options.method;
     work_.guess = work_.rows.impulse;
-    solve_by(first);
-    if (!report_.failed || scene_.model.contact.law == ContactLaw::kSmoothed || !options.second_solver)
-      return;
-    if (first == SolverKind::kGaussSeidel && work_.rows.points.size() > kMostNewtonPoints) return;
-    const StepReport kept = report_;
-    const std::vector<Impulse> kept_impulse = work_.rows.impulse;
-    const std::vector<BlockRate> kept_rate = state_.rate;
-    work_.rows.impulse = work_.guess;
-    solve_by(first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton);
-    report_.second_solver = true;
-    if (report_.error.worst <= kept.error.worst || std::isnan(kept.error.worst)) return;
-    work_.rows.impulse = kept_impulse;
-    state_.rate = kept_rate;
-    report_ = kept;
+    const SolverKind first = chosen_solver(scene_.model, work_.rows.points.size());
+    const bool newton_can = work_.rows.points.size() <= kMostNewtonPoints;
+    const bool again = options.second_solver && newton_can && scene_.model.contact.law == ContactLaw::kExact;
+    const int few = again ? std::min(options.max_sweeps, kSweepsBeforeNewton) : options.max_sweeps;
+    solve_by(first, few);
+    if (!report_.failed || !again) return;
+    Attempt best{work_.rows.impulse, state_.rate, rows_, report_};
+    for (const SolverKind next :
+         {first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton,
+          SolverKind::kGaussSeidel}) {
+      if (first == SolverKind::kNewton) work_.rows.impulse = work_.guess;
+      if (next == SolverKind::kGaussSeidel && few == options.max_sweeps && first != SolverKind::kNewton)
+        break;
+      solve_by(next, first == SolverKind::kNewton && few < options.max_sweeps ? few : options.max_sweeps);
+      report_.second_solver = true;
+      if (std::isnan(best.report.error.worst) || report_.error.worst <= best.report.error.worst)
+        best = {work_.rows.impulse, state_.rate, rows_, report_};
+      if (!best.report.failed) break;
+      work_.rows.impulse = best.impulse;
+    }
+    work_.rows.impulse = std::move(best.impulse);
+    state_.rate = std::move(best.rate);
+    rows_ = std::move(best.rows);
+    report_ = best.report;
     report_.second_solver = true;
   }
 
-  void solve_by(SolverKind kind) {
-    const SolverInput& options = scene_.model.solver;
-    // the solvers stop earlier than the judge: it measures what is left after the result has been applied
+  void solve_by(SolverKind kind, int sweeps) {
+    SolverInput options = scene_.model.solver;
+    options.max_sweeps = sweeps;
+    // solvers stop earlier than the judge, who measures what is left after the result has been applied:
+    // errors left in redundant ties add up from step to step, until no motion satisfies them all
     const double stop = 0.1 * settings_.tolerance;
     state_.rate = work_.rate_free;
+    report_.method = kind;
     if (kind == SolverKind::kNewton) {
       report_.solve = solve_newton(work_.mobility, state_.rate, options, stop / dt_, work_.rows, smoothing());
       apply_rows();
@@ -288,8 +317,13 @@ class Kick {
       state_.rate[i] = work_.rate_free[i] + accelerate(work_.mobility[i], sum[i]);
   }
 
+  // The error of the result, and in the same look at the rows the work they do.
   void judge() {
-    report_.error = contact_error(work_.mobility, work_.rows, state_.rate, dt_, work_.workers);
+    rows_ = work_.workers.sum_chunks<RowSums>(work_.rows.points.size(), kRows,
+                                              [this](size_t begin, size_t end, RowSums& s) {
+                                                for (size_t r = begin; r < end; ++r) tally_row(r, s);
+                                              });
+    report_.error = rows_.error;
     // the smoothed law misses the exact one by design: there the solver's own residual is the judge
     const bool smoothed = scene_.model.contact.law == ContactLaw::kSmoothed;
     report_.failed = smoothed ? !report_.solve.converged : !(report_.error.worst <= settings_.tolerance);
@@ -298,16 +332,11 @@ class Kick {
   }
 
   void tally_rows() {
-    const RowSums sums = work_.workers.sum_chunks<RowSums>(work_.rows.points.size(), kRows,
-                                                           [this](size_t begin, size_t end, RowSums& s) {
-                                                             for (size_t r = begin; r < end; ++r)
-                                                               tally_row(r, s);
-                                                           });
-    work_.work.before += sums.work.before, work_.work.after += sums.work.after;
-    report_.closed = sums.closed;
-    report_.drift = sums.drift;
+    work_.work.before += rows_.work.before, work_.work.after += rows_.work.after;
+    report_.closed = rows_.closed;
+    report_.drift = rows_.drift;
     // a driven block passes on the work that its drive does against the rows
-    for (const auto& [block, impulse] : sums.on_still) {
+    for (const auto& [block, impulse] : rows_.on_still) {
       const auto k = static_cast<size_t>(block);
       tally(work_.work.before.supports, work_.work.after.supports, -1.0 * impulse, work_.rate_before[k],
             state_.rate[k], 0.5);
@@ -320,11 +349,13 @@ class Kick {
     const bool contact = r >= work_.first_contact && r < work_.first_support;
     if (contact && p.row[0].compliance == 0)
       s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
+    const auto u1 = relative_velocity(p, state_.rate);
+    s.error += {dt_ * point_error(work_.mobility, work_.rows, r, u1), static_cast<int>(r)};
     if (impulse[0] == 0 && impulse[1] == 0) return;
     for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
       if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
         s.on_still.emplace_back(block, impulse_on(p, impulse, sign));
-    const auto u0 = relative_velocity(p, work_.rate_before), u1 = relative_velocity(p, state_.rate);
+    const auto u0 = relative_velocity(p, work_.rate_before);
     const auto add = [&](size_t k, double WorkDone::*cause) {
       s.work.before.*cause += 0.5 * impulse[k] * u0[k];
       s.work.after.*cause += 0.5 * impulse[k] * u1[k];
@@ -429,9 +460,11 @@ class Kick {
   StepWork& work_;
   State& state_;
   StepReport report_;
+  RowSums rows_;
   double damping_ = 0;  // half the share of its momentum that mass-proportional damping takes in the step
-  std::vector<BlockForce> forces_, local_damping_;
-  std::vector<ElasticState> elastic_;
+  std::vector<BlockForce>& forces_ = work_.forces;
+  std::vector<BlockForce>& local_damping_ = work_.local_damping;
+  std::vector<ElasticState>& elastic_ = work_.elastic;
   std::vector<Vec2> load_;  // acceleration by loads
 };
 
@@ -490,6 +523,12 @@ void drift(const Scene& scene, const StepSettings& settings, double dt, double t
   if (settings.histories_run) state.history_time += dt;
   state.dt_before = dt;
   ++state.step;
+}
+
+SolverKind chosen_solver(const Model& model, size_t points) {
+  if (model.solver.method != SolverKind::kAuto) return model.solver.method;
+  if (model.contact.law == ContactLaw::kSmoothed) return SolverKind::kNewton;
+  return points <= kNewtonFaster ? SolverKind::kNewton : SolverKind::kGaussSeidel;
 }
 
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {

@@ -30,9 +30,10 @@ struct KickWork {
 };
 
 struct StepReport {
-  int contacts = 0;  // contact points found
-  int closed = 0;    // of them, with a force
-  int searched = 0;  // pairs of blocks whose contact points were sought anew
+  int contacts = 0;                       // contact points found
+  int closed = 0;                         // of them, with a force
+  int searched = 0;                       // pairs of blocks whose contact points were sought anew
+  SolverKind method = SolverKind::kAuto;  // whose result stands
   SolveReport solve;
   ContactError error;
   std::string worst;           // name of the row with the worst error
@@ -69,6 +70,9 @@ struct StepWork {
   KickWork work;
   std::vector<BlockRate> rate_free;  // rates as they would be without rows
   std::vector<Impulse> guess;        // of all rows
+  std::vector<BlockForce> forces;    // weight, loads and elasticity on each block
+  std::vector<BlockForce> local_damping;
+  std::vector<ElasticState> elastic;
 };
 
 /// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.
@@ -78,6 +82,9 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 /// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
 void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
            State& state, StepReport& report);
+
+/// What `auto` comes to for so many points (docs/performance.md has the measured table).
+SolverKind chosen_solver(const Model& model, size_t points);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row);

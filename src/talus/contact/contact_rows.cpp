@@ -81,7 +81,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
         p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
       if (soft || property.shear_stiffness > 0) {
         const bool in_face = c.partner >= 0;
-        const double length = in_face ? c.length : kCornerLength * size;
+        const double length = c.length > 0 ? c.length : kCornerLength * size;
         add_compliance(property, length * blocks.thickness, in_face, timing, u, p);
         if (in_face) p.partner = static_cast<int>(first) + pair.begin + c.partner;
       }

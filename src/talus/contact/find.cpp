@@ -230,8 +230,13 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         ContactPoint &x = hits_[i].point, &y = hits_[j].point;
         const Vec2 px = place(hits_[i]), py = place(hits_[j]), middle = 0.5 * (px + py);
         const double length = norm(px - py);
-        x.length += 0.5 * length, y.length += 0.5 * length;
-        if (x.partner < 0 && y.partner < 0) x.partner = static_cast<int>(j), y.partner = static_cast<int>(i);
+        // one partner each; what is left of a face whose other end has one goes to the free end
+        if (x.partner < 0 && y.partner < 0) {
+          x.partner = static_cast<int>(j), y.partner = static_cast<int>(i);
+          x.length = y.length = 0.5 * length;
+        } else if (x.partner < 0 || y.partner < 0) {
+          (x.partner < 0 ? x : y).length += 0.5 * length;
+        }
         // both ends name the same edges: those beside the middle of the face
         const int edge_lo = lo.edge_beside(span.side_lo, middle);
         const int edge_hi = hi.edge_beside(span.side_hi, middle - lo_to_hi);

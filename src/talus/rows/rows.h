@@ -32,7 +32,7 @@ struct PointRows {
   double friction = 0;             // tan of the friction angle
   double cohesion = 0;             // [N s]
   int partner = -1;          // index in the row set of the other end of the same compliant face, -1: none
-  double cross[2] = {0, 0};  // compliance with the partner's impulse [1/kg]
+  double cross[2] = {0, 0};  // compliance with the partner's impulse, the same in both [1/kg]
 };
 
 using Impulse = std::array<double, 2>;  // normal, tangential [N s]

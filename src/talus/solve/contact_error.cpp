@@ -22,8 +22,27 @@ void add_diagonal(const Mobility& m, Vec2 arm, Vec2 normal, double w[2]) {
 }  // namespace
 
 double point_error(const std::vector<Mobility>& mobility, const RowSet& set, size_t i,
-                   const std::array<double, 2>& u) {
+                   const std::array<double, 2>& u, double known) {
   const PointRows& point = set.points[i];
+  const Impulse& impulse = set.impulse[i];
+  double e[2], lower[2], upper[2];
+  bool passed = true;
+  for (size_t k = 0; k < 2; ++k) {
+    e[k] = u[k] + point.row[k].bias + point.row[k].compliance * impulse[k];
+    if (point.partner >= 0) e[k] += point.cross[k] * set.impulse[static_cast<size_t>(point.partner)][k];
+    lower[k] = point.row[k].lower, upper[k] = point.row[k].upper;
+    if (k == 1 && point.cone) {
+      upper[k] = std::max(0.0, point.cohesion + point.friction * impulse[0]);
+      lower[k] = -upper[k];
+    }
+    // within its bounds an impulse is never further from its projection than e / Wii, and at a bound that e
+    // pushes it against it is there
+    const bool at_bound = (impulse[k] == lower[k] && e[k] >= 0) || (impulse[k] == upper[k] && e[k] <= 0);
+    const bool within = impulse[k] >= lower[k] && impulse[k] <= upper[k];
+    passed = passed && (at_bound || (within && std::abs(e[k]) <= known)) && std::isfinite(e[k]);
+  }
+  if (passed) return 0;
+
   double w[2] = {point.row[0].compliance, point.row[1].compliance};
   if (point.block_a >= 0)
     add_diagonal(mobility[static_cast<size_t>(point.block_a)], point.arm_a, point.normal, w);
@@ -31,14 +50,8 @@ double point_error(const std::vector<Mobility>& mobility, const RowSet& set, siz
     add_diagonal(mobility[static_cast<size_t>(point.block_b)], point.arm_b, point.normal, w);
   double worst = 0;
   for (size_t k = 0; k < 2; ++k) {
-    const double p = set.impulse[i][k];
-    double e = u[k] + point.row[k].bias + point.row[k].compliance * p;
-    if (point.partner >= 0) e += point.cross[k] * set.impulse[static_cast<size_t>(point.partner)][k];
-    const double lower = k == 1 && point.cone
-                             ? -std::max(0.0, point.cohesion + point.friction * set.impulse[i][0])
-                             : point.row[k].lower;
-    const double upper = k == 1 && point.cone ? -lower : point.row[k].upper;
-    const double here = std::abs(p - std::clamp(p - e / w[k], lower, upper)) * w[k];
+    const double p = impulse[k];
+    const double here = std::abs(p - std::clamp(p - e[k] / w[k], lower[k], upper[k])) * w[k];
     if (!std::isfinite(here)) return std::nan("");
     worst = std::max(worst, here);
   }
@@ -49,9 +62,10 @@ ContactError contact_error(const std::vector<Mobility>& mobility, const RowSet& 
                            const std::vector<BlockRate>& rate, double dt, const Workers& workers) {
   return workers.sum_chunks<ContactError>(
       set.points.size(), 1024, [&](size_t begin, size_t end, ContactError& worst) {
-        for (size_t i = begin; i < end; ++i)
-          worst += {dt * point_error(mobility, set, i, relative_velocity(set.points[i], rate)),
-                    static_cast<int>(i)};
+        for (size_t i = begin; i < end; ++i) {
+          const auto u = relative_velocity(set.points[i], rate);
+          worst += {dt * point_error(mobility, set, i, u, worst.worst / dt), static_cast<int>(i)};
+        }
       });
 }
 

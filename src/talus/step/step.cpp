@@ -350,7 +350,7 @@ class Kick {
     if (contact && p.row[0].compliance == 0)
       s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
     const auto u1 = relative_velocity(p, state_.rate);
-    s.error += {dt_ * point_error(work_.mobility, work_.rows, r, u1), static_cast<int>(r)};
+    s.error += {dt_ * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / dt_), static_cast<int>(r)};
     if (impulse[0] == 0 && impulse[1] == 0) return;
     for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
       if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
@@ -471,7 +471,9 @@ class Kick {
 }  // namespace
 
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state) {
-  return Kick(scene, settings, dt, work, state).run();
+  StepReport report;
+  work.workers.together([&] { report = Kick(scene, settings, dt, work, state).run(); });
+  return report;
 }
 
 namespace {

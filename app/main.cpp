@@ -54,10 +54,11 @@ int check(const ModelArguments& args) {
   for (size_t i = 0; i < run.plans.size(); ++i) {
     const talus::StagePlan& plan = run.plans[i];
     const talus::StageInput& stage = run.scene.model.stages[i];
-    const std::string bound = plan.bound_block < 0
-                                  ? "no block deforms"
-                                  : fmt::format("stable limit {:.4g} s, set by {}", plan.dt_bound,
-                                                run.scene.blocks.name[static_cast<size_t>(plan.bound_block)]);
+    const std::string bound =
+        plan.bound_block < 0
+            ? (stage.implicit ? "no stable limit: elasticity is implicit" : "no block deforms")
+            : fmt::format("stable limit {:.4g} s, set by {}", plan.dt_bound,
+                          run.scene.blocks.name[static_cast<size_t>(plan.bound_block)]);
     fmt::print("  stage      \"{}\": {}{} steps of {:.4g} s ({})\n", stage.name,
                stage.kind == talus::StageKind::kStatic ? "at most " : "", plan.steps, plan.dt, bound);
     if (plan.clamped > 0)

@@ -35,8 +35,8 @@ class Waiting {
 
 }  // namespace
 
-// One job at a time, whose items are claimed one by one by whoever is there. The caller can do all of them: no
-// thread ever waits for one that has not come.
+// One job at a time, whose items are claimed one by one by whoever is there. The caller can do all of them:
+// no thread ever waits for one that has not come.
 struct Workers::Team {
   // the library starts no more threads than the machine has processors unless it is told to: a run asked for
   // four threads on two processors gets four

@@ -17,17 +17,18 @@ class Workers {
 
   int threads() const;
 
-  /// Runs `body` in the caller while the other threads stand by for the calls of run() in it: these then begin
-  /// within a microsecond, where waking threads would take as long as the work of one colour.
+  /// Runs `body` in the caller while the other threads stand by for the calls of run() in it: these then
+  /// begin within a microsecond, where waking threads would take as long as the work of one colour.
   void together(const std::function<void()>& body) const;
 
   /// task(i) for every i in [0, count), each once, on any thread; returns when all are done. An exception of
-  /// a task is passed on.
+  /// a task is passed on. Not to be called from within a task, nor by two callers at once.
   void run(size_t count, const std::function<void(size_t)>& task) const;
 
   /// f(begin, end) over [0, n) in chunks of `grain` items.
   template <class F>
   void for_chunks(size_t n, size_t grain, F f) const {
+    if (n == 0) return;
     const size_t chunks = (n + grain - 1) / grain;
     const auto chunk = [&](size_t c) { f(c * grain, (c + 1) * grain < n ? (c + 1) * grain : n); };
     if (chunks <= 1 || threads() == 1)
@@ -39,6 +40,7 @@ class Workers {
   /// The same with a result of each chunk, `f(begin, end, result)`, added up with += in the order of chunks.
   template <class T, class F>
   T sum_chunks(size_t n, size_t grain, F f) const {
+    if (n == 0) return {};
     std::vector<T> part((n + grain - 1) / grain);
     for_chunks(n, grain, [&](size_t begin, size_t end) { f(begin, end, part[begin / grain]); });
     T sum{};

@@ -68,7 +68,7 @@ struct ContactPair {
   int face = -1;             // first of their faces in the bond set, -1: none
   double reuse = -1;         // [m]; < 0: not sought yet
   Vec2 arm;                  // reference arm, on the larger block, of the centroid of the smaller one then
-  Mat2 turn;                 // F of the smaller block less F of the larger one then
+  Mat2 turn;                 // F of the larger block, inverted, times F of the smaller one then
 };
 
 /// Where the blocks were when the list of pairs was made.

@@ -21,12 +21,12 @@ double hard_bias(double gap, double slop, double dt) {
   return std::min(gap + 0.5 * slop, 0.0) / dt;
 }
 
-// What of a distance lies beyond the slop. Contacts that stick redundantly, as two corners at one place do,
-// have anchors that differ by what was left of the errors of earlier steps; no motion brings both home, and
-// forces would grow without end over it.
+// What of a distance lies beyond half the slop. Contacts that stick redundantly, as two corners at one place
+// do, have anchors that differ by what was left of the errors of earlier steps; no motion brings both home,
+// and forces would grow without end over it.
 double beyond(double off, double slop) {
-  if (std::abs(off) <= slop) return 0;
-  return off > 0 ? off - slop : off + slop;
+  if (std::abs(off) <= 0.5 * slop) return 0;
+  return off > 0 ? off - 0.5 * slop : off + 0.5 * slop;
 }
 
 }  // namespace
@@ -73,14 +73,16 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
       // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
       const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
       const double off = anew ? c.stretch : slip - c.anchor;
-      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, 0.5 * slop)) / timing.dt;
+      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing.dt;
     }
     if (property.restitution >= 0 || soft || property.shear_stiffness > 0) {
       const auto u = relative_velocity(p, before);
       if (property.restitution >= 0 && over.gap + timing.dt * u[0] <= 0 && u[0] < 0)
         p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
       if (soft || property.shear_stiffness > 0) {
-        const bool in_face = c.partner >= 0;
+        // two ends with different joints close on their own
+        const bool in_face =
+            c.partner >= 0 && state.contacts[static_cast<size_t>(pair.begin + c.partner)].joint == c.joint;
         const double length = c.length > 0 ? c.length : kCornerLength * size;
         add_compliance(property, length * blocks.thickness, in_face, timing, u, p);
         if (in_face) p.partner = static_cast<int>(first) + pair.begin + c.partner;

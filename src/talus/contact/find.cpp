@@ -135,6 +135,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const bool comes_in = c.gap > -same_ && expected < 0 && along_then >= 0 && along_then <= 1;
       if (!above && !comes_in) continue;
       if (!a.may_enter(v, c.normal)) continue;
+      by_velocity_ = by_velocity_ || !above;
       Hit hit;
       hit.point.key = {a.block, v, b.block, e};
       hit.point.normal = c.normal;
@@ -231,7 +232,8 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         const Vec2 px = place(hits_[i]), py = place(hits_[j]), middle = 0.5 * (px + py);
         const double length = norm(px - py);
         // one partner each; what is left of a face whose other end has one goes to the free end
-        if (x.partner < 0 && y.partner < 0) {
+        const bool both = x.partner < 0 && y.partner < 0;
+        if (both) {
           x.partner = static_cast<int>(j), y.partner = static_cast<int>(i);
           x.length = y.length = 0.5 * length;
         } else if (x.partner < 0 || y.partner < 0) {
@@ -241,6 +243,7 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         const int edge_lo = lo.edge_beside(span.side_lo, middle);
         const int edge_hi = hi.edge_beside(span.side_hi, middle - lo_to_hi);
         for (ContactPoint* h : {&x, &y}) {
+          if (h->face_edge_a >= 0 && !both) continue;  // its own face, not that of a third point
           h->face_edge_a = h->key.block_a == lo.block ? edge_lo : edge_hi;
           h->face_edge_b = h->key.block_a == lo.block ? edge_hi : edge_lo;
         }
@@ -269,6 +272,7 @@ const std::vector<ContactPoint>& ContactSearch::touch(const BlockSet& blocks, co
   margin_ = margin, look_ahead_ = look_ahead;
   same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);
   clearance_ = margin;
+  by_velocity_ = false;
   hits_.clear();
   first_.take(blocks, state, a);
   second_.take(blocks, state, b);
@@ -280,7 +284,7 @@ const std::vector<ContactPoint>& ContactSearch::touch(const BlockSet& blocks, co
   share_faces(first_, second_, shift);
   found_.clear();
   for (const Hit& h : hits_) found_.push_back(h.point);
-  clearance = clearance_;
+  clearance = by_velocity_ ? -1 : clearance_;
   return found_;
 }
 

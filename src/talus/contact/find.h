@@ -43,7 +43,8 @@ class ContactSearch {
   ///  come
   ///    to within `look_ahead` [s] at the rates of the state (a block that slides over a flush joint must not
   ///    be caught by the side of the next block), then by the lower key.
-  /// @param clearance  the least distance, along an edge or between gaps, to another outcome [m]
+  /// @param clearance  the least distance, along an edge or between gaps, to another outcome [m]; -1 when
+  ///                   velocities had a say: it holds for this step only
   const std::vector<ContactPoint>& touch(const BlockSet& blocks, const State& state, int block_a, int block_b,
                                          double margin, double look_ahead, double& clearance);
 
@@ -83,6 +84,7 @@ class ContactSearch {
   void spans_of(const Outline& a, const Outline& b, const Hit& h, std::vector<Span>& list) const;
 
   double margin_ = 0, look_ahead_ = 0, same_ = 0, clearance_ = 0;
+  bool by_velocity_ = false;
   Outline first_, second_;
   std::vector<Hit> hits_;
   std::vector<std::vector<Span>> spans_;

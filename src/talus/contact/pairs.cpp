@@ -85,7 +85,8 @@ double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p)
   const auto [small, large] = by_size(blocks, p);
   const Vec2 off = (blocks.centroid[small] - blocks.centroid[large] - p.arm) +
                    (s.displacement[small] - s.displacement[large] - s.strain_part[large] * p.arm);
-  const Mat2 turn = s.strain_part[small] - s.strain_part[large] - p.turn;
+  // F of the smaller block less what it would be had it gone along with the larger one
+  const Mat2 turn = (kIdentity + s.strain_part[small]) - (kIdentity + s.strain_part[large]) * p.turn;
   return norm(off) + std::sqrt(contract(turn, turn)) * blocks.radius[small];
 }
 
@@ -93,12 +94,14 @@ void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
   const auto [small, large] = by_size(blocks, p);
   const Vec2 now =
       (blocks.centroid[small] - blocks.centroid[large]) + (s.displacement[small] - s.displacement[large]);
-  p.arm = inverse(kIdentity + s.strain_part[large]) * now;
-  p.turn = s.strain_part[small] - s.strain_part[large];
+  const Mat2 back = inverse(kIdentity + s.strain_part[large]);
+  p.arm = back * now;
+  p.turn = back * (kIdentity + s.strain_part[small]);
 }
 
 // A found point with what a known one at the same place remembers.
-Contact contact_of(const ContactPoint& point, const Layout& joints_of, const Contact* known, int n_known) {
+Contact contact_of(const ContactPoint& point, const std::vector<ContactPoint>& all, const Layout& joints_of,
+                   const Contact* known, int n_known) {
   Contact c;
   c.key = point.key;
   c.face_edge_a = point.face_edge_a, c.face_edge_b = point.face_edge_b;
@@ -109,7 +112,10 @@ Contact contact_of(const ContactPoint& point, const Layout& joints_of, const Con
   for (int i = 0; i < n_known && !(from && from->key == c.key); ++i) {
     const ContactKey& k = known[i].key;
     if (k.block_a != c.key.block_a || k.vertex != c.key.vertex || known[i].memory == Contact::kNone) continue;
-    if (!from || k == c.key) from = &known[i];
+    // a corner that keeps its edge beside the new one has not passed on
+    const bool stays = !(k == c.key) &&
+                       std::any_of(all.begin(), all.end(), [&](const ContactPoint& p) { return p.key == k; });
+    if ((!from && !stays) || k == c.key) from = &known[i];
   }
   if (!from) return c;
   const bool same = from->key == c.key;
@@ -167,12 +173,15 @@ class Updater {
       keep_pose(blocks_, s, pair);
       const auto [small, large] = by_size(blocks_, pair);
       const double size = std::min(blocks_.size[small], blocks_.size[large]);
-      pair.reuse =
-          std::max(0.5 * kSamePlace * size, std::min({0.5 * clearance, kReuse * size, 0.25 * margin_}));
+      // what velocities decided is asked again in the next step
+      pair.reuse = clearance < 0
+                       ? -1
+                       : std::min(0.25 * margin_, std::max(0.5 * kSamePlace * size,
+                                                           std::min(0.5 * clearance, kReuse * size)));
       const Contact* known = state_.contacts.data() + pair.begin;
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
-        changed.contact.push_back(contact_of(p, joints_of_, known, pair.count));
+        changed.contact.push_back(contact_of(p, found, joints_of_, known, pair.count));
       if (static_cast<int>(found.size()) == pair.count) {
         std::copy(changed.contact.begin() + static_cast<std::ptrdiff_t>(at), changed.contact.end(),
                   state_.contacts.begin() + pair.begin);

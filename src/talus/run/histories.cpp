@@ -48,6 +48,7 @@ std::vector<std::string> step_columns() {
           "contact closing work [J]",
           "friction work [J]",
           "damping work [J]",
+          "implicit work [J]",
           "energy left over [J]"};
 }
 
@@ -78,6 +79,7 @@ std::vector<double> step_row(const Instant& i) {
           e.work.contact_closing,
           e.work.friction,
           e.work.damping,
+          e.work.implicit,
           e.left_over};
 }
 

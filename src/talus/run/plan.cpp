@@ -142,8 +142,10 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
                          static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
              frame * static_cast<double>(p.frames) + 5000 +
              2 * (900 + 50 * corners + 60.0 * p.blocks);  // tables, frames, summary, two pictures
-  // blocks, state, candidates; per point its row, memory and about 16 x 2 entries of W, its factor and copies
-  p.memory = 900.0 * p.blocks + 32 * corners + points * (400 + 2 * 32 * 16 * 6);
+  // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
+  // entries of W, its factor and copies
+  const bool factors = chosen_solver(scene.model, static_cast<size_t>(points)) == SolverKind::kNewton;
+  p.memory = 1600.0 * p.blocks + 32 * corners + points * (600 + (factors ? 2 * 32 * 16 * 6 : 0));
   return p;
 }
 

@@ -82,7 +82,7 @@ void Recorder::at(const Instant& i) {
   record_step(i);
   const bool failure = i.report.failed && !dumped_failure_;
   if (failure || i.state.step == dump_step_) {
-    write_file(folder_ / fmt::format("step_{}.json", i.state.step), problem_text(i));
+    write_dump(i);
     dumped_failure_ = dumped_failure_ || failure;
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
@@ -95,6 +95,13 @@ void Recorder::at(const Instant& i) {
     steps_file_.flush();
     last_flush_ = wall_now();
   }
+}
+
+// The equations of a step as a file; of a very large one only when it was asked for.
+void Recorder::write_dump(const Instant& i) {
+  constexpr size_t kMostPoints = 200000;
+  if (i.work.rows.points.size() > kMostPoints && i.state.step != dump_step_) return;
+  write_file(folder_ / fmt::format("step_{}.json", i.state.step), problem_text(i));
 }
 
 void Recorder::record_step(const Instant& i) {
@@ -197,6 +204,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                      {"contact_closing_work", e.work.contact_closing},
                      {"friction_work", e.work.friction},
                      {"damping_work", e.work.damping},
+                     {"implicit_work", e.work.implicit},
                      {"left_over", e.left_over},
                      {"left_over_largest", r.largest_left_over},
                      {"term_largest", r.largest_energy}};

@@ -27,6 +27,7 @@ class Recorder : public Observer {
 
  private:
   void record_step(const Instant& instant);
+  void write_dump(const Instant& instant);
   void write_frame(const Instant& instant);
 
   const Scene& scene_;

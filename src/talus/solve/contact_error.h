@@ -21,9 +21,9 @@ struct ContactError {
   }
 };
 
-/// |p - Proj(p - e / Wii)| Wii of the worse row of point i [m/s], or, when that is not more than `known`, some
-/// number that is not more either: most points are passed over without their Wii. NaN when a number is not
-/// finite.
+/// |p - Proj(p - e / Wii)| Wii of the worse row of point i [m/s], or, when that is not more than `known`,
+/// some number that is not more either: most points are passed over without their Wii. NaN when a number is
+/// not finite.
 /// @param u  relative velocity of the point after the impulses have acted
 double point_error(const std::vector<Mobility>& mobility, const RowSet& set, size_t i,
                    const std::array<double, 2>& u, double known);

@@ -41,7 +41,8 @@ template <class Record>
 void write_empty(Record& r, int lane, int point) {
   auto& p = r.point[point];
   const auto l = static_cast<size_t>(lane);
-  p.nx[l] = 1, p.ny[l] = 0;
+  // no direction: whatever the blocks do, its residual is the bias and no impulse comes of it
+  p.nx[l] = p.ny[l] = 0;
   p.ax[l] = p.ay[l] = p.bx[l] = p.by[l] = 0;
   p.bias_n[l] = 1, p.bias_t[l] = 0;
   p.p_n[l] = p.p_t[l] = 0;
@@ -409,11 +410,13 @@ SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const Solv
     if (second) keep(workers);
     const double change = sweep(workers) * dt;
     ++report.iterations;
-    if (!std::isfinite(change)) break;
+    if (!std::isfinite(change)) break;  // a NaN may hide behind later numbers: the judge finds it
     if (change <= 0.5 * tolerance && report.iterations >= ask_again) {
       read_records(workers, set);
       read_lines(mobility, workers, rate);
-      report.converged = contact_error(mobility, set, rate, dt, workers).worst <= tolerance;
+      const double worst = contact_error(mobility, set, rate, dt, workers).worst;
+      if (std::isnan(worst)) break;
+      report.converged = worst <= tolerance;
       ask_again = report.iterations + std::max(2, report.iterations / 5);
     }
     if (!second || report.converged || report.iterations == options.max_sweeps) continue;

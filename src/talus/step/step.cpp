@@ -28,15 +28,27 @@ constexpr size_t kMostNewtonPoints = 8000;
 // Sweeps after which a step that Newton can solve is given to it.
 constexpr int kSweepsBeforeNewton = 500;
 
+// Travel of a block in one step, as share of its radius, at which a run ends: contacts could not be followed.
+constexpr double kMostTravel = 10;
+
 // Up to so many points `auto` takes Newton, which is as fast there and reaches round-off.
 constexpr size_t kNewtonFaster = 200;
 
-double contact_margin(const BlockSet& blocks, const std::vector<BlockRate>& rate, double dt) {
+double contact_margin(const Scene& scene, const State& state, double dt) {
+  const BlockSet& blocks = scene.blocks;
   double least = blocks.size[0], fastest = 0;
-  for (size_t i = 0; i < rate.size(); ++i) {
+  for (size_t i = 0; i < state.rate.size(); ++i) {
     least = std::min(least, blocks.size[i]);
-    const double spread = std::sqrt(contract(rate[i].G, rate[i].G)) * blocks.size[i];
-    fastest = std::max(fastest, norm(rate[i].a) + spread);
+    const double spread = std::sqrt(contract(state.rate[i].G, state.rate[i].G)) * blocks.size[i];
+    const double speed = norm(state.rate[i].a) + spread;
+    // every pair would be a close one before the blow-up shows in a block turned inside out
+    if (!(speed * dt <= kMostTravel * blocks.radius[i]))
+      throw NumericalError(
+          fmt::format("block \"{}\" moves {:.3g} times its own radius in one step at t = {:.9g} s, step {}: "
+                      "the motion has "
+                      "blown up, or the time step is far too long",
+                      blocks.name[i], speed * dt / blocks.radius[i], state.time, state.step));
+    fastest = std::max(fastest, speed);
   }
   // rounded up to a power of two times the share, so that the candidate list survives small changes of speed
   double margin = kMarginShare * least;
@@ -131,7 +143,7 @@ class Kick {
     }
     {
       const Timed timed(work_.profile, Profile::kDetect);
-      const double margin = contact_margin(blocks_, state_.rate, dt_);
+      const double margin = contact_margin(scene_, state_, dt_);
       renew_pairs(blocks_, scene_.bonds, margin, work_.workers, state_);
       report_.searched =
           update_contacts(blocks_, scene_.bonds, scene_.layout, margin, dt_, work_.workers, state_).searched;
@@ -249,30 +261,34 @@ class Kick {
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
 
-  // The chosen solver, then, where its result misses the tolerance, the other from where it ended, then
-  // Gauss-Seidel for as long as the model allows; the best stays.
+  // The chosen solver; where its result misses the tolerance, the other; then Gauss-Seidel from the best so
+  // far for as many sweeps as the model allows. The best stays.
   void solve() {
     const SolverInput& options = scene_.model.solver;
     work_.guess = work_.rows.impulse;
     const SolverKind first = chosen_solver(scene_.model, work_.rows.points.size());
     const bool newton_can = work_.rows.points.size() <= kMostNewtonPoints;
-    const bool again = options.second_solver && newton_can && scene_.model.contact.law == ContactLaw::kExact;
+    const bool again = options.second_solver && scene_.model.contact.law == ContactLaw::kExact &&
+                       (first == SolverKind::kNewton || newton_can);
     const int few = again ? std::min(options.max_sweeps, kSweepsBeforeNewton) : options.max_sweeps;
     solve_by(first, few);
     if (!report_.failed || !again) return;
+
     Attempt best{work_.rows.impulse, state_.rate, rows_, report_};
-    for (const SolverKind next :
-         {first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton,
-          SolverKind::kGaussSeidel}) {
-      if (first == SolverKind::kNewton) work_.rows.impulse = work_.guess;
-      if (next == SolverKind::kGaussSeidel && few == options.max_sweeps && first != SolverKind::kNewton)
-        break;
-      solve_by(next, first == SolverKind::kNewton && few < options.max_sweeps ? few : options.max_sweeps);
-      report_.second_solver = true;
+    const auto attempt = [&](SolverKind kind, int sweeps) {
+      solve_by(kind, sweeps);
       if (std::isnan(best.report.error.worst) || report_.error.worst <= best.report.error.worst)
         best = {work_.rows.impulse, state_.rate, rows_, report_};
-      if (!best.report.failed) break;
-      work_.rows.impulse = best.impulse;
+    };
+    // Newton's failures are far off; sweeps that did not end are a good beginning unless they blew up
+    const auto start_from = [&](bool guess) {
+      work_.rows.impulse = guess || std::isnan(best.report.error.worst) ? work_.guess : best.impulse;
+    };
+    start_from(first == SolverKind::kNewton);
+    attempt(first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton, few);
+    if (best.report.failed && few < options.max_sweeps) {
+      start_from(false);
+      attempt(SolverKind::kGaussSeidel, options.max_sweeps);
     }
     work_.rows.impulse = std::move(best.impulse);
     state_.rate = std::move(best.rate);
@@ -350,7 +366,8 @@ class Kick {
     if (contact && p.row[0].compliance == 0)
       s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
     const auto u1 = relative_velocity(p, state_.rate);
-    s.error += {dt_ * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / dt_), static_cast<int>(r)};
+    s.error +=
+        {dt_ * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / dt_), static_cast<int>(r)};
     if (impulse[0] == 0 && impulse[1] == 0) return;
     for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
       if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
@@ -529,7 +546,8 @@ void drift(const Scene& scene, const StepSettings& settings, double dt, double t
 
 SolverKind chosen_solver(const Model& model, size_t points) {
   if (model.solver.method != SolverKind::kAuto) return model.solver.method;
-  if (model.contact.law == ContactLaw::kSmoothed) return SolverKind::kNewton;
+  if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
+    return SolverKind::kNewton;
   return points <= kNewtonFaster ? SolverKind::kNewton : SolverKind::kGaussSeidel;
 }
 

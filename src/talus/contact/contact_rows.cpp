@@ -35,7 +35,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
                       const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
                       RowSet& rows, std::vector<ContactPlace>& place) {
   const size_t first = rows.add_more(state.contacts.size());
-  place.resize(state.contacts.size());
+  resize_sparingly(place, state.contacts.size());
   // the last: neither friction nor stiffness
   std::vector<JointProperty> joints = model.joints;
   joints.emplace_back();

@@ -80,7 +80,7 @@ void write_point(const std::vector<Mobility>& mobility, const PointRows& rows, c
 
 bool GaussSeidel::layout_holds(const RowSet& set) {
   bool same = seen_.size() == set.points.size();
-  seen_.resize(set.points.size());
+  resize_sparingly(seen_, set.points.size());
   for (size_t i = 0; i < seen_.size(); ++i) {
     const PointRows& p = set.points[i];
     const Point now{std::min(p.block_a, p.block_b), std::max(p.block_a, p.block_b), p.partner, is_tie(p)};
@@ -151,8 +151,8 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
     (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
     next += k == kMostColours ? kLanes : 1;
   }
-  contacts_.resize(contact_at);
-  ties_.resize(tie_at);
+  resize_sparingly(contacts_, contact_at);
+  resize_sparingly(ties_, tie_at);
 
   // blocks that do not move are written to lines that nobody reads, one for each record that has any
   ground_ = static_cast<int>(mobility.size());
@@ -174,7 +174,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
   set_blocks(contacts_, contact_rows_);
   set_blocks(ties_, tie_rows_);
   lines_.clear();
-  lines_.resize(static_cast<size_t>(line));
+  resize_sparingly(lines_, static_cast<size_t>(line));
 }
 
 void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,

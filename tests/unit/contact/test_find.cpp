@@ -301,3 +301,38 @@ TEST_CASE("renew_pairs leaves out pairs that cannot move and renews for another 
   CHECK(renewed(s, 1.5, state) == Pairs{{0, 2}, {1, 2}});
   CHECK(state.candidates.rebuilds == 2);
 }
+
+TEST_CASE(
+    "the two ends of a face are each other's partner and share one length, whatever else touches there") {
+  // hexagons with a kinked side, a little out of place: some pairs touch at three points and more
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Polygon> polygons;
+  for (int i = 0; i < 60; ++i) {
+    const Vec2 at{1.0 * (i % 10), 1.0 * (i / 10)};
+    const double kink = 0.005 * unit(random);
+    polygons.push_back({at, at + Vec2{0.5, kink}, at + Vec2{1, 0}, at + Vec2{1, 1}, at + Vec2{0.5, 1 - kink},
+                        at + Vec2{0, 1}});
+  }
+  const Scene s = scene_of(polygons);
+  State state = start_state(s);
+  for (Vec2& d : state.displacement) d = {0.01 * unit(random), 0.01 * unit(random)};
+  int faces = 0, beside = 0;
+  for (int a = 0; a < s.blocks.count; ++a) {
+    for (int b = a + 1; b < s.blocks.count; ++b) {
+      const auto points = touch(s, state, a, b);
+      for (size_t i = 0; i < points.size(); ++i) {
+        const ContactPoint& p = points[i];
+        beside += p.partner < 0 && p.length > 0;
+        if (p.partner < 0) continue;
+        ++faces;
+        const ContactPoint& q = points[static_cast<size_t>(p.partner)];
+        CHECK(q.partner == static_cast<int>(i));
+        CHECK(q.length == p.length);
+        CHECK(q.face_edge_a >= 0);
+      }
+    }
+  }
+  CHECK(faces > 100);
+  CHECK(beside > 0);  // third points do occur
+}

@@ -144,7 +144,8 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
              2 * (900 + 50 * corners + 60.0 * p.blocks);  // tables, frames, summary, two pictures
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies
-  const bool factors = chosen_solver(scene.model, static_cast<size_t>(points)) == SolverKind::kNewton;
+  const bool factors =
+      chosen_solver(scene.model, static_cast<size_t>(points), p.bond_faces > 0) == SolverKind::kNewton;
   p.memory = 1600.0 * p.blocks + 32 * corners + points * (600 + (factors ? 2 * 32 * 16 * 6 : 0));
   return p;
 }

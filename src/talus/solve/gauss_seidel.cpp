@@ -23,6 +23,9 @@ constexpr int kPlainSweeps = 30;
 // steady rate along redundant rows, until one of them lets go, have a ratio of one and some round-off.
 constexpr double kStillGood = 1.2;
 
+// The same against the least change since it last started: slow growth over many sweeps is divergence too.
+constexpr double kMostGrowth = 16;
+
 bool is_tie(const PointRows& p) {
   return !p.cone || p.row[0].lower != 0 || p.cohesion != 0 || std::isfinite(p.row[0].upper) ||
          std::isfinite(p.row[1].lower) || std::isfinite(p.row[1].upper);
@@ -356,8 +359,11 @@ void GaussSeidel::extrapolate(const Workers& workers, bool first) {
   };
   const double now = squared(contacts_, contact_direction_) + squared(ties_, tie_direction_);
   const double ratio = first || change_squared_ == 0 ? 0 : now / change_squared_;
+  if (first || now < least_squared_) least_squared_ = now;
+  const bool good = ratio <= kStillGood && now <= kMostGrowth * least_squared_;
+  if (!good) least_squared_ = now;
   change_squared_ = now;
-  const double share = ratio <= kStillGood ? std::min(ratio, 1.0) : 0;
+  const double share = good ? std::min(ratio, 1.0) : 0;
   const auto go_on = [&](auto& records, std::vector<Direction>& direction) {
     workers.for_chunks(records.size(), kRecords, [&](size_t begin, size_t end) {
       const wide::Lanes s{share, share, share, share};

@@ -73,7 +73,7 @@ class GaussSeidel {
   };
   std::vector<Direction> contact_direction_, tie_direction_;  // [records * 2]
   std::vector<RateDirection> rate_direction_;                 // [lines that are read]
-  double change_squared_ = 0;  // of the sweep before, in the metric of the influence
+  double change_squared_ = 0, least_squared_ = 0;             // of sweeps, in the metric of the influence
 };
 
 }  // namespace talus

@@ -83,8 +83,9 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
            State& state, StepReport& report);
 
-/// What `auto` comes to for so many points (docs/performance.md has the measured table).
-SolverKind chosen_solver(const Model& model, size_t points);
+/// What `auto` comes to for so many points, with ties among them or not (docs/performance.md has the measured
+/// table).
+SolverKind chosen_solver(const Model& model, size_t points, bool ties);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row);

@@ -107,7 +107,7 @@ int run(const ModelArguments& args, const RunArguments& how) {
   progress.finish();
   recorder.finish(result, args.overrides, findings);
   fmt::print(out, "{}", talus::closing_text(prepared.scene, result, folder));
-  if (profile) fmt::print(out, "{}", talus::profile_text(result));
+  if (profile) fmt::print(out, "{}", talus::profile_text(result.profile, result.threads, result.steps));
   if (!result.failure.empty())
     throw talus::NumericalError(result.failure + fmt::format("\nresults up to then are in {}", folder));
   return result.interrupted ? talus::kExitInterrupted : talus::kExitOk;

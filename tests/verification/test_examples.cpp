@@ -206,9 +206,11 @@ TEST_CASE("example pile: no stone inside another, comes to rest, the same bits t
 
 TEST_CASE("example shaken_wall: nothing slips in a wall that friction can carry") {
   const CaseResult r = run_example("shaken_wall");
-  // rigid bricks would not move at all; what is left is elastic slip of the joints that locked on the way
+  // rigid bricks would not move at all; what is left is elastic slip of joints that locked on the way, below
+  // the sway of 0.2 mm that shear of the wall makes; asked for 1k bricks: 0.1 mm. Sweeps end at a tenth of
+  // the tolerance
   check_below("shaken_wall drift of the top after 1 s at 0.3 g [m]",
-              std::abs(r.column("top.displacement_x").back()), 1e-4, 2e-5);
+              std::abs(r.column("top.displacement_x").back()), 1e-4, 5e-5);
   check_below("shaken_wall contact error / tolerance", r.run.worst_error / (1e-5 * 0.5), 1, 0.2);
   check_below("shaken_wall energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }

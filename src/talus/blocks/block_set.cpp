@@ -88,6 +88,10 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
   return set;
 }
 
+double smallest_size(const BlockSet& blocks) {
+  return blocks.count == 0 ? 0 : *std::min_element(blocks.size.begin(), blocks.size.end());
+}
+
 double stable_step_of(const BlockSet& blocks, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return kInfinity;

@@ -59,6 +59,9 @@ struct BlockSet {
 /// Blocks of a layout, with exact mass properties.
 BlockSet build_blocks(const Model& model, const Layout& layout);
 
+/// Size of the smallest block [m], the measure of tolerances and margins; 0 without blocks.
+double smallest_size(const BlockSet& blocks);
+
 /// Largest stable step [s] of central differences for block i on its own (theory 2.4); infinite for blocks
 /// that do not deform. Ties and contacts between blocks never lower it.
 double stable_step_of(const BlockSet& blocks, int i);

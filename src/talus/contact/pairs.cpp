@@ -239,7 +239,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, co
   list.margin = margin;
   list.displacement = state.displacement;
   list.strain_part = state.strain_part;
-  list.skin = kSkin * *std::min_element(blocks.size.begin(), blocks.size.end());
+  list.skin = kSkin * smallest_size(blocks);
 
   const std::vector<ContactPair> before = std::move(state.pairs);
   std::vector<ContactPair> now;

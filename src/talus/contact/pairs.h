@@ -1,7 +1,7 @@
 #pragma once
 // Which blocks are near each other and where they touch, kept from step to step: a list of close pairs with a
 // skin, and in each pair contact points that are sought anew only when the two have moved against each other.
-// Theory: docs/theory.md 3.6.
+// Theory: docs/theory.md 3.7.
 
 #include "talus/base/parallel.h"
 #include "talus/contact/bonds.h"

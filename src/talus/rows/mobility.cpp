@@ -65,4 +65,18 @@ BlockRate accelerate(const Mobility& m, const BlockForce& impulse) {
   return {m.mass * impulse.f, l * g * transpose(r)};
 }
 
+void apply_impulses(const std::vector<Mobility>& mobility, const RowSet& rows, std::vector<BlockRate>& rate) {
+  std::vector<BlockForce> sum(rate.size());
+  for (size_t r = 0; r < rows.points.size(); ++r) {
+    const PointRows& p = rows.points[r];
+    if (p.block_a >= 0) sum[static_cast<size_t>(p.block_a)] += impulse_on(p, rows.impulse[r], 1);
+    if (p.block_b >= 0) sum[static_cast<size_t>(p.block_b)] += impulse_on(p, rows.impulse[r], -1);
+  }
+  for (size_t i = 0; i < rate.size(); ++i) {
+    const BlockRate change = accelerate(mobility[i], sum[i]);
+    rate[i].a += change.a;
+    rate[i].G += change.G;
+  }
+}
+
 }  // namespace talus

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "talus/blocks/state.h"
+#include "talus/rows/rows.h"
 
 namespace talus {
 
@@ -42,5 +42,9 @@ Mat2 influence(const Mobility& m, Vec2 at, Vec2 from);
 
 /// Answer to a generalised impulse.
 BlockRate accelerate(const Mobility& m, const BlockForce& impulse);
+
+/// Lets the impulses of all rows act on the blocks.
+/// @param rate  in: v*, rates without the rows; out: rates with them
+void apply_impulses(const std::vector<Mobility>& mobility, const RowSet& rows, std::vector<BlockRate>& rate);
 
 }  // namespace talus

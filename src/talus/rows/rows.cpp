@@ -2,21 +2,6 @@
 
 namespace talus {
 
-Mat2 influence(const BlockSet& blocks, size_t i, Vec2 at, Vec2 from) {
-  switch (blocks.kind[i]) {
-    case BlockKind::kDeformable: {
-      const double w = 1 / blocks.mass[i] + dot(at, blocks.inertia_inverse[i] * from);
-      return {w, 0, 0, w};
-    }
-    case BlockKind::kRigid: {
-      const double m = 1 / blocks.mass[i];
-      return Mat2{m, 0, 0, m} + (1 / blocks.polar_inertia[i]) * outer(turn_left(at), turn_left(from));
-    }
-    default:
-      return {};
-  }
-}
-
 BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force) {
   switch (blocks.kind[i]) {
     case BlockKind::kDeformable:

@@ -86,10 +86,6 @@ inline bool slides(const PointRows& p, const Impulse& impulse) {
   return std::abs(impulse[1]) >= limit * (1 - 1e-8);
 }
 
-/// Velocity change of block i per unit impulse: at acting arm `at`, by an impulse at acting arm `from`
-/// [1/kg]. Deformable blocks: (1/m + at . S0^-1 from) I; rigid ones a full matrix; others zero (theory 1.4).
-Mat2 influence(const BlockSet& blocks, size_t i, Vec2 at, Vec2 from);
-
 /// M^-1 times a generalised force or impulse. Zero for blocks whose motion is prescribed.
 BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force);
 

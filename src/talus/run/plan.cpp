@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "talus/contact/pairs.h"
@@ -19,27 +20,28 @@ constexpr double kMostSteps = 1e12;
 // Measured sizes of one cell or item in result files [bytes], from runs of the examples.
 constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 120, kVtkFile = 1700;
 
-double median_step(const BlockSet& blocks) {
-  std::vector<double> steps;
+// Median over the deformable blocks; infinite without any.
+double median_of_deformable(const BlockSet& blocks, const std::function<double(int)>& value) {
+  std::vector<double> values;
   for (int i = 0; i < blocks.count; ++i)
-    if (blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable)
-      steps.push_back(stable_step_of(blocks, i));
-  if (steps.empty()) return std::numeric_limits<double>::infinity();
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return steps[steps.size() / 2];
+    if (blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable) values.push_back(value(i));
+  if (values.empty()) return std::numeric_limits<double>::infinity();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double median_step(const BlockSet& blocks) {
+  return median_of_deformable(blocks, [&](int i) { return stable_step_of(blocks, i); });
 }
 
 // Time in which a pressure wave crosses two blocks of median size: the step at which errors of time and of
 // sub-division are of one size.
-double crossing_time(const Scene& scene) {
-  const BlockSet& b = scene.blocks;
-  std::vector<double> times;
-  for (size_t i = 0; i < static_cast<size_t>(b.count); ++i)
-    if (b.kind[i] == BlockKind::kDeformable)
-      times.push_back(2 * b.size[i] / std::sqrt(b.moduli[i].c11 * b.volume[i] / b.mass[i]));
-  if (times.empty()) return 0;
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  return times[times.size() / 2];
+double crossing_time(const BlockSet& b) {
+  return median_of_deformable(b, [&b](int i) {
+    const auto k = static_cast<size_t>(i);
+    return 2 * b.size[k] / std::sqrt(b.moduli[k].c11 * b.volume[k] / b.mass[k]);
+  });
 }
 
 int64_t rows_of(double duration, int64_t steps, double interval) {
@@ -62,7 +64,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     plan.dt_bound = bound.dt;
     plan.bound_block = bound.block;
     const std::string path = "stage." + stage.name;
-    double wanted = stage.implicit ? crossing_time(scene) : stage.safety * bound.dt;
+    double wanted = stage.implicit ? crossing_time(scene.blocks) : stage.safety * bound.dt;
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;
     } else if (bound.block < 0) {
@@ -119,9 +121,8 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   p.bond_faces = static_cast<int>(scene.bonds.faces.size());
   p.supported = static_cast<int>(scene.supported.size());
   const State state = start_state(scene);
-  double least = scene.blocks.size[0];
-  for (const double s : scene.blocks.size) least = std::min(least, s);
-  p.contacts = static_cast<int>(find_contacts(scene.blocks, scene.bonds, state, 0.02 * least).size());
+  p.contacts = static_cast<int>(
+      find_contacts(scene.blocks, scene.bonds, state, 0.02 * smallest_size(scene.blocks)).size());
 
   const OutputInput& out = scene.model.output;
   p.frames = 1;

@@ -130,16 +130,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     replay.points = points, replay.blocks = blocks;
     if (options.method == SolverKind::kNewton) {
       replay.solve = solve_newton(mobility, rate, options, 0.1 * tolerance / dt, replay.rows);
-      for (size_t r = 0; r < replay.rows.points.size(); ++r) {
-        const PointRows& p = replay.rows.points[r];
-        for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
-          if (block < 0) continue;
-          const auto k = static_cast<size_t>(block);
-          const BlockRate v = accelerate(mobility[k], impulse_on(p, replay.rows.impulse[r], sign));
-          rate[k].a += v.a;
-          rate[k].G += v.G;
-        }
-      }
+      apply_impulses(mobility, replay.rows, rate);
     } else {
       replay.solve =
           GaussSeidel().solve(mobility, options, 0.1 * tolerance, dt, Workers(), replay.rows, rate);

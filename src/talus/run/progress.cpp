@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "talus/base/clock.h"
 #include "talus/base/text.h"
 
 namespace talus {
@@ -12,10 +12,6 @@ namespace talus {
 namespace {
 
 constexpr double kRewriteInterval = 0.5, kLineInterval = 10;  // [s] of wall time
-
-double wall_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "talus/base/clock.h"
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
 #include "talus/run/problem_file.h"
@@ -14,10 +14,6 @@
 namespace talus {
 
 namespace {
-
-double wall_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 constexpr const char* kMethod[] = {"auto", "newton", "gauss_seidel"};  // as SolverKind
 
@@ -186,6 +182,8 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
       {"contact_solves", r.steps},
       {"failed_steps", r.failed_steps},
       {"second_solver_steps", r.second_solver_steps},
+      {"newton_steps", r.newton_steps},
+      {"gauss_seidel_steps", r.gauss_seidel_steps},
       {"drift_deepest [m]", r.deepest_drift},
       {"iterations_mean",
        r.steps > 0 ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0},

@@ -3,20 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 
+#include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/model/read_model.h"
 
 namespace talus {
 
 namespace {
-
-double smallest_block(const BlockSet& blocks) {
-  return *std::min_element(blocks.size.begin(), blocks.size.end());
-}
 
 class Runner {
  public:
@@ -27,7 +23,7 @@ class Runner {
   }
 
   RunResult run() {
-    const auto wall = std::chrono::steady_clock::now();
+    const double wall = wall_now();
     const std::clock_t cpu = std::clock();
     try {
       for (size_t i = 0; i < plans_.size() && !result_.interrupted; ++i) run_stage(static_cast<int>(i));
@@ -39,7 +35,7 @@ class Runner {
     result_.threads = work_.workers.threads();
     result_.profile = work_.profile;
     for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
-    result_.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+    result_.wall_seconds = wall_now() - wall;
     result_.cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
     return result_;
   }
@@ -56,7 +52,7 @@ class Runner {
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     state_.energy_start += kinetic_energy(scene_.blocks, state_.rate);
     settings_ = {stage.damping_mass, stage.damping_local,
-                 scene_.model.solver.tolerance * smallest_block(scene_.blocks),
+                 scene_.model.solver.tolerance * smallest_size(scene_.blocks),
                  stage.kind == StageKind::kDynamic, stage.implicit};
     work_.mobility.clear();  // of other inertias
     state_.largest_kinetic = 0;
@@ -96,10 +92,8 @@ class Runner {
   }
 
   void show(const Instant& instant) {
-    const auto start = std::chrono::steady_clock::now();
+    const Timed timed(work_.profile.seconds[Profile::kOutput]);
     observer_.at(instant);
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    work_.profile.seconds[Profile::kOutput] += spent.count();
   }
 
   // Velocity left, as share of its peak in the stage.
@@ -135,6 +129,7 @@ class Runner {
       result_.worst_error_row = r.worst;
     }
     result_.second_solver_steps += r.second_solver;
+    ++(r.method == SolverKind::kNewton ? result_.newton_steps : result_.gauss_seidel_steps);
     result_.deepest_drift = std::max(result_.deepest_drift, r.drift);
     result_.energy = r.energy;
     result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));
@@ -175,14 +170,14 @@ int threads_for(int blocks) {
   return std::clamp(blocks / kBlocksPerThread, 1, Workers(0).threads());
 }
 
-std::string profile_text(const RunResult& result) {
+std::string profile_text(const Profile& profile, int threads, int64_t steps) {
   double all = 0;
-  for (const double s : result.profile.seconds) all += s;
-  std::string text = fmt::format("profile ({} thread{}, {} steps)\n", result.threads,
-                                 result.threads == 1 ? "" : "s", result.steps);
+  for (const double s : profile.seconds) all += s;
+  std::string text =
+      fmt::format("profile ({} thread{}, {} steps)\n", threads, threads == 1 ? "" : "s", steps);
   for (size_t i = 0; i < Profile::kParts; ++i)
-    text += fmt::format("  {:<10} {:10.3f} s {:6.1f} %\n", Profile::kName[i], result.profile.seconds[i],
-                        all > 0 ? 100 * result.profile.seconds[i] / all : 0.0);
+    text += fmt::format("  {:<10} {:10.3f} s {:6.1f} %\n", Profile::kName[i], profile.seconds[i],
+                        all > 0 ? 100 * profile.seconds[i] / all : 0.0);
   return text;
 }
 

@@ -21,6 +21,7 @@ struct StageResult {
 struct RunResult {
   std::vector<StageResult> stages;
   int64_t steps = 0, failed_steps = 0, second_solver_steps = 0, iterations = 0;
+  int64_t newton_steps = 0, gauss_seidel_steps = 0;  // whose result stands
   int most_contacts = 0, most_iterations = 0, candidate_rebuilds = 0;
   double worst_error = 0, worst_error_time = 0;  // [m], [s]
   std::string worst_error_row;
@@ -49,7 +50,7 @@ RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& s
 int threads_for(int blocks);
 
 /// What --profile prints: the share of each part of a step in the time of the run.
-std::string profile_text(const RunResult& result);
+std::string profile_text(const Profile& profile, int threads, int64_t steps);
 
 /// Reads, checks and plans a model. Throws InputError with all findings; warnings are left in `findings`.
 struct PreparedRun {

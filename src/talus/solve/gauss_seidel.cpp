@@ -286,9 +286,9 @@ namespace {
 
 // Largest of all: the order does not matter.
 struct Largest {
-  wide::SweepSums sums;
+  double value = 0;
   Largest& operator+=(const Largest& o) {
-    sums.largest = std::max(sums.largest, o.sums.largest);
+    value = std::max(value, o.value);
     return *this;
   }
 };
@@ -304,14 +304,14 @@ double GaussSeidel::sweep(const Workers& workers) {
     if (contacts > 0)
       all += workers.sum_chunks<Largest>(contacts, of(contacts), [&](size_t begin, size_t end, Largest& l) {
         kernels_->sweep_contacts(lines_.data(), contacts_.data() + c.contact_begin + begin, end - begin,
-                                 l.sums);
+                                 l.value);
       });
     if (ties > 0)
       all += workers.sum_chunks<Largest>(ties, of(ties), [&](size_t begin, size_t end, Largest& l) {
-        kernels_->sweep_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin, l.sums);
+        kernels_->sweep_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin, l.value);
       });
   }
-  return all.sums.largest;
+  return all.value;
 }
 
 namespace {
@@ -389,12 +389,6 @@ void GaussSeidel::extrapolate(const Workers& workers, bool first) {
       }
     }
   });
-}
-
-size_t GaussSeidel::memory() const {
-  const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return bytes(seen_) + bytes(contact_rows_) + bytes(tie_rows_) + bytes(contacts_) + bytes(ties_) +
-         bytes(lines_);
 }
 
 SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const SolverInput& options,

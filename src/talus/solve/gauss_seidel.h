@@ -25,7 +25,6 @@ class GaussSeidel {
                     double dt, const Workers& workers, RowSet& set, std::vector<BlockRate>& rate);
 
   int colours() const { return static_cast<int>(colour_.size()); }
-  size_t memory() const;  // [bytes]
 
  private:
   struct Point {

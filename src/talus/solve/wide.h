@@ -54,23 +54,18 @@ struct alignas(64) Record {
 using ContactRecord = Record<ContactLanes>;
 using TieRecord = Record<TieLanes>;
 
-/// Sums of a sweep.
-struct SweepSums {
-  double largest = 0;  // change of impulse times influence [m/s]
-};
-
 /// The kernels for one kind of processor. Each works on records [0, count) in order.
 struct Kernels {
-  const char* name;
   /// Influence and inverses from normals, arms and compliances.
   void (*prepare_contacts)(const BlockLine*, ContactRecord*, size_t count);
   void (*prepare_ties)(const BlockLine*, TieRecord*, size_t count);
   /// Adds the impulses to the blocks.
   void (*push_contacts)(BlockLine*, const ContactRecord*, size_t count);
   void (*push_ties)(BlockLine*, const TieRecord*, size_t count);
-  /// Solves each point with all others held.
-  void (*sweep_contacts)(BlockLine*, ContactRecord*, size_t count, SweepSums&);
-  void (*sweep_ties)(BlockLine*, TieRecord*, size_t count, SweepSums&);
+  /// Solves each point with all others held; raises `largest` to the largest change of an impulse times the
+  /// influence of its point on itself [m/s].
+  void (*sweep_contacts)(BlockLine*, ContactRecord*, size_t count, double& largest);
+  void (*sweep_ties)(BlockLine*, TieRecord*, size_t count, double& largest);
 };
 
 /// The fastest kernels that this processor runs, or the plain ones. All give the same bits.

@@ -5,7 +5,7 @@
 namespace talus::wide {
 
 const Kernels& avx2_kernels() {
-  static constexpr Kernels kernels = make_kernels("AVX2");
+  static constexpr Kernels kernels = make_kernels();
   return kernels;
 }
 

@@ -121,7 +121,7 @@ inline void solve_point(const TieLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes
 }
 
 template <class Point>
-inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count, SweepSums& sums) {
+inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count, double& most) {
   Lanes largest{};
   for (size_t r = 0; r < count; ++r) {
     Record<Point>& record = records[r];
@@ -147,7 +147,7 @@ inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count
     a.write(lines, record.into_a);
     b.write(lines, record.into_b);
   }
-  for (int l = 0; l < kLanes; ++l) sums.largest = largest[l] > sums.largest ? largest[l] : sums.largest;
+  for (int l = 0; l < kLanes; ++l) most = largest[l] > most ? largest[l] : most;
 }
 
 template <class Point>
@@ -199,13 +199,13 @@ void prepare_ties(const BlockLine* lines, TieRecord* records, size_t count) {
 
 void push_contacts(BlockLine* l, const ContactRecord* r, size_t count) { push_records(l, r, count); }
 void push_ties(BlockLine* l, const TieRecord* r, size_t count) { push_records(l, r, count); }
-void sweep_contacts(BlockLine* l, ContactRecord* r, size_t count, SweepSums& s) {
+void sweep_contacts(BlockLine* l, ContactRecord* r, size_t count, double& s) {
   sweep_records(l, r, count, s);
 }
-void sweep_ties(BlockLine* l, TieRecord* r, size_t count, SweepSums& s) { sweep_records(l, r, count, s); }
+void sweep_ties(BlockLine* l, TieRecord* r, size_t count, double& s) { sweep_records(l, r, count, s); }
 
-constexpr Kernels make_kernels(const char* name) {
-  return {name, prepare_contacts, prepare_ties, push_contacts, push_ties, sweep_contacts, sweep_ties};
+constexpr Kernels make_kernels() {
+  return {prepare_contacts, prepare_ties, push_contacts, push_ties, sweep_contacts, sweep_ties};
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 namespace talus::wide {
 
 const Kernels& plain_kernels() {
-  static constexpr Kernels kernels = make_kernels("plain");
+  static constexpr Kernels kernels = make_kernels();
   return kernels;
 }
 

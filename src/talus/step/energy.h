@@ -18,9 +18,6 @@ struct Energy {
   double largest() const;
 };
 
-/// Strain energy and work of gravity of freely moving blocks; the rest of the result is zero.
-Energy energy_now(const BlockSet& blocks, Vec2 gravity, const State& state);
-
 /// Kinetic energy of freely moving blocks at these rates [J].
 double kinetic_energy(const BlockSet& blocks, const std::vector<BlockRate>& rate);
 

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 
+#include "talus/base/clock.h"
 #include "talus/base/error.h"
 
 namespace talus {
@@ -31,15 +30,10 @@ constexpr int kSweepsBeforeNewton = 500;
 // Travel of a block in one step, as share of its radius, at which a run ends: contacts could not be followed.
 constexpr double kMostTravel = 10;
 
-// Up to so many points `auto` takes Newton: it is as fast there and reaches round-off. Where bodies are tied
-// together the equations are nearly linear, and sweeps are slow along them.
-constexpr size_t kNewtonFaster = 12, kNewtonFasterTied = 2000;
-
 double contact_margin(const Scene& scene, const State& state, double dt) {
   const BlockSet& blocks = scene.blocks;
-  double least = blocks.size[0], fastest = 0;
+  double fastest = 0;
   for (size_t i = 0; i < state.rate.size(); ++i) {
-    least = std::min(least, blocks.size[i]);
     const double spread = std::sqrt(contract(state.rate[i].G, state.rate[i].G)) * blocks.size[i];
     const double speed = norm(state.rate[i].a) + spread;
     // every pair would be a close one before the blow-up shows in a block turned inside out
@@ -52,7 +46,7 @@ double contact_margin(const Scene& scene, const State& state, double dt) {
     fastest = std::max(fastest, speed);
   }
   // rounded up to a power of two times the share, so that the candidate list survives small changes of speed
-  double margin = kMarginShare * least;
+  double margin = kMarginShare * smallest_size(blocks);
   while (margin < 4 * fastest * dt) margin *= 2;
   return margin;
 }
@@ -64,19 +58,6 @@ double force_norm(const BlockSet& b, size_t i, const BlockForce& force) {
 
 BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a, u.G + v.G}; }
 BlockRate operator-(const BlockRate& u, const BlockRate& v) { return {u.a - v.a, u.G - v.G}; }
-
-// Adds the time of its life to one part of the profile.
-class Timed {
- public:
-  Timed(Profile& profile, Profile::Part part) : seconds_(profile.seconds[part]) {}
-  ~Timed() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Timed(const Timed&) = delete;
-  Timed& operator=(const Timed&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Work of an impulse, 1/2 p (v0 + v1): `late` of p v1 belongs to the interval after it, the rest to the one
 // before.
@@ -139,25 +120,25 @@ class Kick {
     work_.rate_before = state_.rate;
     damping_ = 0.5 * settings_.damping_mass * work_.dt_kick;
     {
-      const Timed timed(work_.profile, Profile::kIntegrate);
+      const Timed timed(work_.profile.seconds[Profile::kIntegrate]);
       predict();
     }
     {
-      const Timed timed(work_.profile, Profile::kDetect);
+      const Timed timed(work_.profile.seconds[Profile::kDetect]);
       const double margin = contact_margin(scene_, state_, dt_);
       renew_pairs(blocks_, scene_.bonds, margin, work_.workers, state_);
       report_.searched =
           update_contacts(blocks_, scene_.bonds, scene_.layout, margin, dt_, work_.workers, state_).searched;
     }
     {
-      const Timed timed(work_.profile, Profile::kSetUp);
+      const Timed timed(work_.profile.seconds[Profile::kSetUp]);
       gather_rows();
     }
     {
-      const Timed timed(work_.profile, Profile::kSolve);
+      const Timed timed(work_.profile.seconds[Profile::kSolve]);
       solve();
     }
-    const Timed timed(work_.profile, Profile::kIntegrate);
+    const Timed timed(work_.profile.seconds[Profile::kIntegrate]);
     tally_rows();
     tally_blocks();
     remember();
@@ -308,7 +289,7 @@ class Kick {
     report_.method = kind;
     if (kind == SolverKind::kNewton) {
       report_.solve = solve_newton(work_.mobility, state_.rate, options, stop / dt_, work_.rows, smoothing());
-      apply_rows();
+      apply_impulses(work_.mobility, work_.rows, state_.rate);
     } else {
       report_.solve = work_.gauss_seidel.solve(work_.mobility, options, stop, dt_, work_.workers, work_.rows,
                                                state_.rate);
@@ -320,18 +301,6 @@ class Kick {
     const ContactInput& c = scene_.model.contact;
     if (c.law == ContactLaw::kExact) return {};
     return {true, c.smoothing_force * work_.dt_kick, c.smoothing_slip / dt_};
-  }
-
-  void apply_rows() {
-    std::vector<BlockForce> sum(state_.rate.size());
-    for (size_t r = 0; r < work_.rows.points.size(); ++r) {
-      const PointRows& p = work_.rows.points[r];
-      const Impulse& impulse = work_.rows.impulse[r];
-      if (p.block_a >= 0) sum[static_cast<size_t>(p.block_a)] += impulse_on(p, impulse, 1);
-      if (p.block_b >= 0) sum[static_cast<size_t>(p.block_b)] += impulse_on(p, impulse, -1);
-    }
-    for (size_t i = 0; i < state_.rate.size(); ++i)
-      state_.rate[i] = work_.rate_free[i] + accelerate(work_.mobility[i], sum[i]);
   }
 
   // The error of the result, and in the same look at the rows the work they do.
@@ -492,65 +461,6 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
   StepReport report;
   work.workers.together([&] { report = Kick(scene, settings, dt, work, state).run(); });
   return report;
-}
-
-namespace {
-
-// Moves block k; false when the result is no block any more.
-bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
-  const BlockRate& v = state.rate[k];
-  if (!is_finite(v.a) || !is_finite(v.G)) return false;
-  state.displacement[k] += dt * v.a;
-  if (blocks.kind[k] == BlockKind::kDeformable) {
-    state.strain_part[k] += dt * v.G;
-    return det(kIdentity + state.strain_part[k]) > 0;
-  }
-  // the spin matrix acts on the turned arm: nothing to update
-  state.angle[k] += dt * v.G.yx;
-  state.strain_part[k] = rotation_minus_identity(state.angle[k]);
-  return true;
-}
-
-}  // namespace
-
-void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
-           State& state, StepReport& report) {
-  const Timed timed(work.profile, Profile::kIntegrate);
-  const BlockSet& blocks = scene.blocks;
-  std::atomic<size_t> bad{state.rate.size()};
-  work.workers.for_chunks(state.rate.size(), kBlocks, [&](size_t begin, size_t end) {
-    for (size_t k = begin; k < end; ++k) {
-      if (drift_block(blocks, dt, k, state)) continue;
-      for (size_t least = bad; k < least && !bad.compare_exchange_weak(least, k);) {
-      }
-    }
-  });
-  if (bad < state.rate.size()) {
-    const size_t k = bad;
-    const BlockRate& v = state.rate[k];
-    if (!is_finite(v.a) || !is_finite(v.G))
-      throw NumericalError(fmt::format(
-          "the motion of block \"{}\" is not finite at t = {:.9g} s, step {}; worst contact row: {}",
-          blocks.name[k], state.time, state.step, report.worst));
-    throw NumericalError(
-        fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
-                    blocks.name[k], det(kIdentity + state.strain_part[k]), time_end, state.step));
-  }
-  state.work += work.work.before;
-  state.work += work.work.after;
-  report.broken_faces = update_bonds(scene.bonds, scene.model.joints, blocks.thickness, dt, state);
-  state.time = time_end;
-  if (settings.histories_run) state.history_time += dt;
-  state.dt_before = dt;
-  ++state.step;
-}
-
-SolverKind chosen_solver(const Model& model, size_t points, bool ties) {
-  if (model.solver.method != SolverKind::kAuto) return model.solver.method;
-  if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
-    return SolverKind::kNewton;
-  return points <= (ties ? kNewtonFasterTied : kNewtonFaster) ? SolverKind::kNewton
-                                                              : SolverKind::kGaussSeidel;
 }
 
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "talus/contact/contact_rows.h"
+#include "talus/solve/choose.h"
 #include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
 #include "talus/step/energy.h"
@@ -82,10 +83,6 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 /// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
 void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
            State& state, StepReport& report);
-
-/// What `auto` comes to for so many points, with ties among them or not (docs/performance.md has the measured
-/// table).
-SolverKind chosen_solver(const Model& model, size_t points, bool ties);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row);

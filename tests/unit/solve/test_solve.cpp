@@ -78,16 +78,7 @@ std::vector<BlockRate> random_rates(std::mt19937& random, const BlockSet& blocks
 }
 
 std::vector<BlockRate> after(const BlockSet& blocks, const RowSet& set, std::vector<BlockRate> rate) {
-  for (size_t r = 0; r < set.points.size(); ++r) {
-    const PointRows& p = set.points[r];
-    for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
-      if (block < 0) continue;
-      const BlockRate change =
-          accelerate(blocks, static_cast<size_t>(block), impulse_on(p, set.impulse[r], sign));
-      rate[static_cast<size_t>(block)].a += change.a;
-      rate[static_cast<size_t>(block)].G += change.G;
-    }
-  }
+  apply_impulses(mobilities(blocks, 1), set, rate);
   return rate;
 }
 

@@ -1,0 +1,98 @@
+// What acts on blocks: contact, supports, loads.
+
+#include "talus/model/schema_tables.h"
+
+namespace talus {
+
+std::vector<SectionSpec> action_sections() {
+  return {
+      {"contact",
+       SectionShape::kTable,
+       "Contact between blocks that no other section names.",
+       {{.name = "joint",
+         .type = K::kName,
+         .refers_to = "joint",
+         .doc = "Joint of all pairs of blocks without their own; none: hard and frictionless."},
+        {.name = "law",
+         .type = K::kChoice,
+         .default_text = "\"exact\"",
+         .choices = {"exact", "smoothed"},
+         .doc = "`exact`: the contact law. `smoothed`: the paper's approximation (its eqs 26-29 with units "
+                "corrected), "
+                "for comparison only: its friction creeps."},
+        {.name = "alpha",
+         .range = {.min = 0, .max = 1},
+         .default_text = "0.2",
+         .doc = "Numerical damping of joints with stiffness: 0 loses nothing, 1 is backward Euler."},
+        {.name = "slop",
+         .range = {.min = 0, .max = 1e-2},
+         .default_text = "1e-7",
+         .doc = "Overlap of hard contacts that is left uncorrected, as share of the smaller block's size."},
+        {.name = "smoothing_force",
+         .dimension = D::kForce,
+         .range = kPositive,
+         .default_text = "\"1 N\"",
+         .doc = "Width of the smoothed normal law."},
+        {.name = "smoothing_slip",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .default_text = "\"6e-8 m\"",
+         .doc = "Width of the smoothed friction law: slip per step at which half of the friction acts."}}},
+
+      {"contact_pair",
+       SectionShape::kList,
+       "Joint between two blocks, grids or regions; it goes before the joints of their edges.",
+       {{.name = "between",
+         .type = K::kNames,
+         .required = true,
+         .refers_to = "block, grid or region",
+         .doc = "The two names."},
+        {.name = "joint", .type = K::kName, .required = true, .refers_to = "joint", .doc = "The joint."}}},
+
+      {"support",
+       SectionShape::kList,
+       "Points of blocks that are held or moved. Give `point`, `edge` or `along`.",
+       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+        {.name = "point",
+         .type = K::kVector,
+         .dimension = D::kLength,
+         .doc = "A point: all corners there, else the block around it."},
+        {.name = "edge",
+         .type = K::kPoints,
+         .dimension = D::kLength,
+         .doc = "A segment [[x0, y0], [x1, y1]]: all block edges on it, held at their corners."},
+        {.name = "along",
+         .type = K::kName,
+         .refers_to = "side, opening, fault or joint set",
+         .doc = "All block edges along it, held at their corners."},
+        {.name = "block",
+         .type = K::kName,
+         .refers_to = "block, grid or region",
+         .doc = "Only blocks of this name."},
+        {.name = "x",
+         .type = K::kMotion,
+         .default_text = "\"fixed\"",
+         .doc =
+             "Along x: \"fixed\", \"free\", { velocity = \"HISTORY\" } or { displacement = \"HISTORY\" }."},
+        {.name = "y", .type = K::kMotion, .default_text = "\"fixed\"", .doc = "The same along y."}}},
+
+      {"load",
+       SectionShape::kList,
+       "A body force on blocks, as an acceleration added to gravity. In static stages it stands at its value "
+       "of t = 0 on the clock of the histories.",
+       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+        {.name = "acceleration_x",
+         .type = K::kName,
+         .refers_to = "history",
+         .doc = "History of the acceleration along x [m/s2]. A base that shakes with a(t) is the same as a "
+                "load of -a(t) "
+                "seen from the base."},
+        {.name = "acceleration_y", .type = K::kName, .refers_to = "history", .doc = "The same along y."},
+        {.name = "block",
+         .type = K::kName,
+         .refers_to = "block, grid or region",
+         .doc = "Only blocks of this name; none: all."}}},
+  };
+}
+
+}  // namespace talus

@@ -1,0 +1,140 @@
+// What holds for the whole model: materials, joints, histories.
+
+#include "talus/model/schema_tables.h"
+
+namespace talus {
+
+std::vector<SectionSpec> model_sections() {
+  return {
+      {"top",
+       SectionShape::kTop,
+       "First lines of the file.",
+       {{.name = "talus",
+         .type = K::kInteger,
+         .range = {.min = 1},
+         .required = true,
+         .doc =
+             "Number of the file format: 1. A newer number is refused, an older one is converted or refused "
+             "with the program version that reads it."},
+        {.name = "title",
+         .type = K::kText,
+         .default_text = "\"\"",
+         .doc = "Free text, repeated in the results."}}},
+
+      {"model",
+       SectionShape::kTable,
+       "What holds for the whole model.",
+       {{.name = "thickness",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .default_text = "\"1 m\"",
+         .doc = "Thickness of the section; all masses and forces carry it."},
+        {.name = "plane",
+         .type = K::kChoice,
+         .default_text = "\"strain\"",
+         .choices = {"strain", "stress"},
+         .doc = "Plane strain or plane stress."},
+        {.name = "gravity",
+         .type = K::kVector,
+         .dimension = D::kAcceleration,
+         .default_text = "[0, 0]",
+         .doc = "Acceleration of gravity, for example [0, -9.81]."},
+        {.name = "inertia",
+         .type = K::kChoice,
+         .default_text = "\"consistent\"",
+         .choices = {"consistent", "lumped"},
+         .doc = "Moments of inertia of deformable blocks: exact, or three times as large (bonded continua "
+                "only: a "
+                "wave along a bar is then exact at Courant number 1, a free block bounces with e = 0.5 "
+                "instead of "
+                "0.75)."}}},
+
+      {"material",
+       SectionShape::kNamed,
+       "Material of blocks.",
+       {{.name = "density",
+         .dimension = D::kDensity,
+         .range = kPositive,
+         .required = true,
+         .doc = "Mass density."},
+        {.name = "young",
+         .dimension = D::kStress,
+         .range = kPositive,
+         .doc = "Young's modulus; needed by deformable blocks."},
+        {.name = "poisson",
+         .range = {.min = -1, .max = 0.5, .min_open = true, .max_open = true},
+         .doc = "Poisson's ratio; needed by deformable blocks."}}},
+
+      {"joint",
+       SectionShape::kNamed,
+       "Property of the contact between two blocks.",
+       {{.name = "kind",
+         .type = K::kChoice,
+         .default_text = "\"frictional\"",
+         .choices = {"frictional", "bonded"},
+         .doc = "`bonded`: an artificial joint that never opens or slips (sub-division of one body). "
+                "`frictional`: "
+                "opens and slips by the strengths below."},
+        {.name = "friction_angle",
+         .dimension = D::kAngle,
+         .range = {.min = 0, .max = 1.5533430342749532, .max_open = false},
+         .default_text = "\"0 deg\"",
+         .doc = "Friction angle (at most 89 deg)."},
+        {.name = "cohesion",
+         .dimension = D::kStress,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa\"",
+         .doc = "Cohesion of faces that touch at the start; lost for good, with the tensile strength, when "
+                "the face "
+                "breaks."},
+        {.name = "tensile_strength",
+         .dimension = D::kStress,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa\"",
+         .doc = "Tensile strength of faces that touch at the start."},
+        {.name = "normal_stiffness",
+         .dimension = D::kStiffness,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa/m\"",
+         .doc = "Elastic stiffness kn of the joint per area; 0: hard. Give it to natural rock joints: forces "
+                "are then "
+                "unique. It costs no time step."},
+        {.name = "shear_stiffness",
+         .dimension = D::kStiffness,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa/m\"",
+         .doc = "Elastic stiffness ks along the joint per area; 0: hard."},
+        {.name = "restitution",
+         .range = {.min = 0, .max = 1},
+         .doc = "Ratio of the normal velocities after and before a touch; none: what the scheme gives "
+                "(docs/theory.md "
+                "7.1). Only for hard joints."}}},
+
+      {"history",
+       SectionShape::kNamed,
+       "A quantity over time, linear between its points, held before the first and after the last. Its clock "
+       "runs in dynamic "
+       "stages only and starts with the first of them. Give "
+       "`time` and "
+       "`value`, or `expression` with `duration`.",
+       {{.name = "time", .type = K::kNumbers, .dimension = D::kTime, .doc = "Rising times [s]."},
+        {.name = "value",
+         .type = K::kNumbers,
+         .doc = "One value per time, SI (m, m/s, rad or rad/s by its use)."},
+        {.name = "expression",
+         .type = K::kText,
+         .doc =
+             "Formula in `t` [s] (muParser: sin, exp, _pi, a ? b : c ...), for example \"sin(2*_pi*5*t)\"."},
+        {.name = "duration",
+         .dimension = D::kTime,
+         .range = kPositive,
+         .doc = "With `expression`: the formula is sampled from 0 to here."},
+        {.name = "samples",
+         .type = K::kInteger,
+         .range = {.min = 2, .max = 1e7},
+         .default_text = "10000",
+         .doc = "With `expression`: number of equal intervals."}}},
+  };
+}
+
+}  // namespace talus

@@ -1,0 +1,27 @@
+#pragma once
+// The table of the model file (schema.h) in its parts, one file each.
+
+#include "talus/model/schema.h"
+
+namespace talus {
+
+// short names for the rows of the tables
+using D = Dimension;
+using K = KeyType;
+
+inline constexpr Range kPositive{.min = 0, .min_open = true};
+inline constexpr Range kNonNegative{.min = 0};
+
+std::vector<SectionSpec> model_sections();
+std::vector<SectionSpec> block_sections();
+std::vector<SectionSpec> cut_sections();
+std::vector<SectionSpec> action_sections();
+std::vector<SectionSpec> run_sections();
+
+/// What a block can be, in the order of BlockKind.
+inline const std::vector<std::string>& block_kinds() {
+  static const std::vector<std::string> kinds{"deformable", "rigid", "fixed", "driven"};
+  return kinds;
+}
+
+}  // namespace talus

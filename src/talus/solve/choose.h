@@ -1,0 +1,11 @@
+#pragma once
+// Which solver a step gets. The measured table behind it is in docs/performance.md.
+
+#include "talus/model/model.h"
+
+namespace talus {
+
+/// What the model asks for; for `auto`, what is faster for so many points, with ties among them or not.
+SolverKind chosen_solver(const Model& model, size_t points, bool ties);
+
+}  // namespace talus

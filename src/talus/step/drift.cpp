@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "talus/base/clock.h"
+#include "talus/base/error.h"
+#include "talus/step/step.h"
+
+namespace talus {
+
+namespace {
+
+// Blocks to a chunk.
+constexpr size_t kBlocks = 512;
+
+// Moves block k; false when the result is no block any more.
+bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
+  const BlockRate& v = state.rate[k];
+  if (!is_finite(v.a) || !is_finite(v.G)) return false;
+  state.displacement[k] += dt * v.a;
+  if (blocks.kind[k] == BlockKind::kDeformable) {
+    state.strain_part[k] += dt * v.G;
+    return det(kIdentity + state.strain_part[k]) > 0;
+  }
+  // the spin matrix acts on the turned arm: nothing to update
+  state.angle[k] += dt * v.G.yx;
+  state.strain_part[k] = rotation_minus_identity(state.angle[k]);
+  return true;
+}
+
+}  // namespace
+
+void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
+           State& state, StepReport& report) {
+  const Timed timed(work.profile.seconds[Profile::kIntegrate]);
+  const BlockSet& blocks = scene.blocks;
+  std::atomic<size_t> bad{state.rate.size()};
+  work.workers.for_chunks(state.rate.size(), kBlocks, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      if (drift_block(blocks, dt, k, state)) continue;
+      for (size_t least = bad; k < least && !bad.compare_exchange_weak(least, k);) {
+      }
+    }
+  });
+  if (bad < state.rate.size()) {
+    const size_t k = bad;
+    const BlockRate& v = state.rate[k];
+    if (!is_finite(v.a) || !is_finite(v.G))
+      throw NumericalError(fmt::format(
+          "the motion of block \"{}\" is not finite at t = {:.9g} s, step {}; worst contact row: {}",
+          blocks.name[k], state.time, state.step, report.worst));
+    throw NumericalError(
+        fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
+                    blocks.name[k], det(kIdentity + state.strain_part[k]), time_end, state.step));
+  }
+  state.work += work.work.before;
+  state.work += work.work.after;
+  report.broken_faces = update_bonds(scene.bonds, scene.model.joints, blocks.thickness, dt, state);
+  state.time = time_end;
+  if (settings.histories_run) state.history_time += dt;
+  state.dt_before = dt;
+  ++state.step;
+}
+
+}  // namespace talus

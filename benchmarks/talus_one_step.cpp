@@ -39,8 +39,7 @@ Solvable solvable(const BenchScene& scene, const OneStepProblem& problem) {
     p.arm_a = point.point - talus.blocks.centroid[static_cast<size_t>(point.b)];
     p.arm_b = point.point - talus.blocks.centroid[static_cast<size_t>(point.a)];
     p.normal = point.normal;
-    p.row[0].lower = 0;
-    p.cone = true;
+    p.lower = 0, p.cohesion = 0;
     p.friction = problem.friction;
     s.rows.add(p, {0, 0});
   }

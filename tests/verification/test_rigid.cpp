@@ -121,7 +121,7 @@ TEST_CASE("A3d a square hung at a corner swings with the exact period") {
     std::vector<double> turning;  // times at which the spin changes sign
     double last = 0, last_time = 0;
     const CaseResult r = run_case(text, {}, [&](const Instant& i) {
-      const double spin = i.work.rate_now[0].G.yx;
+      const double spin = rate_now(i.work, i.state, 0).G.yx;
       if (last * spin < 0) turning.push_back(last_time + (i.state.time - last_time) * last / (last - spin));
       last = spin, last_time = i.state.time;
     });

@@ -50,14 +50,15 @@ struct ContactKey {
 /// force but not its anchor.
 struct Contact {
   ContactKey key;
-  int joint = -1;                          // -1: hard and frictionless
-  int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of the face it ends, -1: none
-  int partner = -1;                        // the other end of that face: its place in the list of the pair
-  double length = 0;                       // [m] half that face
-  std::array<double, 2> force{};           // normal, tangential [N]
-  double stretch = 0;                      // elastic slip [m]
-  double anchor = 0;                       // slip coordinate at which it sticks [m]; NaN: it slid
-  enum Memory : char { kNone, kPassed, kWhole } memory = kNone;
+  enum Memory : char { kNone, kPassed, kWhole };
+
+  int joint = -1;        // -1: hard and frictionless
+  int16_t partner = -1;  // the other end of its face: its place in the list of the pair, -1: none
+  Memory memory = kNone;
+  double length = 0;              // [m] half that face
+  std::array<double, 2> force{};  // normal, tangential [N]
+  double stretch = 0;             // elastic slip [m]
+  double anchor = 0;              // slip coordinate at which it sticks [m]; NaN: it slid
 };
 
 /// Two blocks near each other. Their contact points are sought anew when they have moved against each other

@@ -171,12 +171,11 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       if (!face.unbreakable) {
         const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
-        p.row[0].lower = -joint.tensile_strength * half_area * timing.dt_kick;
+        p.lower = -joint.tensile_strength * half_area * timing.dt_kick;
         if (joint.normal_stiffness > 0 || joint.shear_stiffness > 0) {
           add_compliance(joint, half_area, true, timing, relative_velocity(p, before), p);
           p.partner = static_cast<int>(rows.size()) + (end == 0 ? 1 : -1);
         }
-        p.cone = true;
         p.friction = std::tan(joint.friction_angle);
         p.cohesion = joint.cohesion * half_area * timing.dt_kick;
       }

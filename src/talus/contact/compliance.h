@@ -31,7 +31,6 @@ inline void add_compliance(const JointProperty& joint, double half_area, bool in
     if (stiffness <= 0) continue;
     const double one = k / (stiffness * half_area * timing.dt * timing.dt_kick);
     p.row[i].compliance = in_face ? 2 * one : one;
-    p.cross[i] = in_face ? -one : 0;
     p.row[i].bias = k * p.row[i].bias - r * r * u_before[static_cast<size_t>(i)];
   }
 }

@@ -60,9 +60,8 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     p.arm_a = acting_arm(blocks, state, a, blocks.corner(c.key.block_a, c.key.vertex));
     p.arm_b = acting_arm(blocks, state, b, b0 + std::clamp(over.along, 0.0, 1.0) * edge);
     p.normal = over.normal;
-    p.cone = true;
     p.friction = friction[joint];
-    p.row[0].lower = 0;
+    p.lower = 0, p.cohesion = 0;
     const bool soft = property.normal_stiffness > 0;
     const double size = std::min(blocks.size[a], blocks.size[b]), slop = model.contact.slop * size;
     p.row[0].bias = soft ? over.gap / timing.dt : hard_bias(over.gap, slop, timing.dt);
@@ -108,7 +107,7 @@ void remember_contacts(const RowSet& rows, size_t first, const std::vector<Conta
       const Impulse& impulse = rows.impulse[first + i];
       Contact& c = state.contacts[i];
       double elastic = p.row[1].compliance * impulse[1];
-      if (p.partner >= 0) elastic += p.cross[1] * rows.impulse[static_cast<size_t>(p.partner)][1];
+      if (p.partner >= 0) elastic += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
       const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
       if (slides(p, impulse))
         c.anchor = std::nan("");

@@ -1,8 +1,12 @@
 #include "talus/contact/pairs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+
+#include "talus/base/error.h"
 
 namespace talus {
 
@@ -18,6 +22,9 @@ constexpr double kReuse = 1e-3;
 
 // Pairs to a chunk.
 constexpr size_t kGrain = 256;
+
+// Contact points of two blocks: as many as Contact::partner can tell apart.
+constexpr size_t kMostPoints = 32767;
 
 double moved_since(const BlockSet& blocks, const State& state, const CandidateList& list, size_t i) {
   const Mat2 h = state.strain_part[i] - list.strain_part[i];
@@ -104,8 +111,7 @@ Contact contact_of(const ContactPoint& point, const std::vector<ContactPoint>& a
                    const Contact* known, int n_known) {
   Contact c;
   c.key = point.key;
-  c.face_edge_a = point.face_edge_a, c.face_edge_b = point.face_edge_b;
-  c.partner = point.partner, c.length = point.length;
+  c.partner = static_cast<int16_t>(point.partner), c.length = point.length;
   c.joint = joints_of.joint_at(point.key.block_a, point.face_edge_a, point.key.block_b,
                                point.face_edge_b >= 0 ? point.face_edge_b : point.key.edge);
   const Contact* from = nullptr;
@@ -153,7 +159,7 @@ class Updater {
       report.searched += searched_[c];
       any = any || !changed_[c].pair.empty();
     }
-    if (any) put_together();
+    if (any) put_together(workers);
     return report;
   }
 
@@ -178,6 +184,12 @@ class Updater {
                        ? -1
                        : std::min(0.25 * margin_, std::max(0.5 * kSamePlace * size,
                                                            std::min(0.5 * clearance, kReuse * size)));
+      if (found.size() > kMostPoints)
+        throw NumericalError(
+            fmt::format("blocks \"{}\" and \"{}\" touch at {} points at t = {:.9g} s; at most {} can "
+                        "be followed: give them fewer corners",
+                        blocks_.name[static_cast<size_t>(pair.a)], blocks_.name[static_cast<size_t>(pair.b)],
+                        found.size(), s.time, kMostPoints));
       const Contact* known = state_.contacts.data() + pair.begin;
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
@@ -192,30 +204,39 @@ class Updater {
     }
   }
 
-  void put_together() {
-    std::vector<Contact> all;
-    all.reserve(state_.contacts.size() + 64);
-    size_t next = 0;  // pair not yet copied
-    const auto copy_until = [&](size_t end) {
-      for (; next < end; ++next) {
-        ContactPair& p = state_.pairs[next];
-        const auto from = state_.contacts.begin() + p.begin;
-        p.begin = static_cast<int>(all.size());
-        all.insert(all.end(), from, from + p.count);
-      }
-    };
-    for (const Changed& c : changed_) {
-      auto from = c.contact.begin();
-      for (const auto& [pair, count] : c.pair) {
-        copy_until(pair);
-        state_.pairs[pair].begin = static_cast<int>(all.size());
-        state_.pairs[pair].count = count;
-        all.insert(all.end(), from, from + count);
-        from += count;
-        ++next;
+  // Every pair's points one after the other again; the pairs of a chunk know where theirs begin.
+  void put_together(const Workers& workers) {
+    std::vector<size_t> chunk_begin(changed_.size());
+    size_t count = 0;
+    for (size_t c = 0; c < changed_.size(); ++c) {
+      chunk_begin[c] = count;
+      auto changed = changed_[c].pair.begin();
+      const size_t end = std::min(state_.pairs.size(), (c + 1) * kGrain);
+      for (size_t i = c * kGrain; i < end; ++i) {
+        const bool is_new = changed != changed_[c].pair.end() && changed->first == i;
+        count += static_cast<size_t>(is_new ? changed++->second : state_.pairs[i].count);
       }
     }
-    copy_until(state_.pairs.size());
+    std::vector<Contact> all(count);
+    workers.for_chunks(state_.pairs.size(), kGrain, [&](size_t begin, size_t end) {
+      const Changed& c = changed_[begin / kGrain];
+      auto changed = c.pair.begin();
+      auto from = c.contact.begin();
+      auto to = all.begin() + static_cast<std::ptrdiff_t>(chunk_begin[begin / kGrain]);
+      for (size_t i = begin; i < end; ++i) {
+        ContactPair& pair = state_.pairs[i];
+        const int old_begin = pair.begin;
+        pair.begin = static_cast<int>(to - all.begin());
+        if (changed != c.pair.end() && changed->first == i) {
+          pair.count = changed++->second;
+          to = std::copy(from, from + pair.count, to);
+          from += pair.count;
+        } else {
+          const auto old = state_.contacts.begin() + old_begin;
+          to = std::copy(old, old + pair.count, to);
+        }
+      }
+    });
     state_.contacts = std::move(all);
   }
 

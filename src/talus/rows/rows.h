@@ -15,8 +15,6 @@ namespace talus {
 /// along it at the end of the kick. Inside the bounds of p, e = 0; at the lower bound e >= 0; at the upper
 /// bound e <= 0.
 struct Row {
-  double lower = -std::numeric_limits<double>::infinity();  // of the impulse p [N s]
-  double upper = std::numeric_limits<double>::infinity();
   double bias = 0;        // [m/s]
   double compliance = 0;  // [1/kg]
 };
@@ -28,20 +26,24 @@ struct PointRows {
   Vec2 arm_a, arm_b;               // acting arms (see acting_arm)
   Vec2 normal;                     // unit, from b into a; the tangent is the normal turned clockwise
   Row row[2];                      // normal, tangential
-  bool cone = false;               // the tangential bounds are -+ max(0, cohesion + friction p_n) instead
-  double friction = 0;             // tan of the friction angle
-  double cohesion = 0;             // [N s]
-  int partner = -1;          // index in the row set of the other end of the same compliant face, -1: none
-  double cross[2] = {0, 0};  // compliance with the partner's impulse, the same in both [1/kg]
+  double lower = -std::numeric_limits<double>::infinity();  // bounds of p_n [N s]
+  double upper = std::numeric_limits<double>::infinity();
+  double friction = 0;  // p_t lies within -+ max(0, cohesion + friction p_n); tan of the friction angle
+  double cohesion = std::numeric_limits<double>::infinity();  // [N s]
+  int partner = -1;  // index in the row set of the other end of the same compliant face, -1: none
+
+  /// Compliance of row k with the partner's impulse, the same seen from both ends [1/kg]: of a linear closure
+  /// of the face it is half the own one with the opposite sign (theory 4.6).
+  double cross(int k) const { return partner < 0 ? 0 : -0.5 * row[k].compliance; }
 };
 
 using Impulse = std::array<double, 2>;  // normal, tangential [N s]
 
-/// Resizes with a sixteenth to spare where the vector itself would double: rows and records are most of the
+/// Resizes with a little to spare where the vector itself would double: rows and records are most of the
 /// memory of a run.
 template <class T>
 void resize_sparingly(std::vector<T>& v, size_t n) {
-  if (v.capacity() < n) v.reserve(n + n / 16);
+  if (v.capacity() < n) v.reserve(n + n / 32);
   v.resize(n);
 }
 
@@ -74,7 +76,7 @@ struct Bounds {
   double lower, upper;
 };
 inline Bounds bounds_of(const PointRows& p, int k, double p_n) {
-  if (k == 0 || !p.cone) return {p.row[k].lower, p.row[k].upper};
+  if (k == 0) return {p.lower, p.upper};
   const double limit = p.cohesion + p.friction * p_n;
   return limit > 0 ? Bounds{-limit, limit} : Bounds{0, 0};
 }

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 
 // JSON knows no infinity: an open bound is null.
 ordered_json bound(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
@@ -28,23 +28,14 @@ Mat2 mat(const ordered_json& j) { return {j.at(0), j.at(1), j.at(2), j.at(3)}; }
 ordered_json point_json(const PointRows& p, const Impulse& guess) {
   ordered_json rows = ordered_json::array();
   for (int k = 0; k < 2; ++k) {
-    rows.push_back({{"lower", bound(p.row[k].lower)},
-                    {"upper", bound(p.row[k].upper)},
-                    {"bias", p.row[k].bias},
-                    {"compliance", p.row[k].compliance},
-                    {"cross", p.cross[k]}});
+    rows.push_back({{"bias", p.row[k].bias}, {"compliance", p.row[k].compliance}});
   }
-  return {{"a", p.block_a},
-          {"b", p.block_b},
-          {"arm_a", vec(p.arm_a)},
-          {"arm_b", vec(p.arm_b)},
-          {"normal", vec(p.normal)},
-          {"rows", rows},
-          {"cone", p.cone},
-          {"friction", p.friction},
-          {"cohesion", p.cohesion},
-          {"partner", p.partner},
-          {"guess", {guess[0], guess[1]}}};
+  return {{"a", p.block_a},          {"b", p.block_b},
+          {"arm_a", vec(p.arm_a)},   {"arm_b", vec(p.arm_b)},
+          {"normal", vec(p.normal)}, {"rows", rows},
+          {"lower", bound(p.lower)}, {"upper", bound(p.upper)},
+          {"friction", p.friction},  {"cohesion", bound(p.cohesion)},
+          {"partner", p.partner},    {"guess", {guess[0], guess[1]}}};
 }
 
 PointRows read_point(const ordered_json& j) {
@@ -54,11 +45,10 @@ PointRows read_point(const ordered_json& j) {
   p.arm_a = vec(j.at("arm_a")), p.arm_b = vec(j.at("arm_b")), p.normal = vec(j.at("normal"));
   for (size_t k = 0; k < 2; ++k) {
     const ordered_json& r = j.at("rows").at(k);
-    p.row[k] = {bound(r.at("lower"), -infinity), bound(r.at("upper"), infinity), r.at("bias"),
-                r.at("compliance")};
-    p.cross[k] = r.at("cross");
+    p.row[k] = {r.at("bias"), r.at("compliance")};
   }
-  p.cone = j.at("cone"), p.friction = j.at("friction"), p.cohesion = j.at("cohesion"),
+  p.lower = bound(j.at("lower"), -infinity), p.upper = bound(j.at("upper"), infinity);
+  p.friction = j.at("friction"), p.cohesion = bound(j.at("cohesion"), infinity);
   p.partner = j.at("partner");
   return p;
 }

@@ -119,7 +119,9 @@ void Recorder::record_step(const Instant& i) {
 }
 
 void Recorder::write_frame(const Instant& i) {
-  block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, i.work.rate_now));
+  std::vector<BlockRate> rates;
+  for (size_t k = 0; k < i.state.rate.size(); ++k) rates.push_back(rate_now(i.work, i.state, k));
+  block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, rates));
   contact_frames_.add(i.state.time, contacts_vtp(contact_frames(scene_, i), i.state.time));
 }
 

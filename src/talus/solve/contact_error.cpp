@@ -29,12 +29,10 @@ double point_error(const std::vector<Mobility>& mobility, const RowSet& set, siz
   bool passed = true;
   for (size_t k = 0; k < 2; ++k) {
     e[k] = u[k] + point.row[k].bias + point.row[k].compliance * impulse[k];
-    if (point.partner >= 0) e[k] += point.cross[k] * set.impulse[static_cast<size_t>(point.partner)][k];
-    lower[k] = point.row[k].lower, upper[k] = point.row[k].upper;
-    if (k == 1 && point.cone) {
-      upper[k] = std::max(0.0, point.cohesion + point.friction * impulse[0]);
-      lower[k] = -upper[k];
-    }
+    if (point.partner >= 0)
+      e[k] += point.cross(static_cast<int>(k)) * set.impulse[static_cast<size_t>(point.partner)][k];
+    const Bounds bounds = bounds_of(point, static_cast<int>(k), impulse[0]);
+    lower[k] = bounds.lower, upper[k] = bounds.upper;
     // within its bounds an impulse is never further from its projection than e / Wii, and at a bound that e
     // pushes it against it is there
     const bool at_bound = (impulse[k] == lower[k] && e[k] >= 0) || (impulse[k] == upper[k] && e[k] <= 0);

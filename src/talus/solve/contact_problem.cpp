@@ -21,7 +21,7 @@ RowState row_state(const ContactProblem& problem, size_t point, int k, double e,
   const double trial = p - e / problem.diagonal[static_cast<Eigen::Index>(2 * point) + k];
   if (trial > b.lower && trial < b.upper) return {};
   const bool upper = trial >= b.upper;
-  const bool moves = k == 1 && rows.cone && b.upper > 0;
+  const bool moves = k == 1 && b.upper > 0;
   return {false, upper ? b.upper : b.lower, moves ? (upper ? rows.friction : -rows.friction) : 0};
 }
 
@@ -39,7 +39,7 @@ std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::Vec
 }
 
 // Whether the smoothing applies: contacts, not ties, supports or faces with strength.
-bool is_smoothed(const PointRows& p) { return p.cone && p.row[0].lower == 0 && p.cohesion == 0; }
+bool is_smoothed(const PointRows& p) { return p.lower == 0 && p.cohesion == 0; }
 
 constexpr double kTwoOverPi = 2 / 3.14159265358979323846;
 
@@ -114,7 +114,7 @@ ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet
       const int row = static_cast<int>(2 * i) + k;
       problem.velocity_free[row] = u[static_cast<size_t>(k)] + p.row[k].bias;
       entries.emplace_back(row, row, p.row[k].compliance);
-      if (p.partner >= 0) entries.emplace_back(row, 2 * local_of.at(p.partner) + k, p.cross[k]);
+      if (p.partner >= 0) entries.emplace_back(row, 2 * local_of.at(p.partner) + k, p.cross(k));
     }
   }
   problem.influence.resize(n, n);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -26,10 +27,7 @@ constexpr double kStillGood = 1.2;
 // The same against the least change since it last started: slow growth over many sweeps is divergence too.
 constexpr double kMostGrowth = 16;
 
-bool is_tie(const PointRows& p) {
-  return !p.cone || p.row[0].lower != 0 || p.cohesion != 0 || std::isfinite(p.row[0].upper) ||
-         std::isfinite(p.row[1].lower) || std::isfinite(p.row[1].upper);
-}
+bool is_tie(const PointRows& p) { return p.lower != 0 || std::isfinite(p.upper) || p.cohesion != 0; }
 
 // The point as its couple sees it: blocks exchanged where it names them the other way round.
 struct Seen {
@@ -57,9 +55,8 @@ void write_bounds(wide::ContactLanes&, int, const PointRows*) {}
 void write_bounds(wide::TieLanes& p, int lane, const PointRows* rows) {
   const auto l = static_cast<size_t>(lane);
   const auto clip = [](double v) { return std::clamp(v, -kEndless, kEndless); };
-  p.lower_n[l] = rows ? clip(rows->row[0].lower) : 0, p.upper_n[l] = rows ? clip(rows->row[0].upper) : 0;
-  p.lower_t[l] = rows ? clip(rows->row[1].lower) : 0, p.upper_t[l] = rows ? clip(rows->row[1].upper) : 0;
-  p.cohesion[l] = rows && !rows->cone ? kEndless : rows ? rows->cohesion : 0;
+  p.lower_n[l] = rows ? clip(rows->lower) : 0, p.upper_n[l] = rows ? clip(rows->upper) : 0;
+  p.cohesion[l] = rows ? clip(rows->cohesion) : 0;
 }
 
 template <class Record>
@@ -76,20 +73,25 @@ void write_point(const std::vector<Mobility>& mobility, const PointRows& rows, c
   p.bias_n[l] = rows.row[0].bias, p.bias_t[l] = rows.row[1].bias;
   p.p_n[l] = impulse[0], p.p_t[l] = impulse[1];
   p.i_nn[l] = rows.row[0].compliance, p.i_tt[l] = rows.row[1].compliance;
-  p.mu[l] = rows.cone ? rows.friction : 0;
+  p.mu[l] = rows.friction;
 }
 
 }  // namespace
 
-bool GaussSeidel::layout_holds(const RowSet& set) {
-  bool same = seen_.size() == set.points.size();
+bool GaussSeidel::layout_holds(const RowSet& set, const Workers& workers) {
+  std::atomic<bool> same{seen_.size() == set.points.size()};
   resize_sparingly(seen_, set.points.size());
-  for (size_t i = 0; i < seen_.size(); ++i) {
-    const PointRows& p = set.points[i];
-    const Point now{std::min(p.block_a, p.block_b), std::max(p.block_a, p.block_b), p.partner, is_tie(p)};
-    same = same && seen_[i] == now;
-    seen_[i] = now;
-  }
+  workers.for_chunks(seen_.size(), 4096, [&](size_t begin, size_t end) {
+    bool here = true;
+    for (size_t i = begin; i < end; ++i) {
+      const PointRows& p = set.points[i];
+      const Point now{std::min(p.block_a, p.block_b), std::max(p.block_a, p.block_b),
+                      2 * static_cast<unsigned>(p.partner + 1) + is_tie(p)};
+      here = here && seen_[i] == now;
+      seen_[i] = now;
+    }
+    if (!here) same = false;
+  });
   return same;
 }
 
@@ -101,13 +103,13 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
   const auto at = [this](int i) -> const Point& { return seen_[static_cast<size_t>(i)]; };
   const auto same_blocks = [&](int i, int j) {
     const Point &p = at(i), &q = at(j);
-    return p.tie == q.tie && p.block_a == q.block_a && p.block_b == q.block_b;
+    return p.tie() == q.tie() && p.block_a == q.block_a && p.block_b == q.block_b;
   };
   for (int i = 0; i < n; ++i) {
-    const int partner = at(i).partner;
+    const int partner = at(i).partner();
     if (partner > i) couples.push_back({{i, partner}});
     if (partner >= 0) continue;
-    if (i + 1 < n && at(i + 1).partner < 0 && same_blocks(i, i + 1)) {
+    if (i + 1 < n && at(i + 1).partner() < 0 && same_blocks(i, i + 1)) {
       couples.push_back({{i, i + 1}});
       ++i;
     } else {
@@ -126,7 +128,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
     if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
     const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
     colour_of[c] = colour;
-    ++(p.tie ? ties : contacts)[static_cast<size_t>(colour)];
+    ++(p.tie() ? ties : contacts)[static_cast<size_t>(colour)];
     if (colour == kMostColours) continue;
     if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
     if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
@@ -149,7 +151,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
   tie_rows_.assign(tie_at * kLanes, {{-1, -1}});
   for (size_t c = 0; c < couples.size(); ++c) {
     const auto k = static_cast<size_t>(colour_of[c]);
-    const bool tie = at(couples[c].row[0]).tie;
+    const bool tie = at(couples[c].row[0]).tie();
     size_t& next = (tie ? tie_next : contact_next)[k];
     (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
     next += k == kMostColours ? kLanes : 1;
@@ -230,8 +232,8 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
             write_point(mobility, p, set.impulse[static_cast<size_t>(row)], record, l, k, a);
             write_bounds(record.point[k], l, &p);
             if (p.partner < 0) continue;
-            record.cross_n[static_cast<size_t>(l)] = p.cross[0],
-            record.cross_t[static_cast<size_t>(l)] = p.cross[1];
+            record.cross_n[static_cast<size_t>(l)] = p.cross(0),
+            record.cross_t[static_cast<size_t>(l)] = p.cross(1);
           }
         }
       }
@@ -397,7 +399,7 @@ SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const Solv
   SolveReport report;
   report.converged = set.points.empty();
   if (report.converged) return report;
-  if (!layout_holds(set)) lay_out(mobility);
+  if (!layout_holds(set, workers)) lay_out(mobility);
   write_lines(mobility, rate, workers);
   write_records(mobility, set, workers);
   push(workers);

@@ -28,8 +28,10 @@ class GaussSeidel {
 
  private:
   struct Point {
-    int block_a, block_b, partner;  // the lower block first
-    bool tie;
+    int block_a, block_b;  // the lower block first
+    unsigned link;         // twice the partner plus one, plus one for a tie
+    int partner() const { return static_cast<int>(link >> 1U) - 1; }
+    bool tie() const { return link & 1U; }
     friend bool operator==(const Point&, const Point&) = default;
   };
   struct Rows {
@@ -41,7 +43,7 @@ class GaussSeidel {
     bool in_order = false;  // blocks may occur twice: one thread, record by record
   };
 
-  bool layout_holds(const RowSet& set);
+  bool layout_holds(const RowSet& set, const Workers& workers);
   void lay_out(const std::vector<Mobility>& mobility);
   void write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                    const Workers& workers);

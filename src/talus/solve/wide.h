@@ -38,8 +38,8 @@ struct ContactLanes {
 /// Points with any bounds: ties, faces with strength, supports.
 struct TieLanes {
   Lanes nx, ny, ax, ay, bx, by, bias_n, bias_t, p_n, p_t, u_nn, u_nt, u_tt, i_nn, i_nt, i_tt;
-  Lanes lower_n, upper_n, lower_t, upper_t;
-  Lanes mu, cohesion;      // bound mu p_n + cohesion; without a cone: no friction, endless cohesion
+  Lanes lower_n, upper_n;
+  Lanes mu, cohesion;      // p_t lies within -+ max(0, cohesion + mu p_n)
   Lanes w_nn, w_nt, w_tt;  // influence plus compliance
 };
 

@@ -109,13 +109,11 @@ inline void solve_point(const ContactLanes& p, Lanes q_n, Lanes q_t, Lanes& n, L
 inline void solve_point(const TieLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
   const Lanes stick_n = -(p.i_nn * q_n + p.i_nt * q_t), stick_t = -(p.i_nt * q_n + p.i_tt * q_t);
   const auto cone = [&](Lanes x) { return larger(p.mu * x + p.cohesion, Lanes{}); };
-  const auto holds = (stick_n >= p.lower_n) & (stick_n <= p.upper_n) & (size(stick_t) <= cone(stick_n)) &
-                     (stick_t >= p.lower_t) & (stick_t <= p.upper_t);
+  const auto holds = (stick_n >= p.lower_n) & (stick_n <= p.upper_n) & (size(stick_t) <= cone(stick_n));
   // elsewhere one row after the other
   const Lanes one_n = larger(smaller(-(q_n + p.w_nt * p.p_t) / p.w_nn, p.upper_n), p.lower_n);
   const Lanes limit = cone(one_n);
-  Lanes one_t = -(q_t + p.w_nt * one_n) / p.w_tt;
-  one_t = larger(smaller(one_t, smaller(limit, p.upper_t)), larger(-limit, p.lower_t));
+  const Lanes one_t = larger(smaller(-(q_t + p.w_nt * one_n) / p.w_tt, limit), -limit);
   n = holds ? stick_n : one_n;
   t = holds ? stick_t : one_t;
 }

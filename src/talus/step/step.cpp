@@ -373,7 +373,6 @@ class Kick {
   double late_share() const { return 0.5 * dt_ / work_.dt_kick; }
 
   void tally_blocks() {
-    work_.rate_now.resize(state_.rate.size());
     const BlockSums sums = work_.workers.sum_chunks<BlockSums>(
         state_.rate.size(), kBlocks, [this](size_t begin, size_t end, BlockSums& s) {
           for (size_t i = begin; i < end; ++i) tally_block(i, s);
@@ -395,7 +394,6 @@ class Kick {
 
   void tally_block(size_t i, BlockSums& s) {
     const BlockRate &v0 = work_.rate_before[i], &v1 = state_.rate[i];
-    work_.rate_now[i] = state_.dt_before > 0 ? mean(v0, v1) : v0;
     if (!blocks_.moves_freely(static_cast<int>(i))) return;
     const double late = late_share(), kick = work_.dt_kick;
     const BlockForce viscous = (-settings_.damping_mass * kick) * momentum(blocks_, i, mean(v0, v1));
@@ -456,6 +454,10 @@ class Kick {
 };
 
 }  // namespace
+
+BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
+  return state.dt_before > 0 ? mean(work.rate_before[i], state.rate[i]) : work.rate_before[i];
+}
 
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state) {
   StepReport report;

@@ -66,8 +66,7 @@ struct StepWork {
   std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
   size_t first_contact = 0, first_support = 0;
   std::vector<BlockRate> rate_before;
-  std::vector<BlockRate> rate_now;  // mean of before and after: velocities at this instant
-  double dt_kick = 0;               // over which the impulses act
+  double dt_kick = 0;  // over which the impulses act
   KickWork work;
   std::vector<BlockRate> rate_free;  // rates as they would be without rows
   std::vector<Impulse> guess;        // of all rows
@@ -75,6 +74,10 @@ struct StepWork {
   std::vector<BlockForce> local_damping;
   std::vector<ElasticState> elastic;
 };
+
+/// Velocities of block i at this instant: the mean of those before and after the kick; at the start the
+/// initial ones. @pre  between kick() and drift()
+BlockRate rate_now(const StepWork& work, const State& state, size_t i);
 
 /// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state);

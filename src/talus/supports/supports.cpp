@@ -26,13 +26,13 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
     p.normal = {1, 0};
     const Vec2 now = displacement_at(state, block, points[i].arm);
     const auto hold = [&](Row& row, const Motion& motion, double place, double sign) {
-      if (motion.kind == Motion::kFree)
-        row.lower = row.upper = 0;
-      else
+      if (motion.kind != Motion::kFree)
         row.bias = sign * (place - motion.displacement_at(history_end, model.histories)) / dt;
     };
     hold(p.row[0], support.x, now.x, 1);
     hold(p.row[1], support.y, now.y, -1);
+    if (support.x.kind == Motion::kFree) p.lower = p.upper = 0;
+    if (support.y.kind == Motion::kFree) p.cohesion = 0;
     rows.add(p, {state.support_force[i][0] * dt_kick, -state.support_force[i][1] * dt_kick});
   }
 }

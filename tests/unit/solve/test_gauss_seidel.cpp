@@ -97,12 +97,10 @@ PointRows random_point(Dice& dice, const std::vector<Mobility>& mobility, Sort s
   p.normal = dice.direction();
   // a gap or none, so that blocks at rest satisfy all rows
   if (sort == kContact || sort == kFace) p.row[0].bias = std::max(0.0, dice.number());
-  p.cone = sort != kTie && sort != kLimited;
-  if (p.cone) p.row[0].lower = sort == kCohesive ? -100 : 0, p.friction = 0.2;
-  if (sort == kCohesive) p.cohesion = 50;
+  if (sort != kTie && sort != kLimited)
+    p.lower = sort == kCohesive ? -100 : 0, p.friction = 0.2, p.cohesion = sort == kCohesive ? 50 : 0;
   if (sort == kFace) p.row[0].compliance = 2e-4, p.row[1].compliance = 4e-4;
-  if (sort == kLimited)
-    p.row[0].lower = -200, p.row[0].upper = 150, p.row[1].lower = -100, p.row[1].upper = 120;
+  if (sort == kLimited) p.lower = -200, p.upper = 150, p.cohesion = 110;
   return p;
 }
 
@@ -120,7 +118,6 @@ RowSet random_rows(Dice& dice, const std::vector<Mobility>& mobility, int count,
     if (sort == kFace) {
       const auto at = static_cast<int>(set.size());
       p.partner = at + 1, q.partner = at;
-      for (PointRows* r : {&p, &q}) r->cross[0] = -1e-4, r->cross[1] = -2e-4;
       add(p), add(q);
       continue;
     }
@@ -247,7 +244,7 @@ int plain_sweeps(const std::vector<Mobility>& mobility, RowSet set, const std::v
 PointRows contact(int a, int b, Vec2 arm_a, Vec2 arm_b, Vec2 normal) {
   PointRows p;
   p.block_a = a, p.block_b = b, p.arm_a = arm_a, p.arm_b = arm_b, p.normal = normal;
-  p.row[0].lower = 0, p.cone = true, p.friction = 0.6;
+  p.lower = 0, p.friction = 0.6, p.cohesion = 0;
   return p;
 }
 
@@ -457,9 +454,11 @@ TEST_CASE("points that change get a new layout") {
       if (first.points[i].partner >= 0) continue;
       RowSet second = first;
       PointRows& p = second.points[i];
-      p.cone = !p.cone;
+      const bool tie = std::isinf(p.cohesion);
       p.row[0] = p.row[1] = {};
-      if (p.cone) p.row[0].lower = 0, p.friction = 0.3, p.cohesion = 0;
+      p.lower = tie ? 0 : -std::numeric_limits<double>::infinity();
+      p.cohesion = tie ? 0 : std::numeric_limits<double>::infinity();
+      p.friction = tie ? 0.3 : 0;
       check(second);
     }
   }

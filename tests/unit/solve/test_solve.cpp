@@ -47,16 +47,16 @@ RowSet random_rows(std::mt19937& random, int blocks, int count) {
     p.row[0].bias = unit(random), p.row[1].bias = unit(random);
     switch (i % 4) {
       case 0:
-        p.row[0].lower = 0, p.cone = true, p.friction = 0.6;
+        p.lower = 0, p.friction = 0.6, p.cohesion = 0;
         break;
       case 1:
         break;
       case 2:
-        p.row[0].lower = -100, p.cone = true, p.friction = 0.3, p.cohesion = 50;
+        p.lower = -100, p.friction = 0.3, p.cohesion = 50;
         break;
       default:
-        p.row[0].lower = 0, p.cone = true, p.friction = 0.5, p.row[0].compliance = 1e-4,
-        p.row[1].compliance = 2e-4;
+        p.lower = 0, p.friction = 0.5, p.cohesion = 0;
+        p.row[0].compliance = 1e-4, p.row[1].compliance = 2e-4;
     }
     set.add(p, {500 * unit(random), 500 * unit(random)});
   }
@@ -116,7 +116,7 @@ TEST_CASE("Newton solves random problems to round-off by the separate measure") 
     RowSet set = random_rows(random, blocks.count, 8);
     // bilateral rows between random points can contradict each other; contacts cannot
     for (PointRows& p : set.points)
-      if (!p.cone) p.row[0].lower = 0, p.cone = true, p.friction = 0.2;
+      if (std::isinf(p.cohesion)) p.lower = 0, p.friction = 0.2, p.cohesion = 0;
     for (Impulse& i : set.impulse) i = {};
     const std::vector<BlockRate> rate = random_rates(random, blocks);
     const SolveReport report = solve_newton(mobilities(blocks, 1), rate, {}, 1e-12, set);
@@ -155,8 +155,7 @@ TEST_CASE("one point on the floor: presses, slips and sticks as Coulomb says") {
   p.block_a = 3;
   p.arm_a = {0, -0.5};
   p.normal = {0, 1};
-  p.row[0].lower = 0;
-  p.cone = true;
+  p.lower = 0, p.cohesion = 0;
   p.friction = 0.5;
   const auto solve = [&](Vec2 velocity) {
     RowSet set;
@@ -201,8 +200,7 @@ TEST_CASE("contact error: zero at a solution, the gap violated in metres otherwi
   p.block_a = 1, p.block_b = 0;
   p.arm_a = {-0.5, 0}, p.arm_b = {0.5, 0};
   p.normal = {1, 0};
-  p.row[0].lower = 0;
-  p.cone = true;
+  p.lower = 0, p.cohesion = 0;
   RowSet set;
   set.add(p, {0, 0});
   std::vector<BlockRate> rate(2);

@@ -2,52 +2,23 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
+#include "support/command.h"
 #include "talus/model/toml_source.h"
 #include "talus/output/files.h"
 
 using namespace talus;
+using namespace talus::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-// A folder of its own for each test, removed at its end.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / fmt::format("talus_cut_{}_{}", getpid(), count_++)) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  static inline int count_ = 0;
-  fs::path path_;
-};
-
-struct Outcome {
-  int code;
-  std::string text;  // both streams
-};
-
-// Runs a shell line in the folder; $talus is the program.
-Outcome shell(const Folder& folder, const std::string& line) {
-  const fs::path log = folder / "log.txt";
-  const int status = std::system(fmt::format("talus='{}'; ( cd '{}' && {} ) > '{}' 2>&1", TALUS_COMMAND,
-                                             (folder / "").string(), line, log.string())
-                                     .c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text_file(log)};
-}
 
 const std::string kExamples = std::string(TALUS_SOURCE_DIR) + "/examples/";
 const std::string kSettle = kExamples + "settle/settle.toml", kTunnel = kExamples + "tunnel/tunnel.toml";
@@ -128,12 +99,6 @@ contact = ["rock", "floor"]
 name = "stress"
 block = "rock[0]"
 )";
-
-bool has(const std::string& text, const std::string& part) {
-  INFO("text:\n", text, "\nshould hold: ", part);
-  CHECK(text.find(part) != std::string::npos);
-  return text.find(part) != std::string::npos;
-}
 
 size_t lines(const std::string& text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));

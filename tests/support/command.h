@@ -1,0 +1,59 @@
+#pragma once
+// The talus command as a user meets it: shell lines run in a folder of their own, with exit code and output.
+// The build defines TALUS_COMMAND, the path of the program.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "talus/model/toml_source.h"
+
+namespace talus::test {
+
+/// A folder of its own for each test, removed at its end.
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              fmt::format("talus_command_{}_{}", getpid(), count_++)) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  static inline int count_ = 0;
+  std::filesystem::path path_;
+};
+
+struct Outcome {
+  int code;          // exit code, 128 + number of the signal that ended it
+  std::string text;  // both streams
+};
+
+/// Runs a shell line inside the folder; $talus is the program. The output is kept there as log.txt.
+inline Outcome shell(const Folder& folder, const std::string& line) {
+  const std::filesystem::path log = folder / "log.txt";
+  // not "cd && line": with "line &" the shell would put both into a process of their own, and $! would name
+  // it
+  const int status = std::system(fmt::format("talus='{}'; ( cd '{}' || exit 126; {} ) > '{}' 2>&1",
+                                             TALUS_COMMAND, (folder / "").string(), line, log.string())
+                                     .c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text_file(log)};
+}
+
+/// Checks that `text` holds `part`, and says both when it does not.
+inline void has(const std::string& text, const std::string& part) {
+  INFO("text:\n", text, "\nshould hold: ", part);
+  CHECK(text.find(part) != std::string::npos);
+}
+
+}  // namespace talus::test

@@ -4,10 +4,10 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "talus_engine.h"
 
 namespace {
@@ -26,7 +26,7 @@ double take(std::vector<char*>& arguments, const std::string& name, double other
   return otherwise;
 }
 
-void run(int argc, char** argv) {
+int run(int argc, char** argv) {
   std::vector<char*> arguments(argv, argv + argc);
   EngineOptions own;
   own.stiffness = take(arguments, "--stiffness", 0);
@@ -40,7 +40,7 @@ void run(int argc, char** argv) {
   const double before = resident_bytes();
   TalusEngine engine(scene, own);
   run_scene(engine, scene, options, before);
-  if (!profile) return;
+  if (!profile) return 0;
   double all = 0;
   for (const double s : engine.work().profile.seconds) all += s;
   for (size_t i = 0; i < talus::Profile::kParts; ++i)
@@ -50,16 +50,9 @@ void run(int argc, char** argv) {
                engine.report().solve.iterations, engine.report().searched, engine.report().contacts,
                engine.work().gauss_seidel.colours(), engine.report().error.worst,
                engine.report().worst.c_str());
+  return 0;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    run(argc, argv);
-    return 0;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "talus-bench: %s\n", e.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return run_program("talus-bench", run, argc, argv); }

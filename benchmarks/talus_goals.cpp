@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <string>
 
+#include "command_line.h"
 #include "talus_engine.h"
 
 namespace talus::bench {
@@ -25,15 +25,19 @@ void run_for(TalusEngine& engine, double seconds, bool shake) {
   }
 }
 
-double stiffness_of(const std::string& scene) { return scene.starts_with("joint") ? 2e10 : 0; }
+// Stiff joints in jointed rock, hard ones in walls. (drift_after() and large() take hard ones in any scene.)
+EngineOptions options_for(const std::string& name, int threads) {
+  EngineOptions options;
+  options.threads = threads;
+  options.stiffness = name.starts_with("joint") ? 2e10 : 0;
+  return options;
+}
 
 // The same step solved with 20 sweeps and to 1e-8 of the block size, from states of a run in which every step
 // is solved to 1e-8.
 void exact(const std::string& name, int threads) {
   const BenchScene scene = named_scene(name);
-  EngineOptions options;
-  options.threads = threads;
-  options.stiffness = stiffness_of(name);
+  EngineOptions options = options_for(name, threads);
   options.sweeps = 2000;
   // the solver itself stops at a tenth of its tolerance
   options.tolerance = 1e-7;
@@ -79,9 +83,7 @@ void exact(const std::string& name, int threads) {
 // Local damping until the unbalanced force is below 1e-7 of the mean.
 void rest(const std::string& name, int threads) {
   const BenchScene scene = named_scene(name);
-  EngineOptions options;
-  options.threads = threads;
-  options.stiffness = stiffness_of(name);
+  EngineOptions options = options_for(name, threads);
   options.damping_local = 0.8;
   options.sweeps = 2000;
   options.tolerance = 1e-9;
@@ -115,10 +117,7 @@ void rest(const std::string& name, int threads) {
 // Settled with damping, shaken for 2 s, quiet with damping for 1 s: what stays.
 void drift_after(const std::string& name, int threads) {
   const BenchScene scene = named_scene(name);
-  EngineOptions options;
-  options.threads = threads;
-  options.sweeps = 20;
-  TalusEngine engine(scene, options);
+  TalusEngine engine(scene, {.threads = threads, .sweeps = 20});
   engine.settings().damping_local = 0.8;
   run_for(engine, 2, false);
   const std::vector<BenchBlock> before = engine.blocks();
@@ -136,10 +135,7 @@ void drift_after(const std::string& name, int threads) {
 // Jointed rock under sudden gravity for a second, and the deepest overlap on the way.
 void settle(const std::string& name, int threads) {
   const BenchScene scene = named_scene(name);
-  EngineOptions options;
-  options.threads = threads;
-  options.stiffness = stiffness_of(name);
-  TalusEngine engine(scene, options);
+  TalusEngine engine(scene, options_for(name, threads));
   const double start = wall_seconds();
   double deepest = 0, error = 0;
   for (int tenth = 0; tenth < 10; ++tenth) {
@@ -157,9 +153,7 @@ void settle(const std::string& name, int threads) {
 
 void large(const std::string& name, int threads) {
   const BenchScene scene = named_scene(name);
-  EngineOptions options;
-  options.threads = threads;
-  TalusEngine engine(scene, options);
+  TalusEngine engine(scene, {.threads = threads});
   const double start = wall_seconds();
   for (int n = 0; n < 100; ++n) engine.step(kDt);
   fmt::print("large {}: {} blocks, {} contacts, 100 steps in {:.0f} s, peak memory {:.2f} GB\n", name,
@@ -182,10 +176,5 @@ int run(int argc, char** argv) {
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  try {
-    return talus::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "talus-goals: {}\n", error.what());
-    return 2;
-  }
+  return talus::bench::run_program("talus-goals", talus::bench::run, argc, argv);
 }

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <exception>
-
+#include "command_line.h"
 #include "one_step_problem.h"
 #include "talus_engine.h"
 
@@ -92,10 +91,5 @@ int run(int argc, char** argv) {
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  try {
-    return talus::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "talus-one-step: {}\n", error.what());
-    return 2;
-  }
+  return talus::bench::run_program("talus-one-step", talus::bench::run, argc, argv);
 }

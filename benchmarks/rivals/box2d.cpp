@@ -6,9 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 
-#include "measures.h"
+#include "command_line.h"
 #include "rigid_shape.h"
 
 namespace talus::bench {
@@ -103,23 +102,14 @@ class Box2dEngine : public BenchEngine {
 };
 
 int run(int argc, char** argv) {
-  BenchOptions options = read_options(argc, argv);
-  options.threads = 1;  // it has no threads
-  const BenchScene scene = named_scene(options.scene);
-  const double resident_before = resident_bytes();
-  Box2dEngine engine(scene, options.sweeps > 0 ? options.sweeps : 8);
-  run_scene(engine, scene, options, resident_before);
-  return 0;
+  return run_on_one_thread(argc, argv, [](const BenchScene& scene, const BenchOptions& options) {
+    return Box2dEngine(scene, options.sweeps > 0 ? options.sweeps : 8);
+  });
 }
 
 }  // namespace
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  try {
-    return talus::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "rival_box2d: {}\n", error.what());
-    return 2;
-  }
+  return talus::bench::run_program("rival_box2d", talus::bench::run, argc, argv);
 }

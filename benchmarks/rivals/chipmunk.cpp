@@ -7,9 +7,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <exception>
 
-#include "measures.h"
+#include "command_line.h"
 #include "rigid_shape.h"
 
 namespace talus::bench {
@@ -96,25 +95,17 @@ class ChipmunkEngine : public BenchEngine {
   std::vector<cpBody*> bodies_;
 };
 
+// The plain space has no threads.
 int run(int argc, char** argv) {
-  BenchOptions options = read_options(argc, argv);
-  options.threads = 1;  // the plain space, which has none
-  const BenchScene scene = named_scene(options.scene);
-  const double resident_before = resident_bytes();
-  ChipmunkEngine engine(scene, options.sweeps > 0 ? options.sweeps : 10,
-                        std::isnan(options.slop) ? 0.005 : options.slop);
-  run_scene(engine, scene, options, resident_before);
-  return 0;
+  return run_on_one_thread(argc, argv, [](const BenchScene& scene, const BenchOptions& options) {
+    return ChipmunkEngine(scene, options.sweeps > 0 ? options.sweeps : 10,
+                          std::isnan(options.slop) ? 0.005 : options.slop);
+  });
 }
 
 }  // namespace
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  try {
-    return talus::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "rival_chipmunk: {}\n", error.what());
-    return 2;
-  }
+  return talus::bench::run_program("rival_chipmunk", talus::bench::run, argc, argv);
 }

@@ -15,11 +15,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <exception>
 #include <map>
 #include <stdexcept>
 
-#include "measures.h"
+#include "command_line.h"
 #include "one_step_problem.h"
 #include "talus/base/random.h"
 
@@ -174,10 +173,5 @@ int run(int argc, char** argv) {
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  try {
-    return talus::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "rival_siconos: {}\n", error.what());
-    return 2;
-  }
+  return talus::bench::run_program("rival_siconos", talus::bench::run, argc, argv);
 }

@@ -15,84 +15,13 @@
 #include <numbers>
 #include <set>
 
+#include "support/limit_models.h"
 #include "talus/talus.h"
 
 namespace {
 
 using talus::Vec2;
-
-constexpr double kG = 9.81;
-constexpr double kRadius = 10;  // of the centre line of all arches [m]
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
-std::string block_text(const std::string& name, const talus::Polygon& p, const std::string& kind) {
-  std::string corners;
-  for (const Vec2 v : p) corners += fmt::format("{}[{:.17g},{:.17g}]", corners.empty() ? "" : ",", v.x, v.y);
-  return fmt::format("[[block]]\nname = \"{}\"\npolygon = [{}]\nmaterial = \"m\"\nkind = \"{}\"\n", name,
-                     corners, kind);
-}
-
-std::string head(Vec2 gravity, double friction_degrees, double density) {
-  return fmt::format(
-      "talus = 1\n[model]\ngravity = [{:.17g}, {:.17g}]\n[material.m]\ndensity = {:.17g}\n[joint.face]\n"
-      "friction_angle = \"{:.17g} deg\"\n[contact]\njoint = \"face\"\n",
-      gravity.x, gravity.y, density, friction_degrees);
-}
-
-std::string stage(double duration, double step) {
-  return fmt::format("[[stage]]\nname = \"run\"\nkind = \"dynamic\"\nduration = {}\ntime_step = {}\n",
-                     duration, step);
-}
-
-struct Arch {
-  double embrace;    // [deg]
-  double thickness;  // over the radius of the centre line
-  int voussoirs;
-};
-
-// Voussoirs with straight faces between two fixed springings that are wider than they.
-std::string arch_text(const Arch& arch, double push, double friction_degrees) {
-  const double t = arch.thickness * kRadius, from = radians(90 - arch.embrace / 2);
-  const auto at = [&](double radius, int joint) {
-    const double angle = from + radians(arch.embrace) * joint / arch.voussoirs;
-    return radius * Vec2{std::cos(angle), std::sin(angle)};
-  };
-  const double inner = kRadius - t / 2, outer = kRadius + t / 2;
-  std::string text = head({push * kG, -kG}, friction_degrees, 2400);
-  for (const int joint : {0, arch.voussoirs}) {
-    const Vec2 a = at(inner - t, joint), b = at(outer + t, joint);
-    const Vec2 away = (joint == 0 ? -1 : 1) * t / norm(b - a) * turn_left(b - a);
-    text += block_text(fmt::format("springing_{}", joint), {a, b, b + away, a + away}, "fixed");
-  }
-  for (int i = 0; i < arch.voussoirs; ++i)
-    text += block_text(fmt::format("v{}", i),
-                       {at(inner, i), at(outer, i), at(outer, i + 1), at(inner, i + 1)}, "rigid");
-  return text;
-}
-
-// The classic slope of Goodman and Bray: 16 columns 10 m wide on steps of 1 m, dipping 30 deg out of the
-// slope, 4 m to 40 m high up to the crest (column 10), then lower by 6.2 m each; 25 kN/m3.
-constexpr int kColumns = 16;
-std::string columns_text(double friction_degrees) {
-  const Vec2 up_slope{std::cos(radians(30)), std::sin(radians(30))};
-  const auto at = [&](double along, double height) {
-    return along * up_slope + height * turn_left(up_slope);
-  };
-  talus::Polygon base{at(-60, 0), at(-60, -30), at(10 * kColumns, -30)};
-  for (int n = kColumns - 1; n >= 0; --n) {
-    base.push_back(at(10 * (n + 1), n));
-    if (n > 0) base.push_back(at(10 * n, n));
-  }
-  std::string text = head({0, -kG}, friction_degrees, 25000 / kG) + block_text("base", base, "fixed");
-  for (int n = 0; n < kColumns; ++n) {
-    const double height = n < 10 ? 4 * (n + 1) : 40 - 6.2 * (n - 9);
-    text += block_text(
-        fmt::format("c{}", n + 1),
-        {at(10 * n, n), at(10 * (n + 1), n), at(10 * (n + 1), n + height), at(10 * n, n + height)}, "rigid");
-  }
-  return text;
-}
+using namespace talus::test;
 
 // Ends a run when something has moved further than what stands.
 class MotionWatch : public talus::Observer {
@@ -181,7 +110,7 @@ void study_thickness(const std::string& solver) {
     Runs runs({solver, "solver.max_sweeps=200000"});
     bisect(runs, fmt::format("arch, {} voussoirs: least t/R", voussoirs), 1.12 * reference, 0.91 * reference,
            kWidth * reference, reference, "%", [n = voussoirs](double t) {
-             return arch_text({180, t, n}, 0, 45) + stage(2, 2e-3);
+             return arch_text({180, t, n}, 0, 45) + stage_text(2, 2e-3);
            });
   }
 }
@@ -207,7 +136,8 @@ void study_push(const std::string& solver) {
     Runs runs({solver});
     bisect(runs, name_of(c), c.friction < 0.5 ? 0 : 0.88 * c.reference, 1.09 * c.reference,
            kWidth * c.reference, c.reference, "%", [&c](double push) {
-             return arch_text(c.arch, push, std::atan(c.friction) * 180 / std::numbers::pi) + stage(2, 2e-3);
+             return arch_text(c.arch, push, std::atan(c.friction) * 180 / std::numbers::pi) +
+                    stage_text(2, 2e-3);
            });
   }
 }
@@ -219,11 +149,8 @@ void study_ramp(const std::string& solver) {
   for (const PushCase& c : kPushed) {
     const double end = 40;
     Runs runs({solver});
-    const MotionWatch watch =
-        runs.run(arch_text(c.arch, 0, std::atan(c.friction) * 180 / std::numbers::pi) + stage(end, 2e-3) +
-                 fmt::format("[history.push]\ntime = [0, {}]\nvalue = [0, {:.17g}]\n[[load]]\nname = "
-                             "\"push\"\nacceleration_x = \"push\"\n",
-                             end, 1.1 * c.reference * kG));
+    const MotionWatch watch = runs.run(arch_text(c.arch, 0, std::atan(c.friction) * 180 / std::numbers::pi) +
+                                       stage_text(end, 2e-3) + ramp_text(end, 1.1 * c.reference));
     runs.print(name_of(c) + ", ramp", 1.1 * c.reference * watch.stood_until / end, 0, c.reference, "%");
   }
 }
@@ -234,7 +161,7 @@ void study_toppling(const std::string& solver) {
   for (const double step : {1e-2, 5e-3, 2e-3}) {
     Runs runs({solver}, 1e-2);
     bisect(runs, fmt::format("toppling, dt {:g} s: friction angle", step), 39.7, 36, 0.02, 38.134, "deg",
-           [step](double angle) { return columns_text(angle) + stage(4, step); });
+           [step](double angle) { return columns_text(angle) + stage_text(4, step); });
   }
 }
 

@@ -6,8 +6,7 @@
 // program); for toppling the limit equilibrium of Goodman and Bray, column by column from the top.
 // studies/limit_states finds the limits themselves.
 
-#include <numbers>
-
+#include "support/limit_models.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -15,79 +14,6 @@ using namespace talus;
 using namespace talus::test;
 
 namespace {
-
-constexpr double kG = 9.81;
-constexpr double kRadius = 10;  // of the centre line of all arches [m]
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
-std::string block_text(const std::string& name, const Polygon& p, const std::string& kind) {
-  std::string corners;
-  for (const Vec2 v : p) corners += fmt::format("{}[{:.17g},{:.17g}]", corners.empty() ? "" : ",", v.x, v.y);
-  return fmt::format("[[block]]\nname = \"{}\"\npolygon = [{}]\nmaterial = \"m\"\nkind = \"{}\"\n", name,
-                     corners, kind);
-}
-
-std::string head(Vec2 gravity, double friction_degrees, double density) {
-  return fmt::format(
-      "talus = 1\n[model]\ngravity = [{:.17g}, {:.17g}]\n[material.m]\ndensity = {:.17g}\n[joint.face]\n"
-      "friction_angle = \"{:.17g} deg\"\n[contact]\njoint = \"face\"\n",
-      gravity.x, gravity.y, density, friction_degrees);
-}
-
-std::string stage(double duration, double step) {
-  return fmt::format("[[stage]]\nname = \"run\"\nkind = \"dynamic\"\nduration = {}\ntime_step = {}\n",
-                     duration, step);
-}
-
-struct Arch {
-  double embrace;    // [deg]
-  double thickness;  // over the radius of the centre line
-  int voussoirs;
-};
-
-// Voussoirs with straight faces between two fixed springings that are wider than they.
-std::string arch_text(const Arch& arch, double push, double friction_degrees) {
-  const double t = arch.thickness * kRadius, from = radians(90 - arch.embrace / 2);
-  const auto at = [&](double radius, int joint) {
-    const double angle = from + radians(arch.embrace) * joint / arch.voussoirs;
-    return radius * Vec2{std::cos(angle), std::sin(angle)};
-  };
-  const double inner = kRadius - t / 2, outer = kRadius + t / 2;
-  std::string text = head({push * kG, -kG}, friction_degrees, 2400);
-  for (const int joint : {0, arch.voussoirs}) {
-    const Vec2 a = at(inner - t, joint), b = at(outer + t, joint);
-    const Vec2 away = (joint == 0 ? -1 : 1) * t / norm(b - a) * turn_left(b - a);
-    text += block_text(fmt::format("springing_{}", joint), {a, b, b + away, a + away}, "fixed");
-  }
-  for (int i = 0; i < arch.voussoirs; ++i)
-    text += block_text(fmt::format("v{}", i),
-                       {at(inner, i), at(outer, i), at(outer, i + 1), at(inner, i + 1)}, "rigid");
-  return text;
-}
-
-// The classic slope of Goodman and Bray: 16 columns 10 m wide on steps of 1 m, dipping 30 deg out of the
-// slope, 4 m to 40 m high up to the crest (column 10), then lower by 6.2 m each; 25 kN/m3.
-constexpr int kColumns = 16;
-std::string columns_text(double friction_degrees) {
-  const Vec2 up_slope{std::cos(radians(30)), std::sin(radians(30))};
-  const auto at = [&](double along, double height) {
-    return along * up_slope + height * turn_left(up_slope);
-  };
-  Polygon base{at(-60, 0), at(-60, -30), at(10 * kColumns, -30)};
-  for (int n = kColumns - 1; n >= 0; --n) {
-    base.push_back(at(10 * (n + 1), n));
-    if (n > 0) base.push_back(at(10 * n, n));
-  }
-  std::string text = head({0, -kG}, friction_degrees, 25000 / kG) + block_text("base", base, "fixed");
-  for (int n = 0; n < kColumns; ++n) {
-    const double height = n < 10 ? 4 * (n + 1) : 40 - 6.2 * (n - 9);
-    text += block_text(
-        fmt::format("c{}", n + 1),
-        {at(10 * n, n), at(10 * (n + 1), n), at(10 * (n + 1), n + height), at(10 * n, n + height)}, "rigid");
-  }
-  return text;
-}
 
 double largest_motion(const State& state) {
   double moved = 0;
@@ -123,8 +49,9 @@ TEST_CASE("A6e a semicircular arch stands down to its least thickness") {
        {Case{9, 0.101525, kGaussSeidel}, Case{15, 0.106068, kGaussSeidel}, Case{27, 0.106721, kGaussSeidel},
         Case{9, 0.101525, kNewton}, Case{15, 0.106068, kNewton}}) {
     for (const double percent : {3.0, 1.0, -1.0, -3.0}) {  // tolerance of the case, and what it aims for
-      const CaseResult r = run_case(
-          arch_text({180, c.limit * (1 + percent / 100), c.voussoirs}, 0, 45) + stage(2, 2e-3), {c.solver});
+      const CaseResult r =
+          run_case(arch_text({180, c.limit * (1 + percent / 100), c.voussoirs}, 0, 45) + stage_text(2, 2e-3),
+                   {c.solver});
       const std::string what =
           fmt::format("A6e n={} {} t {:+g} %", c.voussoirs, c.solver.substr(14), percent);
       percent > 0 ? check_stands(what, r) : check_collapses(what, r, -percent);
@@ -144,7 +71,7 @@ TEST_CASE("A6e an arch pushed sideways collapses at its limit") {
     for (const double percent : {3.0, 1.0, -1.0, -3.0}) {
       // friction 0.7: the least for which hinging governs
       const CaseResult r =
-          run_case(arch_text(c.arch, c.limit * (1 + percent / 100), 35) + stage(2, 2e-3), {c.solver});
+          run_case(arch_text(c.arch, c.limit * (1 + percent / 100), 35) + stage_text(2, 2e-3), {c.solver});
       const std::string what =
           fmt::format("A6e n={} {} k {:+g} %", c.arch.voussoirs, c.solver.substr(14), percent);
       percent < 0 ? check_stands(what, r) : check_collapses(what, r, percent);
@@ -155,11 +82,8 @@ TEST_CASE("A6e an arch pushed sideways collapses at its limit") {
 TEST_CASE("A6e an arch under a push that grows slowly goes at its limit") {
   // from nothing to 1.1 of the limit in 20 s, twenty times sqrt(R/g)
   const double limit = 0.373612, end = 20;
-  const std::string text = arch_text({157.5, 0.15, 7}, 0, 35) + stage(end, 2e-3) +
-                           fmt::format(
-                               "[history.push]\ntime = [0, {}]\nvalue = [0, {:.17g}]\n[[load]]\nname = "
-                               "\"push\"\nacceleration_x = \"push\"\n",
-                               end, 1.1 * limit * kG);
+  const std::string text =
+      arch_text({157.5, 0.15, 7}, 0, 35) + stage_text(end, 2e-3) + ramp_text(end, 1.1 * limit);
   double push = 0;  // at the last instant at which it stands
   const CaseResult r = run_case(text, {kGaussSeidel}, [&](const Instant& i) {
     if (largest_motion(i.state) < 1e-4) push = 1.1 * limit * i.state.time / end;
@@ -178,10 +102,10 @@ TEST_CASE("A6g columns on a slope topple below the friction of Goodman and Bray"
   // fail, or stray to solutions that move above the limit. The contact error allowed is 2e-4 of g dt^2.
   for (const double above : {1.0, 0.3, -0.3, -1.0}) {  // tolerance of the case, and what it aims for [deg]
     std::vector<Vec2> half_way;
-    const CaseResult r =
-        run_case(columns_text(limit + above) + stage(duration, 5e-3), {kGaussSeidel}, [&](const Instant& i) {
-          if (i.state.time <= duration / 2) half_way = i.state.displacement;
-        });
+    const CaseResult r = run_case(columns_text(limit + above) + stage_text(duration, 5e-3), {kGaussSeidel},
+                                  [&](const Instant& i) {
+                                    if (i.state.time <= duration / 2) half_way = i.state.displacement;
+                                  });
     const std::string what = fmt::format("A6g friction angle {:+g} deg", above);
     if (above > 0) {
       double moves = 0;

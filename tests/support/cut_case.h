@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/box_polygon.h"
 #include "talus/cut/cut.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/model/read_model.h"
@@ -23,10 +24,6 @@ namespace talus::test {
 __extension__ typedef __int128 Int128;
 
 // --- making models ---
-
-inline Polygon box_polygon(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
 
 inline void add_region(Model& model, const std::string& name, const Polygon& outline) {
   RegionInput r;

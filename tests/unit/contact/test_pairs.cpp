@@ -7,58 +7,37 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "support/block_scene.h"
 #include "talus/step/step.h"
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
 constexpr double kMargin = 0.02;
 
-Polygon rectangle(double x_0, double y_0, double x_1, double y_1) {
-  return {{x_0, y_0}, {x_1, y_0}, {x_1, y_1}, {x_0, y_1}};
-}
-
-JointProperty joint_of(double friction, double strength) {
-  JointProperty joint;
-  joint.name = "joint";
-  joint.friction_angle = std::atan(friction);
-  joint.cohesion = joint.tensile_strength = strength;
-  return joint;
-}
-
 // Blocks with one joint everywhere; the first is fixed.
 Scene scene_of(const std::vector<Polygon>& polygons, double strength = 0) {
-  Model model;
-  model.materials.push_back({"rock", 2000, 5e9, 0.29});
-  model.joints.push_back(joint_of(0.6, strength));
-  model.default_joint = 0;
+  Model model = jointed_rock();
+  model.joints[0].cohesion = model.joints[0].tensile_strength = strength;
   model.solver.method = SolverKind::kGaussSeidel;
-  Layout layout;
-  layout.default_joint = 0;
-  layout.groups = {"blocks"};
-  layout.group_where.emplace_back();
-  for (const Polygon& p : polygons) {
-    BlockShape shape;
-    shape.name = "b" + std::to_string(layout.blocks.size());
-    shape.polygon = p;
-    shape.kind = layout.blocks.empty() ? BlockKind::kFixed : BlockKind::kDeformable;
-    layout.blocks.push_back(shape);
-  }
-  return build_scene(std::move(model), std::move(layout));
+  std::vector<ScenePart> parts;
+  for (const Polygon& p : polygons)
+    parts.push_back({p, parts.empty() ? BlockKind::kFixed : BlockKind::kDeformable});
+  return block_scene(std::move(model), parts);
 }
 
 // Bricks of 1 x 0.5 m in running bond on a floor.
 Scene small_wall(int columns, int courses) {
-  std::vector<Polygon> bricks{rectangle(-3, -1, columns + 3, 0)};
+  std::vector<Polygon> bricks{box_polygon(-3, -1, columns + 3, 0)};
   for (int course = 0; course < courses; ++course)
     for (int i = 0; i < columns; ++i) {
       const double left = i + 0.5 * (course % 2), bottom = 0.5 * course;
-      bricks.push_back(rectangle(left, bottom, left + 1, bottom + 0.5));
+      bricks.push_back(box_polygon(left, bottom, left + 1, bottom + 0.5));
     }
   return scene_of(bricks);
 }
@@ -67,7 +46,7 @@ Scene small_wall(int columns, int courses) {
 Scene small_pile(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<Polygon> stones{rectangle(-3, -3, 9, -0.5)};
+  std::vector<Polygon> stones{box_polygon(-3, -3, 9, -0.5)};
   for (int k = 0; k < 36; ++k) {
     const Vec2 center{0.98 * (k % 6), 0.98 * (k / 6)};
     const int corners = 5 + k % 4;
@@ -346,7 +325,7 @@ TEST_CASE("memory goes with the key; a corner that passes to the next edge keeps
 }
 
 TEST_CASE("a pair that leaves the list and comes back has no memory") {
-  const Scene scene = scene_of({rectangle(-3, -1, 3, 0), rectangle(0, 0, 1, 1), rectangle(1, 0, 2, 1)});
+  const Scene scene = scene_of({box_polygon(-3, -1, 3, 0), box_polygon(0, 0, 1, 1), box_polygon(1, 0, 2, 1)});
   State state = start_state(scene);
   update(scene, state);
   remember_all(state);
@@ -370,7 +349,8 @@ TEST_CASE("a pair that leaves the list and comes back has no memory") {
 }
 
 TEST_CASE("no contacts where faces hold, until they break") {
-  const Scene scene = scene_of({rectangle(-3, -1, 3, 0), rectangle(0, 0, 1, 1), rectangle(0, 1, 1, 2)}, 1e5);
+  const Scene scene =
+      scene_of({box_polygon(-3, -1, 3, 0), box_polygon(0, 0, 1, 1), box_polygon(0, 1, 1, 2)}, 1e5);
   REQUIRE(scene.bonds.faces.size() == 2);
   State state = start_state(scene);
   CHECK(update(scene, state) == 0);

@@ -6,19 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "support/box_polygon.h"
+#include "support/layout_case.h"
+
 using namespace talus;
+using namespace talus::test;
 
 namespace {
-
-BlockInput block(const std::string& name, const Polygon& polygon) {
-  BlockInput b;
-  b.name = name;
-  b.polygon = polygon;
-  b.material = 0;
-  return b;
-}
-
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 GridInput grid(const std::string& name, Vec2 min, Vec2 max, int columns, int rows, int joint = 0) {
   GridInput g;
@@ -28,14 +22,6 @@ GridInput grid(const std::string& name, Vec2 min, Vec2 max, int columns, int row
   g.material = 0;
   g.joint = joint;
   return g;
-}
-
-Layout layout_of(const Model& model) {
-  Findings findings("case.toml", "");
-  const Layout layout = make_layout(model, findings);
-  INFO(findings.render());
-  REQUIRE_FALSE(findings.has_errors());
-  return layout;
 }
 
 std::string errors_of(const Model& model) {
@@ -110,7 +96,7 @@ TEST_CASE("names of grid cells run from the lower left, triangles from the lower
   const std::vector<std::string> names{"wall[0,0]",   "wall[1,0]",   "wall[0,1]",   "wall[1,1]",
                                        "roof[0,0,0]", "roof[0,0,1]", "roof[0,0,2]", "roof[0,0,3]"};
   for (size_t i = 0; i < names.size(); ++i) CHECK(layout.blocks[i].name == names[i]);
-  CHECK(layout.blocks[1].polygon == box(1, 0, 2, 1));
+  CHECK(layout.blocks[1].polygon == box_polygon(1, 0, 2, 1));
   CHECK(layout.blocks[4].polygon == Polygon{{0, 2}, {2, 2}, {1, 3}});
   CHECK(layout.blocks[5].polygon == Polygon{{2, 2}, {2, 4}, {1, 3}});
   CHECK(layout.blocks_called("wall") == std::vector<int>{0, 1, 2, 3});
@@ -122,7 +108,7 @@ TEST_CASE("names of grid cells run from the lower left, triangles from the lower
 
 TEST_CASE("a clockwise polygon is turned") {
   Model model;
-  model.blocks = {block("a", {{0, 0}, {0, 1}, {2, 1}, {2, 0}})};
+  model.blocks = {block_input("a", {{0, 0}, {0, 1}, {2, 1}, {2, 0}})};
   const Layout layout = layout_of(model);
   CHECK(signed_area(layout.blocks[0].polygon) == 2);
   CHECK(layout.blocks[0].polygon == Polygon{{2, 0}, {2, 1}, {0, 1}, {0, 0}});
@@ -130,7 +116,7 @@ TEST_CASE("a clockwise polygon is turned") {
 
 TEST_CASE("joints: a named pair goes before a grid's own joint and before the default") {
   Model model;
-  model.blocks = {block("a", box(0, 0, 1, 1)), block("b", box(1, 0, 2, 1))};
+  model.blocks = {block_input("a", box_polygon(0, 0, 1, 1)), block_input("b", box_polygon(1, 0, 2, 1))};
   model.grids = {grid("g", {0, 1}, {2, 2}, 2, 1, 5), grid("h", {0, 2}, {2, 3}, 2, 1, 6)};
   model.default_joint = 3;
   model.contact_pairs = {{"g", "a", 7, {}}};
@@ -174,7 +160,8 @@ TEST_CASE("an edge support holds the corners of edges on the segment, not lone c
 
 TEST_CASE("a point support holds every corner at the point, else the first block around it") {
   Model model;
-  model.blocks = {block("a", box(0, 0, 1, 1)), block("b", box(1, 0, 2, 1)), block("c", box(0, 1, 2, 2))};
+  model.blocks = {block_input("a", box_polygon(0, 0, 1, 1)), block_input("b", box_polygon(1, 0, 2, 1)),
+                  block_input("c", box_polygon(0, 1, 2, 2))};
   const Layout layout = layout_of(model);
   auto corners = corners_of_support(layout, point_support({1, 1}));
   REQUIRE(corners.size() == 2);  // on the side of c, but no corner of it
@@ -215,11 +202,11 @@ TEST_CASE("blocks_at includes the boundary") {
 TEST_CASE("what cannot be laid out is reported by name") {
   Model model;
   CHECK(has(errors_of(model), "the model has no block"));
-  model.blocks = {block("a", box(0, 0, 1, 1)), block("b", box(0.5, 0, 1.5, 1))};
+  model.blocks = {block_input("a", box_polygon(0, 0, 1, 1)), block_input("b", box_polygon(0.5, 0, 1.5, 1))};
   CHECK(has(errors_of(model), "overlaps \"a\" by 0.5 m2"));
-  model.blocks[1] = block("b", {{2, 0}, {3, 1}, {3, 0}, {2, 1}});
+  model.blocks[1] = block_input("b", {{2, 0}, {3, 1}, {3, 0}, {2, 1}});
   CHECK(has(errors_of(model), "block.b.polygon"));
-  model.blocks[1] = block("b", box(1, 0, 2, 1));
+  model.blocks[1] = block_input("b", box_polygon(1, 0, 2, 1));
   model.supports = {point_support({5, 5})};
   CHECK(has(errors_of(model), "support.pin: the point lies on no block"));
   model.supports.clear();

@@ -6,21 +6,13 @@
 #include <set>
 
 #include "support/cut_case.h"
-#include "talus/cut/layout.h"
+#include "support/layout_case.h"
 #include "talus/geometry/shapes.h"
 
 using namespace talus;
 using namespace talus::test;
 
 namespace {
-
-Layout layout_of(const Model& model) {
-  Findings findings("case.toml", "");
-  const Layout layout = make_layout(model, findings);
-  INFO(findings.render());
-  REQUIRE_FALSE(findings.has_errors());
-  return layout;
-}
 
 int block_holding(const Layout& layout, Vec2 p) {
   const std::vector<int> list = blocks_at(layout, p, 0);
@@ -132,11 +124,7 @@ TEST_CASE("layout of a cut: groups are regions and openings, names are theirs an
   Model model = rock_model(box_polygon(0, 0, 8, 4));
   add_region(model, "ore", box_polygon(0, 4, 8, 8));
   add_opening(model, box_polygon(6, 1, 8, 3), true);
-  BlockInput slab;
-  slab.name = "slab";
-  slab.polygon = box_polygon(0, 8, 8, 9);
-  slab.material = 0;
-  model.blocks.push_back(slab);
+  model.blocks.push_back(block_input("slab", box_polygon(0, 8, 8, 9)));
   const Layout layout = layout_of(model);
   CHECK(layout.groups == std::vector<std::string>{"slab", "rock", "ore", "opening0"});
   CHECK(layout.blocks_called("ore") == std::vector<int>{block_holding(layout, {1, 6})});
@@ -185,11 +173,7 @@ TEST_CASE("layout of a cut: removed rock leaves no glue on the walls it leaves")
   Model model = rock_model(box_polygon(0, 0, 8, 8));
   model.default_joint = -1;
   add_opening(model, box_polygon(2, 2, 6, 6), false);
-  BlockInput lining;
-  lining.name = "lining";
-  lining.polygon = box_polygon(2, 2, 6, 3);
-  lining.material = 0;
-  model.blocks.push_back(lining);
+  model.blocks.push_back(block_input("lining", box_polygon(2, 2, 6, 3)));
   const Layout layout = layout_of(model);
   const int rock = block_holding(layout, {4, 1});
   const auto floor = static_cast<int>(edge_through(layout, {4, 1}, {4, 2}));

@@ -7,47 +7,24 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
+#include <utility>
 #include <vector>
 
+#include "support/block_scene.h"
+
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
-Polygon rectangle(double x_0, double y_0, double x_1, double y_1) {
-  return {{x_0, y_0}, {x_1, y_0}, {x_1, y_1}, {x_0, y_1}};
-}
-
-struct Part {
-  Polygon polygon;
-  BlockKind kind = BlockKind::kDeformable;
-};
-
-Scene scene_of(const std::vector<Part>& parts, double alpha) {
-  Model model;
-  model.materials.push_back({"rock", 2000, 5e9, 0.29});
-  JointProperty joint;
-  joint.name = "joint";
-  joint.friction_angle = std::atan(0.6);
-  model.joints.push_back(joint);
-  model.default_joint = 0;
+Scene scene_of(const std::vector<ScenePart>& parts, double alpha) {
+  Model model = jointed_rock();
   model.contact.alpha = alpha;
-  Layout layout;
-  layout.default_joint = 0;
-  layout.groups = {"blocks"};
-  layout.group_where.emplace_back();
-  for (const Part& part : parts) {
-    BlockShape shape;
-    shape.name = "b" + std::to_string(layout.blocks.size());
-    shape.polygon = part.polygon;
-    shape.kind = part.kind;
-    layout.blocks.push_back(shape);
-  }
-  return build_scene(std::move(model), std::move(layout));
+  return block_scene(std::move(model), parts);
 }
 
 // A free block of 1 m2.
-Scene free_square(double alpha) { return scene_of({{rectangle(0, 0, 1, 1)}}, alpha); }
+Scene free_square(double alpha) { return scene_of({{box_polygon(0, 0, 1, 1)}}, alpha); }
 
 class March {
  public:
@@ -187,9 +164,9 @@ TEST_CASE("the energy ledger of implicit steps closes where motion is linear, st
   for (const double alpha : {0.0, 0.2}) {
     CAPTURE(alpha);
     // a swinging block and one that stands on it fall flat on a floor and bounce
-    Scene scene = scene_of({{rectangle(-5, -1, 5, 0), BlockKind::kFixed},
-                            {rectangle(0, 0.001, 1, 1.001)},
-                            {rectangle(0, 1.002, 1, 1.5)}},
+    Scene scene = scene_of({{box_polygon(-5, -1, 5, 0), BlockKind::kFixed},
+                            {box_polygon(0, 0.001, 1, 1.001)},
+                            {box_polygon(0, 1.002, 1, 1.5)}},
                            alpha);
     scene.model.gravity = {0, -9.81};
     March march(scene, true);
@@ -215,10 +192,10 @@ TEST_CASE("the energy ledger of implicit steps closes where motion is linear, st
 TEST_CASE("what the ledger leaves over in turning motion is no more than in explicit steps") {
   // at a slant on the floor, with friction; the strain energy is not quadratic in the turning block
   const auto left_over = [](bool implicit, double share) {
-    Scene scene = scene_of({{rectangle(-5, -1, 5, 0), BlockKind::kFixed},
-                            {rectangle(0, 0.001, 1, 1.001)},
-                            {rectangle(0.1, 1.002, 0.9, 1.5)},
-                            {rectangle(0.2, 1.502, 1.1, 2.4), BlockKind::kRigid}},
+    Scene scene = scene_of({{box_polygon(-5, -1, 5, 0), BlockKind::kFixed},
+                            {box_polygon(0, 0.001, 1, 1.001)},
+                            {box_polygon(0.1, 1.002, 0.9, 1.5)},
+                            {box_polygon(0.2, 1.502, 1.1, 2.4), BlockKind::kRigid}},
                            0);
     scene.model.gravity = {3, -9.81};
     March march(scene, implicit);
@@ -266,7 +243,7 @@ TEST_CASE("explicit and implicit runs come to each other with the square of the 
 
 TEST_CASE("rigid blocks and blocks in free fall are not touched by implicit elasticity") {
   const auto fall = [](bool implicit, BlockKind kind) {
-    Scene scene = scene_of({{rectangle(0, 0, 1, 1), kind}}, 0.2);
+    Scene scene = scene_of({{box_polygon(0, 0, 1, 1), kind}}, 0.2);
     scene.model.gravity = {1, -9.81};
     March march(scene, implicit);
     march.state.rate[0] = {{2, 3}, kind == BlockKind::kRigid ? spin_matrix(4) : Mat2{}};

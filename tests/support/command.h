@@ -42,8 +42,8 @@ struct Outcome {
 /// Runs a shell line inside the folder; $talus is the program. The output is kept there as log.txt.
 inline Outcome shell(const Folder& folder, const std::string& line) {
   const std::filesystem::path log = folder / "log.txt";
-  // not "cd && line": with "line &" the shell would put both into a process of their own, and $! would name
-  // it
+  // not "cd && line": where the line sends a program to the background with "&", that would take the "cd"
+  // along, and in some shells $! would name the shell around both
   const int status = std::system(fmt::format("talus='{}'; ( cd '{}' || exit 126; {} ) > '{}' 2>&1",
                                              TALUS_COMMAND, (folder / "").string(), line, log.string())
                                      .c_str());

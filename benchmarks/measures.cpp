@@ -324,12 +324,12 @@ void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions&
     row.engine = engine.name(), row.scene = options.scene, row.phase = phase;
     row.blocks = scene.moving(), row.threads = options.threads;
     row.dt = dt, row.sweeps = engine.sweeps();
-    // memory first: the measures below need some themselves
+    // memory first: the measures below need some themselves. What has been freed is no engine's memory
+    malloc_trim(0);
     row.rss_bytes = resident_bytes();
     row.bytes_per_block = (row.rss_bytes - resident_before) / std::max(1, row.blocks);
     clock.fill(dt, row);
     fill_accuracy(engine, scene, dt, gravity, row);
-    malloc_trim(0);
     fmt::print("{}\n", csv_line(row));
     std::fflush(stdout);
   };

@@ -115,9 +115,9 @@ void rest(const std::string& name, int threads) {
 }
 
 // Settled with damping, shaken for 2 s, quiet with damping for 1 s: what stays.
-void drift_after(const std::string& name, int threads) {
+void drift_after(const std::string& name, int threads, int sweeps) {
   const BenchScene scene = named_scene(name);
-  TalusEngine engine(scene, {.threads = threads, .sweeps = 20});
+  TalusEngine engine(scene, {.threads = threads, .sweeps = sweeps});
   engine.settings().damping_local = 0.8;
   run_for(engine, 2, false);
   const std::vector<BenchBlock> before = engine.blocks();
@@ -127,9 +127,9 @@ void drift_after(const std::string& name, int threads) {
   run_for(engine, 1, false);
   const Displacement d = measure_displacement(before, engine.blocks());
   fmt::print(
-      "drift {}: {:.3g} mm sideways at most, {:.3g} mm down, after 2 s at 0.3 g and 1 s of damped quiet; 20 "
+      "drift {}: {:.3g} mm sideways at most, {:.3g} mm down, after 2 s at 0.3 g and 1 s of damped quiet; {} "
       "sweeps a step\n",
-      name, 1e3 * d.drift_max, 1e3 * d.sink_max);
+      name, 1e3 * d.drift_max, 1e3 * d.sink_max, sweeps);
 }
 
 // Jointed rock under sudden gravity for a second, and the deepest overlap on the way.
@@ -165,10 +165,10 @@ int run(int argc, char** argv) {
   const int threads = argc > 3 ? std::stoi(argv[3]) : 1;
   if (what == "exact") return exact(scene, threads), 0;
   if (what == "rest") return rest(scene, threads), 0;
-  if (what == "drift") return drift_after(scene, threads), 0;
+  if (what == "drift") return drift_after(scene, threads, argc > 4 ? std::stoi(argv[4]) : 20), 0;
   if (what == "settle") return settle(scene, threads), 0;
   if (what == "large") return large(scene, threads), 0;
-  fmt::print(stderr, "usage: talus-goals exact|rest|drift|settle|large SCENE [THREADS]\n");
+  fmt::print(stderr, "usage: talus-goals exact|rest|drift|settle|large SCENE [THREADS [SWEEPS]]\n");
   return 2;
 }
 

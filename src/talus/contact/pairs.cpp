@@ -204,40 +204,72 @@ class Updater {
     }
   }
 
-  // Every pair's points one after the other again; the pairs of a chunk know where theirs begin.
+  // Points of neighbouring pairs whose number stayed: they move together.
+  struct Run {
+    int from, count, to;
+  };
+
+  // Every pair's points one after the other again, in place: lists of contacts are much of a run's memory.
   void put_together(const Workers& workers) {
-    std::vector<size_t> chunk_begin(changed_.size());
-    size_t count = 0;
+    std::vector<int> chunk_begin(changed_.size());
+    int count = 0;
     for (size_t c = 0; c < changed_.size(); ++c) {
       chunk_begin[c] = count;
-      auto changed = changed_[c].pair.begin();
       const size_t end = std::min(state_.pairs.size(), (c + 1) * kGrain);
-      for (size_t i = c * kGrain; i < end; ++i) {
-        const bool is_new = changed != changed_[c].pair.end() && changed->first == i;
-        count += static_cast<size_t>(is_new ? changed++->second : state_.pairs[i].count);
+      const ContactPair& last = state_.pairs[end - 1];
+      count += last.begin + last.count - state_.pairs[c * kGrain].begin;
+      for (const auto& [pair, now] : changed_[c].pair) count += now - state_.pairs[pair].count;
+    }
+    std::vector<std::vector<Run>> runs(changed_.size());
+    workers.for_chunks(state_.pairs.size(), kGrain, [&](size_t begin, size_t end) {
+      const size_t c = begin / kGrain;
+      move_pairs(begin, end, chunk_begin[c], runs[c]);
+    });
+
+    // no run moves over one that has not moved yet: those to the left first, from the left, then the others
+    const auto move = [this](const Run& r) {
+      const auto from = state_.contacts.begin() + r.from;
+      const auto to = state_.contacts.begin() + r.to;
+      r.to < r.from ? std::copy(from, from + r.count, to)
+                    : std::copy_backward(from, from + r.count, to + r.count);
+    };
+    const auto old_size = state_.contacts.size();
+    resize_sparingly(state_.contacts, std::max(old_size, static_cast<size_t>(count)));
+    for (const auto& chunk : runs)
+      for (const Run& r : chunk)
+        if (r.to < r.from) move(r);
+    for (auto chunk = runs.rbegin(); chunk != runs.rend(); ++chunk)
+      for (auto r = chunk->rbegin(); r != chunk->rend(); ++r)
+        if (r->to > r->from) move(*r);
+    state_.contacts.resize(static_cast<size_t>(count));
+    for (const Changed& c : changed_) {
+      auto from = c.contact.begin();
+      for (const auto& [pair, now] : c.pair) {
+        std::copy(from, from + now, state_.contacts.begin() + state_.pairs[pair].begin);
+        from += now;
       }
     }
-    std::vector<Contact> all(count);
-    workers.for_chunks(state_.pairs.size(), kGrain, [&](size_t begin, size_t end) {
-      const Changed& c = changed_[begin / kGrain];
-      auto changed = c.pair.begin();
-      auto from = c.contact.begin();
-      auto to = all.begin() + static_cast<std::ptrdiff_t>(chunk_begin[begin / kGrain]);
-      for (size_t i = begin; i < end; ++i) {
-        ContactPair& pair = state_.pairs[i];
-        const int old_begin = pair.begin;
-        pair.begin = static_cast<int>(to - all.begin());
-        if (changed != c.pair.end() && changed->first == i) {
-          pair.count = changed++->second;
-          to = std::copy(from, from + pair.count, to);
-          from += pair.count;
-        } else {
-          const auto old = state_.contacts.begin() + old_begin;
-          to = std::copy(old, old + pair.count, to);
-        }
+  }
+
+  // New places of the points of pairs [begin, end), which start at `at`.
+  void move_pairs(size_t begin, size_t end, int at, std::vector<Run>& runs) {
+    const Changed& c = changed_[begin / kGrain];
+    auto changed = c.pair.begin();
+    bool go_on = false;  // with the run before
+    for (size_t i = begin; i < end; ++i) {
+      ContactPair& pair = state_.pairs[i];
+      if (changed != c.pair.end() && changed->first == i) {
+        pair.count = changed++->second;
+        go_on = false;
+      } else if (go_on) {
+        runs.back().count += pair.count;
+      } else {
+        runs.push_back({pair.begin, pair.count, at});
+        go_on = true;
       }
-    });
-    state_.contacts = std::move(all);
+      pair.begin = at;
+      at += pair.count;
+    }
   }
 
   const BlockSet& blocks_;
@@ -265,6 +297,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, co
   const std::vector<ContactPair> before = std::move(state.pairs);
   std::vector<ContactPair> now;
   std::vector<Contact> contacts;
+  contacts.reserve(state.contacts.size() + state.contacts.size() / 32);
   auto known = before.begin();
   for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin + list.skin)) {
     if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;

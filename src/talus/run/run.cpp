@@ -51,9 +51,12 @@ class Runner {
     scene_.blocks = unclamped_;
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     state_.energy_start += kinetic_energy(scene_.blocks, state_.rate);
-    settings_ = {stage.damping_mass, stage.damping_local,
+    settings_ = {stage.damping_mass,
+                 stage.damping_local,
                  scene_.model.solver.tolerance * smallest_size(scene_.blocks),
-                 stage.kind == StageKind::kDynamic, stage.implicit};
+                 stage.kind == StageKind::kDynamic,
+                 stage.implicit,
+                 true};
     work_.mobility.clear();  // of other inertias
     state_.largest_kinetic = 0;
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});

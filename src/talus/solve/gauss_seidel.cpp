@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace talus {
 
@@ -36,6 +37,14 @@ struct Seen {
 Seen seen_from(const PointRows& p, int block_a) {
   if (p.block_a == block_a) return {p.normal, p.arm_a, p.arm_b};
   return {-p.normal, p.arm_b, p.arm_a};
+}
+
+// Whether a lane is written to a line that nobody reads.
+template <class Record>
+bool has_still(const Record& r) {
+  const auto negative = [](int line) { return line < 0; };
+  return std::any_of(r.into_a, r.into_a + kLanes, negative) ||
+         std::any_of(r.into_b, r.into_b + kLanes, negative);
 }
 
 template <class Record>
@@ -95,7 +104,7 @@ bool GaussSeidel::layout_holds(const RowSet& set, const Workers& workers) {
   return same;
 }
 
-void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
+void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& workers) {
   const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   // couples: the two ends of a face, else neighbours in the list with the same two blocks
   const auto n = static_cast<int>(seen_.size());
@@ -163,23 +172,37 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility) {
   ground_ = static_cast<int>(mobility.size());
   int line = ground_ + 1;
   const auto set_blocks = [&](auto& records, const std::vector<Rows>& rows) {
-    for (size_t r = 0; r < records.size(); ++r) {
-      auto& record = records[r];
-      bool still = false;
-      for (size_t l = 0; l < kLanes; ++l) {
-        const int row = rows[r * kLanes + l].row[0];
-        const int a = row < 0 ? -1 : at(row).block_a, b = row < 0 ? -1 : at(row).block_b;
-        record.a[l] = a < 0 ? ground_ : a, record.b[l] = b < 0 ? ground_ : b;
-        record.into_a[l] = moves(a) ? a : line, record.into_b[l] = moves(b) ? b : line;
-        still = still || !moves(a) || !moves(b);
+    constexpr size_t kChunk = 1024;
+    std::vector<int> still((records.size() + kChunk - 1) / kChunk);
+    workers.for_chunks(records.size(), kChunk, [&](size_t begin, size_t end) {
+      for (size_t r = begin; r < end; ++r) {
+        auto& record = records[r];
+        for (size_t l = 0; l < kLanes; ++l) {
+          const int row = rows[r * kLanes + l].row[0];
+          const int a = row < 0 ? -1 : at(row).block_a, b = row < 0 ? -1 : at(row).block_b;
+          record.a[l] = a < 0 ? ground_ : a, record.b[l] = b < 0 ? ground_ : b;
+          record.into_a[l] = moves(a) ? a : -1, record.into_b[l] = moves(b) ? b : -1;
+        }
+        still[begin / kChunk] += has_still(record);
       }
-      line += still;
-    }
+    });
+    for (int& first : still) line += std::exchange(first, line);
+    workers.for_chunks(records.size(), kChunk, [&](size_t begin, size_t end) {
+      int next = still[begin / kChunk];
+      for (size_t r = begin; r < end; ++r) {
+        if (!has_still(records[r])) continue;
+        for (size_t l = 0; l < kLanes; ++l) {
+          if (records[r].into_a[l] < 0) records[r].into_a[l] = next;
+          if (records[r].into_b[l] < 0) records[r].into_b[l] = next;
+        }
+        ++next;
+      }
+    });
   };
   set_blocks(contacts_, contact_rows_);
   set_blocks(ties_, tie_rows_);
-  lines_.clear();
   resize_sparingly(lines_, static_cast<size_t>(line));
+  lines_[static_cast<size_t>(ground_)] = {};
 }
 
 void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
@@ -399,7 +422,7 @@ SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const Solv
   SolveReport report;
   report.converged = set.points.empty();
   if (report.converged) return report;
-  if (!layout_holds(set, workers)) lay_out(mobility);
+  if (!layout_holds(set, workers)) lay_out(mobility, workers);
   write_lines(mobility, rate, workers);
   write_records(mobility, set, workers);
   push(workers);

@@ -44,7 +44,7 @@ class GaussSeidel {
   };
 
   bool layout_holds(const RowSet& set, const Workers& workers);
-  void lay_out(const std::vector<Mobility>& mobility);
+  void lay_out(const std::vector<Mobility>& mobility, const Workers& workers);
   void write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                    const Workers& workers);
   void read_lines(const std::vector<Mobility>& mobility, const Workers& workers,

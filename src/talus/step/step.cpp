@@ -247,11 +247,12 @@ class Kick {
   // far for as many sweeps as the model allows. The best stays.
   void solve() {
     const SolverInput& options = scene_.model.solver;
-    work_.guess = work_.rows.impulse;
     const SolverKind first = chosen_solver(scene_.model, work_.rows.points.size(), work_.first_contact > 0);
     const bool newton_can = work_.rows.points.size() <= kMostNewtonPoints;
     const bool again = options.second_solver && scene_.model.contact.law == ContactLaw::kExact &&
                        (first == SolverKind::kNewton || newton_can);
+    work_.guess.clear();
+    if (again || settings_.keep_guess) work_.guess = work_.rows.impulse;
     const int few = again ? std::min(options.max_sweeps, kSweepsBeforeNewton) : options.max_sweeps;
     solve_by(first, few);
     if (!report_.failed || !again) return;

@@ -22,6 +22,7 @@ struct StepSettings {
   double tolerance = 0;       // largest contact error of a step [m]
   bool histories_run = true;  // false: their clock stands still (static stages)
   bool implicit = false;      // block-implicit elasticity (theory 4.9)
+  bool keep_guess = false;    // StepWork::guess is wanted, for a problem file
 };
 
 /// Work that one kick does, half at the velocity before and half at the velocity after it: the second half
@@ -69,7 +70,7 @@ struct StepWork {
   double dt_kick = 0;  // over which the impulses act
   KickWork work;
   std::vector<BlockRate> rate_free;  // rates as they would be without rows
-  std::vector<Impulse> guess;        // of all rows
+  std::vector<Impulse> guess;        // of all rows; empty unless it is wanted
   std::vector<BlockForce> forces;    // weight, loads and elasticity on each block
   std::vector<BlockForce> local_damping;
   std::vector<ElasticState> elastic;

@@ -58,7 +58,10 @@ int check(const ModelArguments& args) {
         plan.bound_block < 0
             ? (stage.implicit ? "no stable limit: elasticity is implicit" : "no block deforms")
             : fmt::format("stable limit {:.4g} s, set by {}", plan.dt_bound,
-                          run.scene.blocks.name[static_cast<size_t>(plan.bound_block)]);
+                          run.scene.blocks.name[static_cast<size_t>(plan.bound_block)]) +
+                  (plan.dt_bound < plan.dt_undamped
+                       ? fmt::format("; {:.4g} s without damping_stiffness", plan.dt_undamped)
+                       : "");
     fmt::print("  stage      \"{}\": {}{} steps of {:.4g} s ({})\n", stage.name,
                stage.kind == talus::StageKind::kStatic ? "at most " : "", plan.steps, plan.dt, bound);
     if (plan.clamped > 0)

@@ -138,9 +138,10 @@ struct StageInput {
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;
-  bool implicit = false;     // block-implicit elasticity
-  double damping_mass = 0;   // [1/s]
-  double damping_local = 0;  // [-]
+  bool implicit = false;         // block-implicit elasticity
+  double damping_mass = 0;       // [1/s]
+  double damping_stiffness = 0;  // [s]
+  double damping_local = 0;      // [-]
   double unbalanced = 1e-5;
   Where where, where_step, where_clamp;
 };

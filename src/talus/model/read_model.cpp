@@ -428,6 +428,7 @@ class ModelReader : private SectionReader {
       s.moment_clamp = f.get("moment_clamp", false);
       s.implicit = f.get<std::string>("elasticity") == "implicit";
       s.damping_mass = f.get("damping_mass", 0.0);
+      s.damping_stiffness = f.get("damping_stiffness", 0.0);
       s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);
       s.unbalanced = f.get("unbalanced", s.unbalanced);
       s.where = f.where();

@@ -96,6 +96,16 @@ std::vector<SectionSpec> run_sections() {
          .doc =
              "Mass-proportional damping: force = -damping_mass x mass x velocity. An oscillation of angular "
              "frequency w gets the damping ratio damping_mass / (2 w)."},
+        {.name = "damping_stiffness",
+         .dimension = D::kTime,
+         .range = kNonNegative,
+         .default_text = "\"0 s\"",
+         .doc = "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
+                "rate, in "
+                "blocks, not in joints. An oscillation of angular frequency w gets the damping ratio "
+                "damping_stiffness x w / 2. It shortens the stable time step (`talus check` says by how "
+                "much) unless "
+                "`elasticity` is implicit."},
         {.name = "damping_local",
          .range = {.min = 0, .max = 1, .max_open = true},
          .doc = "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "

@@ -59,8 +59,11 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   for (const StageInput& stage : scene.model.stages) {
     // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
     // theory 4.5
-    bound.dt = undamped.dt / std::sqrt(1 + stage.damping_local);
     StagePlan plan;
+    plan.dt_undamped = undamped.dt / std::sqrt(1 + stage.damping_local);
+    // 4.5: 2/w (sqrt(1 + z^2) - z) with z = damping_stiffness w / 2
+    const double beta = stage.damping_stiffness;
+    bound.dt = beta > 0 && bound.block >= 0 ? std::hypot(beta, plan.dt_undamped) - beta : plan.dt_undamped;
     plan.dt_bound = bound.dt;
     plan.bound_block = bound.block;
     const std::string path = "stage." + stage.name;
@@ -83,10 +86,10 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
     plan.dt = stage.duration / static_cast<double>(plan.steps);
     if (stage.implicit) {
-      plan.dt_bound = std::numeric_limits<double>::infinity();
+      plan.dt_bound = plan.dt_undamped = std::numeric_limits<double>::infinity();
       plan.bound_block = -1;
     } else if (plan.dt >= bound.dt && stage.moment_clamp) {
-      const double clamp_dt = plan.dt * std::sqrt(1 + stage.damping_local);
+      const double clamp_dt = std::sqrt(plan.dt * (plan.dt + 2 * beta) * (1 + stage.damping_local));
       if (clamp_dt > median_step(scene.blocks)) {
         findings.error(stage.where_step, path + ".time_step",
                        fmt::format("{:.4g} s is above the stable limit of a block of median size, {:.4g} s: "

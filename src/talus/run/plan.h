@@ -10,12 +10,13 @@
 namespace talus {
 
 struct StagePlan {
-  double dt = 0;         // [s]
-  int64_t steps = 0;     // of a static stage: the most
-  double dt_bound = 0;   // stable limit before any clamp [s]; infinite when no block deforms
-  int bound_block = -1;  // the block that sets it
-  double clamp_dt = 0;   // undamped step that clamped blocks must allow [s]
-  int clamped = 0;       // blocks whose moments are raised
+  double dt = 0;           // [s]
+  int64_t steps = 0;       // of a static stage: the most
+  double dt_bound = 0;     // stable limit before any clamp [s]; infinite when no block deforms
+  int bound_block = -1;    // the block that sets it
+  double dt_undamped = 0;  // the same without stiffness-proportional damping [s]
+  double clamp_dt = 0;     // undamped step that clamped blocks must allow [s]
+  int clamped = 0;         // blocks whose moments are raised
   double largest_clamp = 1;
 };
 

@@ -171,6 +171,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                           {"steps", s.steps},
                           {"dt [s]", s.plan.dt},
                           {"dt_bound [s]", s.plan.dt_bound},
+                          {"dt_bound_undamped [s]", s.plan.dt_undamped},
                           {"dt_bound_block", bound < 0 ? "" : b.name[static_cast<size_t>(bound)]},
                           {"blocks_clamped", s.plan.clamped},
                           {"largest_clamp", s.plan.largest_clamp},

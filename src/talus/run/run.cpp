@@ -52,6 +52,7 @@ class Runner {
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     state_.energy_start += kinetic_energy(scene_.blocks, state_.rate);
     settings_ = {stage.damping_mass,
+                 stage.damping_stiffness,
                  stage.damping_local,
                  scene_.model.solver.tolerance * smallest_size(scene_.blocks),
                  stage.kind == StageKind::kDynamic,

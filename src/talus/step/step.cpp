@@ -182,12 +182,14 @@ class Kick {
       force.Q = (-blocks_.volume[k]) * elastic_[k].stress;
     }
     if (implicit(k))
-      work_.mobility[k] = mobility_implicit(blocks_, k, elastic_[k].rotation, share(), tangent_time2());
+      work_.mobility[k] =
+          mobility_implicit(blocks_, k, elastic_[k].rotation, share(), tangent_time2() + damping_time2());
     else if (renew)
       work_.mobility[k] = mobility_of(blocks_, k, share());
     BlockRate& v = state_.rate[k];
     BlockForce impulse = work_.dt_kick * force;
     if (settings_.damping_local > 0) impulse += local_damping_[k] = local_damping_impulse(k);
+    if (explicitly_damped(k)) impulse += stiffness_damping(k, v, v);
     if (!implicit(k) && damping_ == 0) {
       v = v + accelerate(blocks_, k, impulse);
       return;
@@ -195,12 +197,23 @@ class Kick {
     // M_eff (v+ - v-) = impulse - what the terms of v+ in M_eff and of v- in the step's laws differ by
     impulse += (-2 * damping_) * momentum(blocks_, k, v);
     if (implicit(k))
-      impulse += BlockForce{{}, (-(1 - old_share()) * tangent_time2()) * tangent_force(k, v.G)};
+      impulse += BlockForce{
+          {}, (-(1 - old_share()) * tangent_time2() - 2 * damping_time2()) * tangent_force(k, v.G)};
     v = v + accelerate(work_.mobility[k], impulse);
   }
 
   // Block-implicit elasticity: the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family of 4.6.
   double tangent_time2() const { return dt_ * work_.dt_kick / position_factor(scene_.model.contact.alpha); }
+  // Stiffness-proportional damping (4.5): of the rates before the kick where elasticity is explicit, of their
+  // mean where it is implicit.
+  double damping_time2() const { return 0.5 * settings_.damping_stiffness * work_.dt_kick; }
+  bool explicitly_damped(size_t i) const {
+    return settings_.damping_stiffness > 0 && !settings_.implicit &&
+           blocks_.kind[i] == BlockKind::kDeformable;
+  }
+  BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const {
+    return {{}, (-damping_time2()) * tangent_force(i, before.G + after.G)};
+  }
   double old_share() const {
     const double alpha = scene_.model.contact.alpha, r = (1 - alpha) / (1 + alpha);
     return r * r;
@@ -365,7 +378,8 @@ class Kick {
   // Impulse that gives a block this change of its rates: the effective mass times it.
   BlockForce impulse_for(size_t i, const BlockRate& change) const {
     BlockForce impulse = (1 + damping_) * momentum(blocks_, i, change);
-    if (implicit(i)) impulse += BlockForce{{}, tangent_time2() * tangent_force(i, change.G)};
+    if (implicit(i))
+      impulse += BlockForce{{}, (tangent_time2() + damping_time2()) * tangent_force(i, change.G)};
     return impulse;
   }
 
@@ -402,6 +416,10 @@ class Kick {
     tally(s.work.before.damping, s.work.after.damping, viscous, v0, v1, late);
     if (settings_.damping_local > 0)
       tally(s.work.before.damping, s.work.after.damping, local_damping_[i], v0, v1, late);
+
+    if (settings_.damping_stiffness > 0 && blocks_.kind[i] == BlockKind::kDeformable)
+      tally(s.work.before.damping, s.work.after.damping, stiffness_damping(i, v0, implicit(i) ? v1 : v0), v0,
+            v1, late);
 
     BlockForce force = forces_[i];
     if (implicit(i)) {

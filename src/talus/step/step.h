@@ -17,12 +17,13 @@
 namespace talus {
 
 struct StepSettings {
-  double damping_mass = 0;    // [1/s]
-  double damping_local = 0;   // [-]
-  double tolerance = 0;       // largest contact error of a step [m]
-  bool histories_run = true;  // false: their clock stands still (static stages)
-  bool implicit = false;      // block-implicit elasticity (theory 4.9)
-  bool keep_guess = false;    // StepWork::guess is wanted, for a problem file
+  double damping_mass = 0;       // [1/s]
+  double damping_stiffness = 0;  // [s]
+  double damping_local = 0;      // [-]
+  double tolerance = 0;          // largest contact error of a step [m]
+  bool histories_run = true;     // false: their clock stands still (static stages)
+  bool implicit = false;         // block-implicit elasticity (theory 4.9)
+  bool keep_guess = false;       // StepWork::guess is wanted, for a problem file
 };
 
 /// Work that one kick does, half at the velocity before and half at the velocity after it: the second half

@@ -10,8 +10,9 @@ import sys
 # each folder and the folders it may include, besides itself
 ALLOWED = {
     "base": "",
+    "record": "base",
     "geometry": "base",
-    "model": "base geometry",
+    "model": "base geometry record",
     "cut": "base geometry model",
     "blocks": "base geometry model cut",
     "rows": "base geometry model cut blocks",
@@ -21,7 +22,7 @@ ALLOWED = {
     "step": "base geometry model cut blocks rows contact supports solve",
     "output": "base geometry model cut blocks",
     "run": "base geometry model cut blocks rows contact supports solve step output",
-    "plot": "base geometry model cut output",
+    "plot": "base geometry record model cut output",
 }
 
 

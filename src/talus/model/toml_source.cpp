@@ -2,13 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <stdexcept>
 
-#include "talus/base/error.h"
 #include "talus/base/text.h"
 
 namespace talus {
@@ -110,18 +106,6 @@ void apply_override(const std::string& item, TomlSource& source, Findings& findi
 }
 
 }  // namespace
-
-std::string read_text_file(const std::filesystem::path& path) {
-  std::error_code ec;
-  if (std::filesystem::is_directory(path, ec))
-    throw FileError(fmt::format("{}: is a folder, not a file", path.string()));
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (in.bad()) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  return text;
-}
 
 TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides,
                       Findings& findings) {

@@ -2,17 +2,14 @@
 // The model file as text and as a TOML tree, with the overrides of the command line merged in.
 
 #include <toml++/toml.h>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "talus/base/text_file.h"
 #include "talus/model/findings.h"
 
 namespace talus {
-
-/// Reads a whole text file. Throws FileError naming the path and the cause.
-std::string read_text_file(const std::filesystem::path& path);
 
 struct TomlSource {
   toml::table root;

@@ -1,0 +1,82 @@
+#include "talus/record/lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "talus/base/error.h"
+#include "talus/record/units.h"
+
+namespace talus::record {
+
+namespace {
+
+// Fixed columns of Fortran leave no blank before a minus sign: cuts "1.2E-3-4.5E-3" after the first number.
+size_t end_of_number(std::string_view token) {
+  for (size_t i = 1; i < token.size(); ++i) {
+    const bool sign = token[i] == '-' || token[i] == '+';
+    const char before = token[i - 1];
+    if (sign && ((before >= '0' && before <= '9') || before == '.')) return i;
+  }
+  return token.size();
+}
+
+}  // namespace
+
+Lines split_lines(const std::string& file, const std::string& text) {
+  Lines lines{file, {}};
+  if (text.find('\0') != std::string::npos)
+    fail(lines, 0, "is not a text file", "give the record as text: PEER, K-NET, JMA CSV or plain CSV");
+  size_t begin = 0;
+  while (begin < text.size()) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    lines.line.emplace_back(text.substr(begin, end - begin));
+    if (!lines.line.back().empty() && lines.line.back().back() == '\r') lines.line.back().pop_back();
+    begin = end + 1;
+  }
+  const bool blank = std::all_of(lines.line.begin(), lines.line.end(),
+                                 [](const std::string& l) { return trimmed(l).empty(); });
+  if (blank) fail(lines, 0, "is empty", "fetch or write the file again");
+  return lines;
+}
+
+void fail(const Lines& lines, size_t number, const std::string& text, const std::string& hint) {
+  const std::string place = number > 0 ? fmt::format("{}:{}", lines.file, number) : lines.file;
+  throw InputError(fmt::format("{}: error: {}\n      = {}", place, text, hint));
+}
+
+double number_at(const Lines& lines, size_t number, std::string_view token, std::string_view what) {
+  std::string plain(trimmed(token));
+  if (!plain.empty() && plain[0] == '+') plain.erase(0, 1);
+  for (char& c : plain)
+    if (c == 'D' || c == 'd') c = 'E';
+  double v = 0;
+  const char* end = plain.data() + plain.size();
+  const auto [stop, status] = std::from_chars(plain.data(), end, v);
+  const std::string hint = "correct the line, or cut what does not belong to the record";
+  if (status == std::errc::result_out_of_range)
+    fail(lines, number, fmt::format("{}: \"{}\" is beyond the range of numbers", what, token), hint);
+  if (status != std::errc{} || stop != end)
+    fail(lines, number, fmt::format("{}: \"{}\" is not a number", what, token), hint);
+  if (!std::isfinite(v))
+    fail(lines, number, fmt::format("{}: \"{}\" is not a finite number", what, token), hint);
+  return v;
+}
+
+std::vector<double> numbers_from(const Lines& lines, size_t first) {
+  std::vector<double> out;
+  for (size_t n = first; n <= lines.count(); ++n) {
+    std::string_view rest = trimmed(lines.line[n - 1]);
+    while (!rest.empty()) {
+      const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+      const std::string_view token = word.substr(0, end_of_number(word));
+      out.push_back(number_at(lines, n, token, fmt::format("value {}", out.size() + 1)));
+      rest = trimmed(rest.substr(token.size()));
+    }
+  }
+  return out;
+}
+
+}  // namespace talus::record

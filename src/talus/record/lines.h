@@ -1,0 +1,33 @@
+#pragma once
+// A record file as numbered lines, the numbers on them, and errors that name file and line.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace talus::record {
+
+struct Lines {
+  std::string file;               // as shown in messages
+  std::vector<std::string> line;  // without line ends; line[0] is line 1
+
+  size_t count() const { return line.size(); }
+};
+
+/// @param text  the file; ends of lines may be LF or CR LF
+/// Throws InputError when it is empty or not text.
+Lines split_lines(const std::string& file, const std::string& text);
+
+/// Throws InputError "file:line: error: text" with `hint`, the next move, below.
+/// @param number  line from 1; 0: the file as a whole
+[[noreturn]] void fail(const Lines& lines, size_t number, const std::string& text, const std::string& hint);
+
+/// The number that `token` is (also ".5", "+1.2E-03", "1.2D-3"). Throws by fail() on text, nan, inf and
+/// numbers too large for a double; `what` names the thing in the message.
+double number_at(const Lines& lines, size_t number, std::string_view token, std::string_view what);
+
+/// All numbers from line `first` (from 1) on, any count per line, blanks or nothing before a sign between
+/// them.
+std::vector<double> numbers_from(const Lines& lines, size_t first);
+
+}  // namespace talus::record

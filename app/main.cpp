@@ -12,6 +12,7 @@
 
 #include "cut_command.h"
 #include "plot_command.h"
+#include "record_command.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/model/toml_source.h"
@@ -178,6 +179,12 @@ int run_command(int argc, char** argv) {
       app.add_subcommand("plot", "draw histories of one or more result folders as SVG and PNG");
   talus::app::add_plot_arguments(*plot_verb, plot);
 
+  talus::app::RecordArguments record;
+  CLI::App* record_verb = app.add_subcommand(
+      "record",
+      "make a strong-motion record, or a synthetic motion, ready for a model: measures, figures, CSV");
+  talus::app::add_record_arguments(*record_verb, record);
+
   std::string problem, method = "newton";
   double tolerance = 1e-9;
   CLI::App* replay_verb =
@@ -194,7 +201,7 @@ int run_command(int argc, char** argv) {
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
-  const std::vector<std::string> verbs{"run", "check", "cut", "plot", "replay", "schema"};
+  const std::vector<std::string> verbs{"run", "check", "cut", "plot", "record", "replay", "schema"};
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
     fmt::print(
@@ -211,6 +218,7 @@ int run_command(int argc, char** argv) {
   if (*check_verb) return check(model);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*replay_verb) return replay(problem, method, tolerance);
+  if (*record_verb) return talus::app::record_command(record);
   if (*plot_verb) return talus::app::plot_command(plot);
   fmt::print("{}", json ? talus::schema_json() : talus::schema_markdown());
   return talus::kExitOk;

@@ -10,6 +10,7 @@
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
 #include "talus/model/read_cut.h"
+#include "talus/model/read_history_file.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {
@@ -29,6 +30,7 @@ class ModelReader : private SectionReader {
     read_materials();
     read_joints();
     read_histories();
+    if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_blocks();
     read_grids();
     read_cut_sections(source_, block_names_, model_, findings_);
@@ -201,20 +203,27 @@ class ModelReader : private SectionReader {
       History h;
       h.name = name;
       const bool table = f.given("time") || f.given("value"), formula = f.given("expression");
+      const bool file = f.given("file");
       for (const char* key : {"duration", "samples"})
-        if (table && !formula && f.given(key))
-          findings_.error(f.where(key), f.path_of(key), "belongs to an expression; this history is a table",
-                          "leave it out");
-      if (table == formula) {
-        findings_.error(f.where(), f.path(), table ? "has both a table and an expression" : "is empty",
-                        "give time and value, or expression and duration");
+        if (!formula && f.given(key))
+          findings_.error(f.where(key), f.path_of(key), "belongs to an expression", "leave it out");
+      if (!file && f.given("column"))
+        findings_.error(f.where("column"), f.path_of("column"), "belongs to a file",
+                        "leave it out, or give file");
+      if (table + formula + file != 1) {
+        findings_.error(f.where(), f.path(),
+                        table + formula + file == 0 ? "is empty" : "is given in more than one way",
+                        "give time and value, or expression and duration, or file and column");
       } else if (formula) {
         sample_expression(f, h);
+      } else if (file) {
+        files_ += read_history_file(f, model_.file, h, findings_);
       } else {
         h.time = f.get<std::vector<double>>("time");
         h.value = f.get<std::vector<double>>("value");
         check_table(f, h);
       }
+      for (double& v : h.value) v *= f.get("scale", 1.0);
       if (h.time.size() != h.value.size() || h.time.empty()) h.time = {0, 1}, h.value = {0, 0};
       h.integral.assign(h.time.size(), 0);
       for (size_t i = 1; i < h.time.size(); ++i)
@@ -508,6 +517,7 @@ class ModelReader : private SectionReader {
   Model& model_;
   std::set<std::string> block_names_, incomplete_;
   std::vector<Where> material_where_, joint_where_;
+  std::string files_;  // content of the files of histories, one behind the other
 };
 
 }  // namespace

@@ -116,7 +116,7 @@ std::vector<SectionSpec> model_sections() {
        "runs in dynamic "
        "stages only and starts with the first of them. Give "
        "`time` and "
-       "`value`, or `expression` with `duration`.",
+       "`value`, or `expression` with `duration`, or `file` with `column`.",
        {{.name = "time", .type = K::kNumbers, .dimension = D::kTime, .doc = "Rising times [s]."},
         {.name = "value",
          .type = K::kNumbers,
@@ -133,7 +133,20 @@ std::vector<SectionSpec> model_sections() {
          .type = K::kInteger,
          .range = {.min = 2, .max = 1e7},
          .default_text = "10000",
-         .doc = "With `expression`: number of equal intervals."}}},
+         .doc = "With `expression`: number of equal intervals."},
+        {.name = "file",
+         .type = K::kText,
+         .doc = "A table (CSV with a column \"time [s]\") or a strong-motion record (PEER, K-NET, JMA); the "
+                "path counts "
+                "from the folder of the model. Its content belongs to the hash of the model."},
+        {.name = "column",
+         .type = K::kText,
+         .doc = "With `file`: title of the column, or its quantity (acceleration, velocity, displacement); "
+                "none: the "
+                "only one beside the time. Values become SI by the unit in the title."},
+        {.name = "scale",
+         .default_text = "1",
+         .doc = "Factor on all values; -1 turns the motion of a base into the load seen from it."}}},
   };
 }
 

@@ -58,6 +58,7 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
                       "replace the results in it",
                       folder.string()));
     const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
+                      fs::exists(folder / "record.json", ec) ||
                       (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
     if (!empty && !ours)
       throw FileError(
@@ -67,6 +68,11 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
     if (kind == ResultKind::kCut) {
       for (const char* name :
            {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
+        fs::remove(folder / name, ec);
+    } else if (kind == ResultKind::kRecord) {
+      for (const char* name :
+           {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
+            "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"})
         fs::remove(folder / name, ec);
     } else {
       for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",

@@ -7,7 +7,7 @@ namespace talus::record {
 size_t fast_length(size_t n) {
   for (size_t length = n + n % 2;; length += 2) {
     size_t rest = length;
-    for (const size_t p : {2, 3, 5})
+    for (const size_t p : {size_t{2}, size_t{3}, size_t{5}})
       while (rest % p == 0) rest /= p;
     if (rest == 1) return length;
   }

@@ -18,10 +18,10 @@ struct Account {
   std::string source;  // file as given, or "synthetic"
   std::string hash;    // text_hash() of the file, "" for a synthetic motion
   std::string format, title, unit;
-  double offset = 0;             // [m/s2] taken off by the reader
-  std::vector<Measures> before;  // of the record as read; empty for a synthetic motion
-  std::vector<Step> steps;       // in their order
-  Measures after;                // of the motion that was written
+  double offset = 0;                  // [m/s2] taken off by the reader
+  std::vector<Measures> before = {};  // of the record as read; empty for a synthetic motion
+  std::vector<Step> steps = {};       // in their order
+  Measures after = {};                // of the motion that was written
   size_t samples = 0;
   double dt = 0;  // [s]
 };

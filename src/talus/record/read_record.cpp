@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/record/formats.h"
 
@@ -38,8 +39,17 @@ Format recognised(const Lines& lines) {
   return Format::kCsv;
 }
 
+std::string read_record_file(const std::filesystem::path& path) {
+  try {
+    return read_text_file(path);
+  } catch (const FileError& e) {
+    throw FileError(
+        fmt::format("{}\n      = check the path; it counts from the folder that talus runs in", e.what()));
+  }
+}
+
 Record read_record(const std::filesystem::path& path, const ReadOptions& options) {
-  return read_record_text(path.string(), read_text_file(path), options);
+  return read_record_text(path.string(), read_record_file(path), options);
 }
 
 Record read_record_text(const std::string& file, const std::string& text, const ReadOptions& options) {

@@ -39,6 +39,9 @@ struct ReadOptions {
   std::optional<double> dt;  // [s] where the file has no time column
 };
 
+/// The text of a record, or of another table. Throws FileError with a next move.
+std::string read_record_file(const std::filesystem::path& path);
+
 /// Reads one component. Throws FileError when the file cannot be read, InputError (file:line, what was found,
 /// what to do next) when it cannot be understood, is cut short or contradicts itself or `options`.
 Record read_record(const std::filesystem::path& path, const ReadOptions& options = {});

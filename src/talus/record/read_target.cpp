@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "talus/base/text_file.h"
 #include "talus/record/synthetic.h"
 #include "talus/record/table.h"
 
@@ -18,7 +17,7 @@ bool is_period(const Title& title) {
 }  // namespace
 
 TargetSpectrum read_target(const std::filesystem::path& path) {
-  const Lines lines = split_lines(path.string(), read_text_file(path));
+  const Lines lines = split_lines(path.string(), read_record_file(path));
   const Table table = read_table(lines, 1);
   const std::string form = "a target has two columns, for example \"period [s]\" and \"sa [m/s2]\"";
   if (table.title_line == 0 || table.title.size() != 2)

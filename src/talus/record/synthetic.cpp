@@ -16,7 +16,7 @@ namespace talus::record {
 
 namespace {
 
-constexpr int kMatched = 40;
+constexpr int kMatched = 80;
 constexpr double kShortestMatched = 0.05, kLongestMatched = 4;  // [s]
 constexpr double kEndTaper = 1;                                 // [s]
 constexpr double kDecayedTo = 0.05;  // share of the envelope at the end of its decay

@@ -56,7 +56,7 @@ struct Synthetic {
   std::vector<Step> steps;  // as of process()
 };
 
-/// Periods [s] at which target and motion are compared: 40, equal in logarithm, from 0.05 to 4 s, as far as
+/// Periods [s] at which target and motion are compared: 80, equal in logarithm, from 0.05 to 4 s, as far as
 /// the band of the motion and the target go.
 std::vector<double> matched_periods(const SyntheticInput& input);
 

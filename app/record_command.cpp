@@ -1,0 +1,202 @@
+#include "record_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "talus/base/error.h"
+#include "talus/base/text.h"
+#include "talus/output/files.h"
+#include "talus/plot/record_figures.h"
+#include "talus/record/measures.h"
+#include "talus/record/motion_file.h"
+
+namespace talus::app {
+
+namespace {
+
+const std::map<std::string, record::Format> kFormats{{"peer", record::Format::kPeer},
+                                                     {"knet", record::Format::kKnet},
+                                                     {"jma", record::Format::kJma},
+                                                     {"csv", record::Format::kCsv}};
+
+// What the command made, ready to be written.
+struct Outcome {
+  record::Motion motion;
+  std::optional<record::Motion> before;
+  std::optional<record::TargetSpectrum> target;
+  record::Account account;
+  std::string title;
+};
+
+Outcome from_file(const RecordArguments& args) {
+  record::ReadOptions read = args.read;
+  if (!args.format.empty()) read.format = kFormats.at(args.format);
+  if (args.dt > 0) read.dt = args.dt;
+  const std::string text = record::read_record_file(args.file);
+  const record::Record r = record::read_record_text(args.file, text, read);
+  Outcome out;
+  out.account = {.source = args.file,
+                 .hash = text_hash(text),
+                 .format = std::string(name_of(r.format)),
+                 .title = r.title,
+                 .unit = r.unit,
+                 .offset = r.offset};
+  out.title = std::filesystem::path(args.file).filename().string();
+  out.before = record::integrate(record::acceleration_of(r), r.dt);
+  if (r.quantity != record::Quantity::kAcceleration)
+    out.account.steps.push_back(
+        {fmt::format("acceleration by differences of the {}", name_of(r.quantity)), {}});
+  if (args.raw) {
+    out.motion = *out.before;
+  } else {
+    record::Processing how = args.how;
+    if (args.corner == "-6dB") how.band.corner = record::Corner::k6dB;
+    record::Processed done = record::process(out.before->acceleration, r.dt, how, args.file);
+    out.motion = std::move(done.motion);
+    out.account.steps.insert(out.account.steps.end(), done.steps.begin(), done.steps.end());
+  }
+  fmt::print("{}: {}, \"{}\", {} values in {}, dt = {:g} s, {:g} s\n", args.file, name_of(r.format), r.title,
+             r.value.size(), r.unit, r.dt, out.before->duration());
+  return out;
+}
+
+Outcome from_seed(const RecordArguments& args) {
+  record::SyntheticInput in = args.make;
+  if (args.dt > 0) in.dt = args.dt;
+  if (args.how.duration > 0) in.duration = args.how.duration;
+  if (args.pga > 0) in.pga = args.pga;
+  if (!args.target.empty())
+    in.target = record::read_target(args.target);
+  else if (in.pga)
+    in.target = record::code_spectrum(*in.pga);
+  record::Synthetic made = record::make_synthetic(in);
+  Outcome out;
+  out.motion = std::move(made.motion);
+  out.target = in.target;
+  out.title = fmt::format("synthetic motion, seed {}", in.seed);
+  out.account.source = out.title;
+  out.account.steps = made.steps;
+  fmt::print("{}: {:g} s in steps of {:g} s, rms of ln(Sa / target) {:.3f} at {} periods\n", out.title,
+             in.duration, in.dt, made.rms_misfit, record::matched_periods(in).size());
+  return out;
+}
+
+// What only a file has: its format, and steps that a synthetic motion does not go through.
+std::vector<CLI::Option*> add_file_options(CLI::App& verb, RecordArguments& args) {
+  return {verb.add_option("--format", args.format, "format of the file; without: known from its content")
+              ->check(CLI::IsMember({"peer", "knet", "jma", "csv"})),
+          verb.add_option("--column", args.read.column,
+                          "column or component: its title, or acceleration, velocity, displacement"),
+          verb.add_option("--unit", args.read.unit,
+                          "unit of the values where the file names none: " + record::known_units()),
+          verb.add_flag("--raw", args.raw, "convert to SI and integrate only; none of the steps below")};
+}
+
+std::vector<CLI::Option*> add_step_options(CLI::App& verb, RecordArguments& args) {
+  record::Processing& how = args.how;
+  return {
+      verb.add_option("--pre-event", how.pre_event, "take the mean of the first so many seconds; 0: of all")
+          ->capture_default_str(),
+      verb.add_option("--taper", how.taper, "share of the samples that a cosine raises at each end")
+          ->capture_default_str(),
+      verb.add_option("--high-pass", how.band.high_pass,
+                      "corner below which motion is taken out [Hz]; 0: none")
+          ->capture_default_str(),
+      verb.add_option("--low-pass", how.band.low_pass, "corner above which motion is taken out [Hz]; 0: none")
+          ->capture_default_str(),
+      verb.add_option("--order", how.band.order,
+                      "order n of the whole zero-phase Butterworth filter: slopes of n x 6 dB per octave")
+          ->capture_default_str(),
+      verb.add_option(
+              "--corner", args.corner,
+              "gain at the corners: -3dB, |H| = 1/sqrt(1 + (f1/f)^(2n)); or -6dB, as a filter of order n/2 "
+              "run forwards and backwards, 1/(1 + (f1/f)^n)")
+          ->check(CLI::IsMember({"-3dB", "-6dB"}))
+          ->capture_default_str(),
+      verb.add_option("--baseline", how.baseline_degree,
+                      "degree of the polynomial t^2 ... taken off the displacement; 0: none")
+          ->capture_default_str(),
+      verb.add_option("--begin", how.begin, "begin of the window [s]")->capture_default_str(),
+      verb.add_option("--end-taper", how.end_taper, "length of the cosine at the end of the window [s]")
+          ->capture_default_str()};
+}
+
+std::vector<CLI::Option*> add_synthetic_options(CLI::App& verb, RecordArguments& args) {
+  record::Envelope& envelope = args.make.envelope;
+  return {verb.add_option("--seed", args.make.seed, "seed of the random phases")->capture_default_str(),
+          verb.add_option("--pga", args.pga, "peak acceleration of the synthetic motion [m/s2]")
+              ->check(CLI::PositiveNumber),
+          verb.add_option(
+              "--target", args.target,
+              "CSV \"period [s],sa [m/s2]\" to match; without: the code spectrum of docs/theory.md (11.6) "
+              "for --pga"),
+          verb.add_option("--rise", envelope.rise, "envelope: seconds of (t/rise)^2")->capture_default_str(),
+          verb.add_option("--strong", envelope.strong, "envelope: seconds of full strength")
+              ->capture_default_str(),
+          verb.add_option("--decay", envelope.decay, "envelope: seconds in which it falls to 5 %")
+              ->capture_default_str()};
+}
+
+}  // namespace
+
+void add_record_arguments(CLI::App& verb, RecordArguments& args) {
+  verb.add_option("FILE", args.file, "PEER AT2, VT2, DT2; K-NET or KiK-net; JMA CSV; or plain CSV");
+  verb.add_option("-o,--out,--output", args.folder, "folder for motion.csv, record.json and the figures")
+      ->required();
+  verb.add_flag("--force", args.force, "replace the results in that folder");
+  verb.add_option("--dt", args.dt, "time step [s], where the file has none; of a synthetic motion: 0.01")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--duration", args.how.duration,
+                  "length of the window [s], 0: to the end; of a synthetic motion: 20")
+      ->check(CLI::NonNegativeNumber);
+  CLI::Option* synthetic =
+      verb.add_flag("--synthetic", args.synthetic, "make a motion from a seed instead of reading one");
+  // an option that would do nothing is refused
+  const auto of_file = add_file_options(verb, args), of_steps = add_step_options(verb, args);
+  for (CLI::Option* o : of_file) o->excludes(synthetic);
+  for (CLI::Option* o : of_steps) o->excludes(synthetic)->excludes(of_file.back());
+  for (CLI::Option* o : add_synthetic_options(verb, args)) o->needs(synthetic);
+  verb.footer(
+      "Steps: mean, taper, filter, baseline, window, end brought to rest (v = d = 0). g = 9.80665 m/s2.\n"
+      "Examples: talus record KOBE000.AT2 --low-pass 15 --duration 20 --out out/kobe\n"
+      "          talus record --synthetic --seed 50 --pga 8.17 --out out/synthetic");
+}
+
+int record_command(const RecordArguments& args) {
+  if (args.synthetic != args.file.empty())
+    throw Error(kExitUsage, args.synthetic ? "talus record: give FILE or --synthetic, not both"
+                                           : "talus record: give FILE, or --synthetic with --seed and --pga");
+  Outcome out = args.synthetic ? from_seed(args) : from_file(args);
+  record::Account& account = out.account;
+  account.after = record::measure(out.motion);
+  account.samples = out.motion.size();
+  account.dt = out.motion.dt;
+  std::vector<std::pair<std::string, record::Measures>> columns;
+  std::vector<plot::MotionCurve> curves;
+  if (out.before && !args.raw) {
+    account.before.push_back(record::measure(*out.before));
+    columns.emplace_back("as read", account.before[0]);
+    curves.push_back({"as read", &*out.before});
+  }
+  const char* made = args.synthetic ? "synthetic" : args.raw ? "as read" : "processed";
+  columns.emplace_back(made, account.after);
+  curves.push_back({made, &out.motion});
+  fmt::print("{}", record::measures_table(columns));
+
+  open_result_folder(args.folder, args.force, ResultKind::kRecord);
+  const std::filesystem::path folder(args.folder);
+  write_file(folder / "record.json", record::record_json(account));  // first: it marks the folder as ours
+  write_file(folder / "motion.csv", record::motion_csv(out.motion));
+  plot::write_record_figures(out.title, curves, out.target ? &*out.target : nullptr, folder);
+  fmt::print(
+      "written to {}: motion.csv (for [history.NAME] file and column), record.json, acceleration, velocity, "
+      "displacement and spectrum as .svg and .png\n",
+      args.folder);
+  return kExitOk;
+}
+
+}  // namespace talus::app

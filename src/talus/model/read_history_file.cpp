@@ -1,0 +1,34 @@
+#include "talus/model/read_history_file.h"
+
+#include <filesystem>
+
+#include "talus/base/error.h"
+#include "talus/base/text_file.h"
+#include "talus/record/history_file.h"
+
+namespace talus {
+
+std::string read_history_file(const Fields& fields, const std::string& model_file, History& history,
+                              Findings& findings) {
+  const auto path = std::filesystem::path(model_file).parent_path() / fields.get<std::string>("file");
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (const FileError& e) {
+    findings.error(fields.where("file"), fields.path_of("file"), e.what(),
+                   "the path counts from the folder of the model file");
+    return "";
+  }
+  try {
+    record::HistoryColumn column =
+        record::read_history_text(path.string(), text, fields.get<std::string>("column"));
+    history.time = std::move(column.time);
+    history.value = std::move(column.value);
+  } catch (const InputError& e) {
+    const char* key = fields.given("column") ? "column" : "file";
+    findings.error(fields.where(key), fields.path_of(key), std::string("cannot be read\n") + e.what());
+  }
+  return text;
+}
+
+}  // namespace talus

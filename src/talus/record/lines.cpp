@@ -65,7 +65,7 @@ double number_at(const Lines& lines, size_t number, std::string_view token, std:
   return v;
 }
 
-std::vector<double> numbers_from(const Lines& lines, size_t first) {
+std::vector<double> numbers_from(const Lines& lines, size_t first, Numbers kind) {
   std::vector<double> out;
   for (size_t n = first; n <= lines.count(); ++n) {
     std::string_view rest = trimmed(lines.line[n - 1]);
@@ -73,6 +73,9 @@ std::vector<double> numbers_from(const Lines& lines, size_t first) {
       const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
       const std::string_view token = word.substr(0, end_of_number(word));
       out.push_back(number_at(lines, n, token, fmt::format("value {}", out.size() + 1)));
+      if (kind == Numbers::kWhole && out.back() != std::floor(out.back()))
+        fail(lines, n, fmt::format("{} is not a whole count of the logger", token),
+             "K-NET data are integers; read other tables as CSV: --format csv");
       rest = trimmed(rest.substr(token.size()));
     }
   }

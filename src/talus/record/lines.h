@@ -26,8 +26,10 @@ Lines split_lines(const std::string& file, const std::string& text);
 /// numbers too large for a double; `what` names the thing in the message.
 double number_at(const Lines& lines, size_t number, std::string_view token, std::string_view what);
 
+enum class Numbers { kAny, kWhole };
+
 /// All numbers from line `first` (from 1) on, any count per line, blanks or nothing before a sign between
-/// them.
-std::vector<double> numbers_from(const Lines& lines, size_t first);
+/// them. Throws by fail(), also on a fraction where whole numbers are expected (counts of a logger).
+std::vector<double> numbers_from(const Lines& lines, size_t first, Numbers kind = Numbers::kAny);
 
 }  // namespace talus::record

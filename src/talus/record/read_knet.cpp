@@ -79,11 +79,7 @@ Record read_knet(const Lines& lines, const ReadOptions& options) {
   record.title = fmt::format("{} {} {}", find_entry(lines, "station code").value,
                              find_entry(lines, "dir").value, find_entry(lines, "record time").value);
 
-  record.value = numbers_from(lines, need_entry(lines, "memo").line + 1);
-  for (const double v : record.value)
-    if (v != std::floor(v))
-      fail(lines, lines.count(), fmt::format("{:g} is not a whole count of the logger", v),
-           "K-NET data are integers; read other tables as CSV: --format csv");
+  record.value = numbers_from(lines, need_entry(lines, "memo").line + 1, Numbers::kWhole);
   const Entry duration = need_entry(lines, "duration");
   const double expected = std::round(leading_number(lines, duration, "duration") * frequency);
   const auto n = static_cast<double>(record.value.size());

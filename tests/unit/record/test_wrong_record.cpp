@@ -149,9 +149,9 @@ TEST_CASE("wrong record: each kind has its message") {
        {},
        "r:12: error: there are 202 values, but duration and sampling frequency make 200\n      = correct the "
        "header"},
-      {kKnet + "7.5\n",
+      {replaced(kKnet, " 1582 \n", " 1582.5 \n"),
        {},
-       "r:43: error: 7.5 is not a whole count of the logger\n      = K-NET data are integers; read other "
+       "r:18: error: 1582.5 is not a whole count of the logger\n      = K-NET data are integers; read other "
        "tables as CSV: --format csv"},
       // JMA
       {kJma,

@@ -47,15 +47,17 @@ class MemoryObserver : public Observer {
 
 /// TALUS_TEST_SOLVER=gauss_seidel runs every case by that solver unless it names one itself.
 /// @param prepare  may change the state before the first step
+/// @param file     the model's own path, where it names other files
 inline CaseResult run_case(const std::string& model, const std::vector<std::string>& overrides = {},
                            const std::function<void(const Instant&)>& watch = nullptr,
-                           const std::function<void(const Scene&, State&)>& prepare = nullptr) {
-  Findings findings("case.toml", model);
+                           const std::function<void(const Scene&, State&)>& prepare = nullptr,
+                           const std::string& file = "case.toml") {
+  Findings findings(file, model);
   std::vector<std::string> all = overrides;
   if (const char* solver = std::getenv("TALUS_TEST_SOLVER");
       solver && model.find("method =") == std::string::npos && model.find("smoothed") == std::string::npos)
     all.insert(all.begin(), std::string("solver.method=") + solver);
-  PreparedRun prepared = prepare_run("case.toml", model, all, findings);
+  PreparedRun prepared = prepare_run(file, model, all, findings);
   CaseResult result;
   result.state = start_state(prepared.scene);
   if (prepare) prepare(prepared.scene, result.state);

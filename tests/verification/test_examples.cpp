@@ -3,6 +3,7 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/model/toml_source.h"
+#include "talus/record/read_record.h"
 
 using namespace talus;
 using namespace talus::test;
@@ -10,8 +11,8 @@ using namespace talus::test;
 namespace {
 
 CaseResult run_example(const std::string& name, const std::function<void(const Instant&)>& watch = nullptr) {
-  return run_case(read_text_file(fmt::format("{0}/examples/{1}/{1}.toml", TALUS_SOURCE_DIR, name)), {},
-                  watch);
+  const std::string file = fmt::format("{0}/examples/{1}/{1}.toml", TALUS_SOURCE_DIR, name);
+  return run_case(read_text_file(file), {}, watch, nullptr, file);
 }
 
 }  // namespace
@@ -84,6 +85,41 @@ TEST_CASE("example sliding_block: slip on a table that shakes sideways and up an
   check_close("sliding_block slip after 1 s [m]", x[1000], 0.242553, 1e-3, 1e-4);
   check_close("sliding_block slip after 5 s [m]", x[5000], 1.423471, 1e-3, 1e-4);
   check_below("sliding_block energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}
+
+TEST_CASE(
+    "example record: slip of a block in a synthetic earthquake, seen from the ground and from the table") {
+  const CaseResult r = run_example("record");
+  const auto &block = r.column("block.displacement_x"), &table = r.column("table.displacement_x"),
+             &block_2 = r.column("block_2.displacement_x");
+
+  // rigid block with Coulomb friction: w' = -a - mu g sign(w), stuck while |a| <= mu g; the acceleration of
+  // the file is linear between its samples. Steps of 10 us: 1e-5 s x 1 m/s of slip
+  const record::Record motion =
+      record::read_record(std::string(TALUS_SOURCE_DIR) + "/examples/record/motion.csv");
+  const double limit = 9.81 * std::tan(20 * M_PI / 180), h = 1e-5;
+  const int fine = 1000;  // steps per sample
+  double w = 0, slip = 0, worst_2 = 0, worst = 0, largest = 0;
+  for (size_t i = 0; i + 1 < motion.value.size(); ++i) {
+    for (int k = 0; k < fine; ++k) {
+      const double a = motion.value[i] + (motion.value[i + 1] - motion.value[i]) * (k + 0.5) / fine;
+      const double before = w;
+      if (w == 0)
+        w = std::abs(a) <= limit ? 0 : h * (-a - std::copysign(limit, -a));
+      else if (w += h * (-a - std::copysign(limit, w)); w * before < 0)
+        w = 0;
+      slip += 0.5 * h * (before + w);
+    }
+    largest = std::max(largest, std::abs(slip));
+    worst_2 = std::max(worst_2, std::abs(block_2[i + 1] - slip));
+    worst = std::max(worst, std::abs(block[i + 1] - table[i + 1] - slip));
+  }
+  check_close("record slip after 20 s, by the load [m]", block_2[2000], slip, 1e-4, 2e-5, 1);
+  check_below("record slip by the load, largest error at any time [m]", worst_2, 1e-4, 2e-5);
+  // velocities of the file are joined by straight lines: steps of acceleration, off by up to half a change
+  // per sample
+  check_below("record slip on the moving table, largest error at any time [m]", worst, 1e-3, 5e-4);
+  check_below("record energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
 
 TEST_CASE("example elastic_joint: sinks, slips and leans as calculated by hand") {

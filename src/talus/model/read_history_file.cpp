@@ -10,6 +10,11 @@ namespace talus {
 
 std::string read_history_file(const Fields& fields, const std::string& model_file, History& history,
                               Findings& findings) {
+  if (!fields.has("file")) return "";  // wrong, and told
+  if (fields.get<std::string>("file").empty()) {
+    findings.error(fields.where("file"), fields.path_of("file"), "is empty", "name a file, or leave it out");
+    return "";
+  }
   const auto path = std::filesystem::path(model_file).parent_path() / fields.get<std::string>("file");
   std::string text;
   try {

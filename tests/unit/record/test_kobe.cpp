@@ -100,13 +100,15 @@ TEST_CASE("kobe: the motion against the one of the reference program, sample by 
     MESSAGE("skipped: kobe_ns_20s_processed.csv is not in TALUS_RECORDS");
     return;
   }
+  // the reference's low-pass is a difference equation, steeper than ours above 10 Hz: 1 % of the peak
+  // acceleration, less of what follows by integration
   Processing how;
   how.band.corner = Corner::k6dB;
   how.duration = 20;
   const Motion m = process(r->value, r->dt, how, "kobe").motion;
   for (const auto& [column, values, tolerance, stretch] :
-       {std::tuple{"a_m_s2", &m.acceleration, 0.2, 0.05}, std::tuple{"v_m_s", &m.velocity, 3e-3, 1e-3},
-        std::tuple{"d_m", &m.displacement, 2e-3, 5e-4}}) {
+       {std::tuple{"a_m_s2", &m.acceleration, 0.1, 0.05}, std::tuple{"v_m_s", &m.velocity, 2e-3, 1e-3},
+        std::tuple{"d_m", &m.displacement, 1e-4, 5e-5}}) {
     ReadOptions options;
     options.column = column;
     const Record reference = read_record(path, options);

@@ -43,7 +43,7 @@ TEST_CASE("synthetic: matches the target, ends at rest") {
   for (const uint64_t seed : {1UL, 2UL, 3UL, 50UL}) {
     const SyntheticInput in = input(seed, 2);
     const Synthetic s = make_synthetic(in);
-    // measured 0.02 to 0.07: PGA and spectrum at rest of the band are not free of each other
+    // measured 0.04 to 0.09: harmonics 0.05 Hz apart cannot follow every period
     check_below(fmt::format("synthetic, seed {}: rms of ln(Sa / target)", seed), s.rms_misfit, 0.1, 0.03);
     check_below(fmt::format("synthetic, seed {}: v(T) [m/s]", seed), std::abs(s.motion.velocity.back()),
                 1e-13, 1e-14);
@@ -70,6 +70,7 @@ TEST_CASE("synthetic: scaled to the asked peak, which costs some of the match") 
     const Synthetic s = make_synthetic(in);
     check_close(fmt::format("synthetic, seed {}: PGA [m/s2]", seed), measure(s.motion).pga, 8.17, 1e-12,
                 1e-14);
+    // measured 0.05 to 0.25
     check_below(fmt::format("synthetic, seed {}: rms of ln(Sa / target), scaled", seed), s.rms_misfit, 0.3,
                 0.1);
   }

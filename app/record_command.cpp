@@ -162,8 +162,8 @@ void add_record_arguments(CLI::App& verb, RecordArguments& args) {
   for (CLI::Option* o : add_synthetic_options(verb, args)) o->needs(synthetic);
   verb.footer(
       "Steps: mean, taper, filter, baseline, window, end brought to rest (v = d = 0). g = 9.80665 m/s2.\n"
-      "Examples: talus record KOBE000.AT2 --low-pass 15 --duration 20 --out out/kobe\n"
-      "          talus record --synthetic --seed 50 --pga 8.17 --out out/synthetic");
+      "Example: talus record KOBE000.AT2 --low-pass 15 --duration 20 --out out/kobe\n"
+      "         talus record --synthetic --seed 50 --pga 8.17 --out out/synthetic");
 }
 
 int record_command(const RecordArguments& args) {

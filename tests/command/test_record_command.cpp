@@ -123,7 +123,7 @@ TEST_CASE("command: record and its exit codes") {
     CHECK(o.code == code);
     has(o.text, part);
   };
-  refused("--help", 0, "Examples: talus record");
+  refused("--help", 0, "Example: talus record");
   refused("--out o", 2, "talus record: give FILE, or --synthetic with --seed and --pga");
   refused("a.AT2 --synthetic --out o", 2, "talus record: give FILE or --synthetic, not both");
   refused("a.AT2", 2, "--out is required");

@@ -128,8 +128,8 @@ TEST_CASE("command: record and its exit codes") {
   refused("a.AT2 --synthetic --out o", 2, "talus record: give FILE or --synthetic, not both");
   refused("a.AT2", 2, "--out is required");
   refused("a.AT2 --seed 3 --out o", 2, "--seed requires --synthetic");
-  refused("--synthetic --pga 1 --order 2 --out o", 2, "--order excludes --synthetic");
-  refused("a.AT2 --raw --order 2 --out o", 2, "--order excludes --raw");
+  refused("--synthetic --pga 1 --order 2 --out o", 2, "--synthetic excludes --order");
+  refused("a.AT2 --raw --order 2 --out o", 2, "--raw excludes --order");
   refused("none.AT2 --out o", 4,
           "none.AT2: cannot be read: No such file or directory\n      = check the path");
   refused("a.AT2 --low-pass 60 --out o", 3, "a.AT2: error: the low-pass corner of 60 Hz is not below");

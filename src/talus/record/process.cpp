@@ -12,6 +12,8 @@ namespace talus::record {
 
 namespace {
 
+constexpr double kMostPadded = 5e7;  // samples to transform, 400 MB of them
+
 // Raised cosine from 0 to 1 in m samples.
 double rise(size_t i, size_t m) {
   return 0.5 * (1 - std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(m)));
@@ -112,6 +114,11 @@ void check_processing(const Processing& how, size_t samples, double dt, const st
   if (band.low_pass > 0 && band.high_pass >= band.low_pass)
     refuse(source, fmt::format("the band from {:g} to {:g} Hz is empty", band.high_pass, band.low_pass),
            "the high-pass corner is the lower one");
+  if (2 * padding_of(band) / dt + static_cast<double>(samples) > kMostPadded)
+    refuse(source,
+           fmt::format("a high-pass corner of {:g} Hz needs {:g} s of zeros on each side", band.high_pass,
+                       padding_of(band)),
+           "give a higher one, or 0 for none");
   if (how.baseline_degree != 0 && (how.baseline_degree < 2 || how.baseline_degree > 10))
     refuse(source, fmt::format("a baseline of degree {}", how.baseline_degree),
            "give 2 to 10, or 0 for none");

@@ -14,7 +14,8 @@ namespace talus::record {
 
 namespace {
 
-constexpr size_t kHeaderLines = 20;  // no format has a longer header
+constexpr size_t kHeaderLines = 20;                       // no format has a longer header
+constexpr double kShortestStep = 1e-5, kLongestStep = 1;  // [s] beyond, a unit was mistaken
 
 bool holds(const std::string& line, std::string_view word) {
   return lower_case(line).find(word) != std::string::npos;
@@ -64,6 +65,10 @@ Record read_record_text(const std::string& file, const std::string& text, const 
     fail(lines, lines.count(),
          fmt::format("the record has {} value{}", record.value.size(), record.value.size() == 1 ? "" : "s"),
          "a motion needs at least two");
+  if (record.dt < kShortestStep || record.dt > kLongestStep)
+    fail(lines, 0, fmt::format("the time step is {:g} s", record.dt),
+         fmt::format("steps of a motion are {:g} to {:g} s; is the unit of the time the right one?",
+                     kShortestStep, kLongestStep));
   return record;
 }
 

@@ -216,6 +216,9 @@ TEST_CASE("process: options that do not fit the record are refused") {
         "it, or 0 for none");
   CHECK(message([](Processing& h) { h.band.high_pass = 20; }) ==
         "r: error: the band from 20 to 15 Hz is empty\n      = the high-pass corner is the lower one");
+  CHECK(message([](Processing& h) { h.band.high_pass = 1e-6; }) ==
+        "r: error: a high-pass corner of 1e-06 Hz needs 6e+06 s of zeros on each side\n      = give a higher "
+        "one, or 0 for none");
   CHECK(message([](Processing& h) { h.band.order = 0; }) ==
         "r: error: filter 0.1 to 15 Hz, order 0\n      = corners are 0 (none) or above, the order is from 1 "
         "to 20");

@@ -244,6 +244,10 @@ TEST_CASE("wrong record: each kind has its message") {
       {replaced(kCsv, "0.01,2", "0.01,"),
        {},
        "r:3: error: the row has 1 cells, the table 2 columns\n      = correct the row, or the title line"},
+      {"t [s],a_gal\n0,1\n20,2\n40,3\n",
+       {},
+       "r: error: the time step is 20 s\n      = steps of a motion are 1e-05 to 1 s; is the unit of the time "
+       "the right one?"},
       {"time [s],a_gal\n",
        {},
        "r:1: error: there is no row of numbers\n      = the file may be cut short: fetch or write it again"},

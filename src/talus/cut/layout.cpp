@@ -8,6 +8,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/cut/blocks_file.h"
+#include "talus/cut/check_places.h"
 #include "talus/geometry/polygon_check.h"
 
 namespace talus {
@@ -95,29 +96,6 @@ void check_overlaps(const Layout& layout, Findings& findings) {
   }
 }
 
-// Two supports that hold one corner along one axis must ask for the same motion.
-void check_contradictions(const Model& model, const Layout& layout, Findings& findings) {
-  std::map<std::pair<int, int>, std::vector<const SupportInput*>> holders;
-  for (const SupportInput& s : model.supports)
-    for (const SupportedCorner& c : corners_of_support(layout, s))
-      if (c.vertex >= 0) holders[{c.block, c.vertex}].push_back(&s);
-  const auto differ = [](const Motion& p, const Motion& q) {
-    const bool both = p.kind != Motion::kFree && q.kind != Motion::kFree;
-    return both && (p.kind != q.kind || p.history != q.history);
-  };
-  for (const auto& [corner, list] : holders) {
-    for (size_t i = 1; i < list.size(); ++i) {
-      const SupportInput &first = *list[0], &other = *list[i];
-      if (!differ(first.x, other.x) && !differ(first.y, other.y)) continue;
-      findings.error(other.where, "support." + other.name,
-                     fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
-                                 layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
-                     "make one of them \"free\" along that axis, or shorten it");
-      return;
-    }
-  }
-}
-
 double model_size(const Layout& layout) {
   Box all = bounding_box(layout.blocks[0].polygon);
   for (const BlockShape& b : layout.blocks) {
@@ -126,55 +104,6 @@ double model_size(const Layout& layout) {
     all.max = {std::max(all.max.x, box.max.x), std::max(all.max.y, box.max.y)};
   }
   return norm(all.max - all.min);
-}
-
-void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
-                   Findings& findings) {
-  if (name.empty()) return;  // told by the reader
-  if (layout.find_group(name) >= 0) {
-    findings.error(where, path, fmt::format("\"{}\" has no block left", name),
-                   "its rock is taken out, or another region or opening covers it");
-    return;
-  }
-  std::vector<std::string> names = layout.groups;
-  for (const BlockShape& b : layout.blocks) names.push_back(b.name);
-  const std::string near = closest_name(name, names);
-  findings.error(where, path, fmt::format("there is no block, grid or region called \"{}\"", name),
-                 near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
-}
-
-void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
-  for (const MonitorInput& m : model.monitors) {
-    const std::string path = "monitor." + m.name;
-    if (m.kind == MonitorKind::kPoint && block_of_point(layout, m.point) < 0) {
-      double nearest = std::numeric_limits<double>::infinity();
-      std::string name;
-      for (const BlockShape& b : layout.blocks) {
-        for (size_t i = 0; i < b.polygon.size(); ++i) {
-          const double d = distance_to_segment(m.point, b.polygon[i], b.polygon[(i + 1) % b.polygon.size()]);
-          if (d < nearest) nearest = d, name = b.name;
-        }
-      }
-      findings.error(m.where, path,
-                     fmt::format("({:g}, {:g}) lies outside every block", m.point.x, m.point.y),
-                     fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
-    }
-    if (m.kind == MonitorKind::kBlock) {
-      const std::vector<int> called = layout.blocks_called(m.target_a);
-      if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);
-      if (called.size() > 1)
-        findings.error(m.where, path, fmt::format("\"{}\" is {} blocks, not one", m.target_a, called.size()),
-                       fmt::format("name one of its blocks, for example \"{}\"",
-                                   layout.blocks[static_cast<size_t>(called[0])].name));
-    }
-    if (m.kind == MonitorKind::kContact && m.target_a == m.target_b && !m.target_a.empty())
-      findings.error(m.where, path, fmt::format("names \"{}\" twice", m.target_a),
-                     "name the two partners of the contact");
-    if (m.kind == MonitorKind::kContact) {
-      for (const std::string& name : {m.target_a, m.target_b})
-        if (layout.blocks_called(name).empty()) unknown_block(layout, name, m.where, path, findings);
-    }
-  }
 }
 
 }  // namespace
@@ -269,50 +198,15 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   if (layout.blocks.empty() || !sound) return layout;
 
   check_overlaps(layout, findings);
-  for (const LoadInput& l : model.loads) {
-    if (l.block.empty()) continue;
-    const std::vector<int> loaded = layout.blocks_called(l.block);
-    if (loaded.empty()) unknown_block(layout, l.block, l.where, "load." + l.name + ".block", findings);
-    const auto held = [&](int i) {
-      const BlockKind kind = layout.blocks[static_cast<size_t>(i)].kind;
-      return kind == BlockKind::kFixed || kind == BlockKind::kDriven;
-    };
-    if (!loaded.empty() && std::all_of(loaded.begin(), loaded.end(), held))
-      findings.warning(l.where, "load." + l.name + ".block",
-                       fmt::format("\"{}\" is fixed or driven: the load has no effect", l.block));
-  }
-  check_monitors(model, layout, findings);
-  check_contradictions(model, layout, findings);
-  for (const SupportInput& s : model.supports) {
-    if (!s.along.empty() &&
-        std::find(layout.origins.begin(), layout.origins.end(), s.along) == layout.origins.end()) {
-      const std::string near = closest_name(s.along, layout.origins);
-      findings.error(s.where, "support." + s.name + ".along",
-                     fmt::format("there is no side, opening, fault or joint set called \"{}\"", s.along),
-                     !near.empty()            ? fmt::format("did you mean \"{}\"?", near)
-                     : layout.origins.empty() ? "the file has no [[region]]"
-                                              : fmt::format("there is {}", join_or(layout.origins)));
-      continue;
-    }
-    if (!s.block.empty() && layout.blocks_called(s.block).empty()) {
-      unknown_block(layout, s.block, s.where_block, "support." + s.name + ".block", findings);
-      continue;
-    }
-    if (corners_of_support(layout, s).empty())
-      findings.error(s.where, "support." + s.name,
-                     !s.along.empty() ? fmt::format("no block edge is left along \"{}\"", s.along)
-                     : s.is_edge      ? "no block edge lies on the segment"
-                                      : "the point lies on no block",
-                     !s.along.empty() ? "see with talus cut which edges there are"
-                     : s.is_edge      ? "give a segment along block edges, corners included"
-                                      : "give a point of a block");
-  }
+  check_places(model, layout, findings);
   return layout;
 }
 
 Cut cut_or_read(const Model& model, Findings& findings) {
   return model.cut.blocks_file.empty() ? cut_model(model, findings) : read_blocks_file(model, findings);
 }
+
+double point_tolerance(const Layout& layout) { return kPointShare * model_size(layout); }
 
 std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {
   std::vector<int> list;
@@ -327,52 +221,8 @@ std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {
 }
 
 int block_of_point(const Layout& layout, Vec2 point) {
-  const std::vector<int> blocks = blocks_at(layout, point, kPointShare * model_size(layout));
+  const std::vector<int> blocks = blocks_at(layout, point, point_tolerance(layout));
   return blocks.empty() ? -1 : blocks.front();
-}
-
-std::vector<SupportedCorner> corners_of_support(const Layout& layout, const SupportInput& support) {
-  const double tolerance = kPointShare * model_size(layout);
-  std::vector<int> candidates;
-  if (support.block.empty()) {
-    for (size_t i = 0; i < layout.blocks.size(); ++i) candidates.push_back(static_cast<int>(i));
-  } else {
-    candidates = layout.blocks_called(support.block);
-  }
-
-  std::vector<SupportedCorner> corners;
-  if (!support.along.empty()) {
-    for (const int i : candidates) {
-      const BlockShape& b = layout.blocks[static_cast<size_t>(i)];
-      const size_t n = b.edge_origin.size();
-      const auto is_along = [&](size_t k) {
-        return layout.origins[static_cast<size_t>(b.edge_origin[k % n])] == support.along;
-      };
-      for (size_t k = 0; k < n; ++k)
-        if (is_along(k) || is_along(k + n - 1)) corners.push_back({i, static_cast<int>(k), b.polygon[k]});
-    }
-    return corners;
-  }
-  for (const int i : candidates) {
-    const Polygon& polygon = layout.blocks[static_cast<size_t>(i)].polygon;
-    const auto on_segment = [&](size_t k) {
-      return distance_to_segment(polygon[k % polygon.size()], support.from, support.to) <= tolerance;
-    };
-    for (size_t k = 0; k < polygon.size(); ++k) {
-      const bool edge_here = on_segment(k + 1) || on_segment(k + polygon.size() - 1);
-      if (on_segment(k) && (edge_here || !support.is_edge))
-        corners.push_back({i, static_cast<int>(k), polygon[k]});
-    }
-  }
-  if (corners.empty() && !support.is_edge) {
-    // no corner at the point: the first block around it
-    for (const int i : blocks_at(layout, support.from, tolerance)) {
-      if (std::find(candidates.begin(), candidates.end(), i) == candidates.end()) continue;
-      corners.push_back({i, -1, support.from});
-      break;
-    }
-  }
-  return corners;
 }
 
 }  // namespace talus

@@ -65,20 +65,13 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings);
 /// The same, cutting first.
 Layout make_layout(const Model& model, Findings& findings);
 
+/// Lengths below this are round-off of coordinates [m]. @pre  the layout has a block
+double point_tolerance(const Layout& layout);
+
 /// Blocks whose polygon holds `point` (boundary included, within `tolerance` [m]).
 std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance);
 
 /// The block that a point monitor follows: the first that holds `point`; -1 when none does.
 int block_of_point(const Layout& layout, Vec2 point);
-
-/// Corner `vertex` of block `block`, held by a support.
-struct SupportedCorner {
-  int block = 0;
-  int vertex = -1;  // -1: `point` inside the block
-  Vec2 point;       // [m]
-};
-
-/// The material points that `support` holds; empty when it touches no block.
-std::vector<SupportedCorner> corners_of_support(const Layout& layout, const SupportInput& support);
 
 }  // namespace talus

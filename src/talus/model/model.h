@@ -95,24 +95,50 @@ struct ContactPairInput {
   Where where;
 };
 
-struct SupportInput {
-  std::string name;
+/// Where something acts: block edges on a segment or along a line by its name, or a point; "" = no condition.
+struct Selection {
   bool is_edge = false;
   Vec2 from, to;  // the segment; the point when is_edge is false
   std::string
       along;  // name of an outline side, opening, fault or joint set: all block edges along it; "" = none
   std::string block;  // "" = any
   Where where_block;
+};
+
+struct SupportInput : Selection {
+  std::string name;
   Motion x, y;
   Where where;
 };
 
-/// Acceleration of blocks by a body force, added to gravity (shaking in the frame of the base).
-struct LoadInput {
+enum class BoundaryKind { kViscous, kFreeField, kTied };
+
+/// How a viscous or free-field edge stands in static stages.
+enum class StaticHold { kFixed, kRoller, kFree };
+
+/// An edge that lets waves out, and in: dashpots, a column of free field, or ties to the opposite side.
+struct BoundaryInput : Selection {
   std::string name;
-  std::string block;                   // "" = all
-  int history_x = -1, history_y = -1;  // [m/s2], -1 = none
+  BoundaryKind kind = BoundaryKind::kViscous;
+  int material = -1;                   // of the medium behind the edge, -1: that of each block
+  int history_x = -1, history_y = -1;  // velocity that comes in [m/s], -1: none
+  bool outcrop = false;                // the histories are twice the upgoing wave
+  StaticHold hold = StaticHold::kFixed;
+  Selection opposite;  // tied: the other side
+  Where where, where_material, where_opposite;
+};
+
+/// What pushes blocks: an acceleration added to gravity (shaking in the frame of the base), a pressure or
+/// traction on block edges, a force at a point.
+struct LoadInput : Selection {
+  std::string name;
+  bool has_place = false;                               // point, edge or along is given
+  int history_x = -1, history_y = -1;                   // acceleration [m/s2], -1 = none
+  int pressure = -1, traction_x = -1, traction_y = -1;  // on edges [Pa]
+  int force_x = -1, force_y = -1;                       // at the point [N]
   Where where;
+
+  bool is_body_force() const { return history_x >= 0 || history_y >= 0; }
 };
 
 enum class JacobianKind { kAnalytic, kDifference };
@@ -189,6 +215,7 @@ struct Model {
   int default_joint = -1;  // -1: hard and frictionless
   std::vector<ContactPairInput> contact_pairs;
   std::vector<SupportInput> supports;
+  std::vector<BoundaryInput> boundaries;
   std::vector<LoadInput> loads;
   ContactInput contact;
   SolverInput solver;

@@ -9,6 +9,7 @@
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
+#include "talus/model/read_action.h"
 #include "talus/model/read_cut.h"
 #include "talus/model/read_history_file.h"
 #include "talus/model/section_reader.h"
@@ -35,8 +36,7 @@ class ModelReader : private SectionReader {
     read_grids();
     read_cut_sections(source_, block_names_, model_, findings_);
     read_contact();
-    read_supports();
-    read_loads();
+    read_action_sections(source_, model_, findings_);
     read_solver();
     read_stages();
     read_monitors();
@@ -68,22 +68,6 @@ class ModelReader : private SectionReader {
                                      : fmt::format("did you mean \"{}\"?", near));
       }
     }
-  }
-
-  Motion motion(const Fields& f, std::string_view key) {
-    const MotionText m = f.get<MotionText>(key);
-    Motion out;
-    out.kind = static_cast<Motion::Kind>(m.kind);
-    const int given = index_of(model_.histories, m.history);
-    if (m.kind == MotionText::kDisplacement && given >= 0 &&
-        model_.histories[static_cast<size_t>(given)].value_at(0) != 0)
-      findings_.error(f.where(key), f.path_of(key),
-                      fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
-                                  m.history, model_.histories[static_cast<size_t>(given)].value_at(0)),
-                      "let it begin at 0");
-    if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
-      out.history = refer_name(m.history, f.where(key), f.path_of(key), model_.histories, "history");
-    return out;
   }
 
   // What is allowed but hardly meant.
@@ -274,9 +258,9 @@ class ModelReader : private SectionReader {
       b.kind = block_kind(f.get<std::string>("kind"));
       b.velocity = f.get<Vec2>("velocity");
       b.spin = f.get("spin", 0.0);
-      b.motion_x = motion(f, "motion_x");
-      b.motion_y = motion(f, "motion_y");
-      b.motion_rotation = motion(f, "motion_rotation");
+      b.motion_x = motion(f, "motion_x", model_.histories);
+      b.motion_y = motion(f, "motion_y", model_.histories);
+      b.motion_rotation = motion(f, "motion_rotation", model_.histories);
       for (const char* key : {"motion_x", "motion_y", "motion_rotation"}) {
         if (f.given(key) && b.kind != BlockKind::kDriven)
           findings_.error(f.where(key), f.path_of(key), "is only for a block of kind = \"driven\"",
@@ -348,61 +332,6 @@ class ModelReader : private SectionReader {
       c.joint = refer(p, "joint", model_.joints, "joint");
       c.where = p.where("between");
       model_.contact_pairs.push_back(c);
-    });
-  }
-
-  void read_supports() {
-    std::set<std::string> used;
-    for_list("support", [this, &used](const Fields& f) {
-      claim_name(f, used, "support");
-      SupportInput s;
-      s.name = f.get<std::string>("name");
-      s.where = f.where();
-      s.where_block = f.where("block");
-      const int places = f.given("point") + f.given("edge") + f.given("along");
-      if (places != 1) {
-        findings_.error(f.where(), f.path(), places > 1 ? "has more than one place" : "has no place",
-                        "give one of point = [x, y], edge = [[x0, y0], [x1, y1]], along = \"NAME\"");
-      }
-      s.along = f.get<std::string>("along");
-      if (f.has("along") && s.along.empty())
-        findings_.error(f.where("along"), f.path_of("along"), "is empty",
-                        "name a side of a region, an opening, a fault or a joint set");
-      s.from = s.to = f.get<Vec2>("point");
-      if (f.has("edge")) {
-        const auto points = f.get<std::vector<Vec2>>("edge");
-        s.is_edge = true;
-        if (points.size() != 2 || points[0] == points[1])
-          findings_.error(f.where("edge"), f.path_of("edge"), "must be a segment: two different points");
-        else
-          s.from = points[0], s.to = points[1];
-      }
-      if (f.has("block")) {
-        s.block = f.get<std::string>("block");
-      }
-      s.x = motion(f, "x");
-      s.y = motion(f, "y");
-      if (s.x.kind == Motion::kFree && s.y.kind == Motion::kFree)
-        findings_.error(f.where(), f.path(), "is free along x and y: it supports nothing");
-      model_.supports.push_back(s);
-    });
-  }
-
-  void read_loads() {
-    std::set<std::string> used;
-    for_list("load", [this, &used](const Fields& f) {
-      claim_name(f, used, "load");
-      LoadInput l;
-      l.name = f.get<std::string>("name");
-      l.where = f.given("block") ? f.where("block") : f.where();
-      l.history_x = refer(f, "acceleration_x", model_.histories, "history");
-      l.history_y = refer(f, "acceleration_y", model_.histories, "history");
-      if (!f.given("acceleration_x") && !f.given("acceleration_y"))
-        findings_.error(f.where(), f.path(), "has no effect", "give acceleration_x or acceleration_y");
-      if (f.has("block")) {
-        l.block = f.get<std::string>("block");
-      }
-      model_.loads.push_back(l);
     });
   }
 

@@ -1,4 +1,4 @@
-// What acts on blocks: contact, supports, loads.
+// What ties blocks to each other and to the ground: contact and supports.
 
 #include "talus/model/schema_tables.h"
 
@@ -74,25 +74,7 @@ std::vector<SectionSpec> action_sections() {
          .default_text = "\"fixed\"",
          .doc =
              "Along x: \"fixed\", \"free\", { velocity = \"HISTORY\" } or { displacement = \"HISTORY\" }."},
-        {.name = "y", .type = K::kMotion, .default_text = "\"fixed\"", .doc = "The same along y."}}},
-
-      {"load",
-       SectionShape::kList,
-       "A body force on blocks, as an acceleration added to gravity. In static stages it stands at its value "
-       "of t = 0 on the clock of the histories.",
-       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-        {.name = "acceleration_x",
-         .type = K::kName,
-         .refers_to = "history",
-         .doc = "History of the acceleration along x [m/s2]. A base that shakes with a(t) is the same as a "
-                "load of -a(t) "
-                "seen from the base."},
-        {.name = "acceleration_y", .type = K::kName, .refers_to = "history", .doc = "The same along y."},
-        {.name = "block",
-         .type = K::kName,
-         .refers_to = "block, grid or region",
-         .doc = "Only blocks of this name; none: all."}}},
-  };
+        {.name = "y", .type = K::kMotion, .default_text = "\"fixed\"", .doc = "The same along y."}}}};
 }
 
 }  // namespace talus

@@ -16,6 +16,7 @@ std::vector<SectionSpec> model_sections();
 std::vector<SectionSpec> block_sections();
 std::vector<SectionSpec> cut_sections();
 std::vector<SectionSpec> action_sections();
+std::vector<SectionSpec> boundary_sections();
 std::vector<SectionSpec> run_sections();
 
 /// What a block can be, in the order of BlockKind.

@@ -111,6 +111,23 @@ class SectionReader {
                       fmt::format("a second {} is called \"{}\"", what, name));
   }
 
+  // A motion, with its history found.
+  Motion motion(const Fields& f, std::string_view key, const std::vector<History>& histories) {
+    const MotionText m = f.get<MotionText>(key);
+    Motion out;
+    out.kind = static_cast<Motion::Kind>(m.kind);
+    const int given = index_of(histories, m.history);
+    if (m.kind == MotionText::kDisplacement && given >= 0 &&
+        histories[static_cast<size_t>(given)].value_at(0) != 0)
+      findings_.error(f.where(key), f.path_of(key),
+                      fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
+                                  m.history, histories[static_cast<size_t>(given)].value_at(0)),
+                      "let it begin at 0");
+    if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
+      out.history = refer_name(m.history, f.where(key), f.path_of(key), histories, "history");
+    return out;
+  }
+
   static BlockKind block_kind(const std::string& s) {
     return s == "rigid"    ? BlockKind::kRigid
            : s == "fixed"  ? BlockKind::kFixed

@@ -1,12 +1,14 @@
 #include "talus/supports/supports.h"
 
+#include "talus/cut/selection.h"
+
 namespace talus {
 
 std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
                                              const BlockSet& blocks) {
   std::vector<SupportedPoint> points;
   for (size_t s = 0; s < model.supports.size(); ++s) {
-    for (const SupportedCorner& c : corners_of_support(layout, model.supports[s])) {
+    for (const SelectedCorner& c : selected_corners(layout, model.supports[s])) {
       if (!blocks.moves_freely(c.block)) continue;
       points.push_back(
           {static_cast<int>(s), c.block, c.point - blocks.centroid[static_cast<size_t>(c.block)]});

@@ -8,6 +8,7 @@
 
 #include "support/box_polygon.h"
 #include "support/layout_case.h"
+#include "talus/cut/selection.h"
 
 using namespace talus;
 using namespace talus::test;
@@ -138,7 +139,7 @@ TEST_CASE("an edge support holds the corners of edges on the segment, not lone c
   Model model;
   model.grids = {grid("wall", {0, 0}, {3, 2}, 3, 2)};
   const Layout layout = layout_of(model);
-  const auto all = corners_of_support(layout, edge_support({0, 0}, {3, 0}));
+  const auto all = selected_corners(layout, edge_support({0, 0}, {3, 0}));
   REQUIRE(all.size() == 6);  // two of each block of the lowest row
   for (size_t i = 0; i < 6; ++i) {
     CHECK(all[i].block == static_cast<int>(i / 2));
@@ -146,14 +147,14 @@ TEST_CASE("an edge support holds the corners of edges on the segment, not lone c
     CHECK(all[i].point == Vec2{static_cast<double>((i + 1) / 2), 0});
   }
   // the third block has one corner on the segment, no edge; the segment may run either way
-  CHECK(corners_of_support(layout, edge_support({2, 0}, {0, 0})).size() == 4);
+  CHECK(selected_corners(layout, edge_support({2, 0}, {0, 0})).size() == 4);
   // an inner line belongs to the blocks of both sides
-  CHECK(corners_of_support(layout, edge_support({0, 1}, {3, 1})).size() == 12);
-  CHECK(corners_of_support(layout, edge_support({0, 1.5}, {3, 1.5})).empty());
-  CHECK(corners_of_support(layout, edge_support({0.2, 0}, {0.8, 0})).empty());
+  CHECK(selected_corners(layout, edge_support({0, 1}, {3, 1})).size() == 12);
+  CHECK(selected_corners(layout, edge_support({0, 1.5}, {3, 1.5})).empty());
+  CHECK(selected_corners(layout, edge_support({0.2, 0}, {0.8, 0})).empty());
   SupportInput one = edge_support({0, 1}, {3, 1});
   one.block = "wall[1,1]";
-  const auto corners = corners_of_support(layout, one);
+  const auto corners = selected_corners(layout, one);
   REQUIRE(corners.size() == 2);
   CHECK(corners[0].block == 4);
 }
@@ -163,30 +164,30 @@ TEST_CASE("a point support holds every corner at the point, else the first block
   model.blocks = {block_input("a", box_polygon(0, 0, 1, 1)), block_input("b", box_polygon(1, 0, 2, 1)),
                   block_input("c", box_polygon(0, 1, 2, 2))};
   const Layout layout = layout_of(model);
-  auto corners = corners_of_support(layout, point_support({1, 1}));
+  auto corners = selected_corners(layout, point_support({1, 1}));
   REQUIRE(corners.size() == 2);  // on the side of c, but no corner of it
   CHECK(corners[0].block == 0);
   CHECK(corners[0].vertex == 2);
   CHECK(corners[1].block == 1);
   CHECK(corners[1].vertex == 3);
 
-  corners = corners_of_support(layout, point_support({1, 1}, "c"));
+  corners = selected_corners(layout, point_support({1, 1}, "c"));
   REQUIRE(corners.size() == 1);
   CHECK(corners[0].block == 2);
   CHECK(corners[0].vertex == -1);
 
-  corners = corners_of_support(layout, point_support({1.25, 0.5}));
+  corners = selected_corners(layout, point_support({1.25, 0.5}));
   REQUIRE(corners.size() == 1);
   CHECK(corners[0].block == 1);
   CHECK(corners[0].vertex == -1);
   CHECK(corners[0].point == Vec2{1.25, 0.5});
 
-  corners = corners_of_support(layout, point_support({1, 0.5}));  // on the side of a and b
+  corners = selected_corners(layout, point_support({1, 0.5}));  // on the side of a and b
   REQUIRE(corners.size() == 1);
   CHECK(corners[0].block == 0);
 
-  CHECK(corners_of_support(layout, point_support({1.25, 0.5}, "a")).empty());
-  CHECK(corners_of_support(layout, point_support({5, 5})).empty());
+  CHECK(selected_corners(layout, point_support({1.25, 0.5}, "a")).empty());
+  CHECK(selected_corners(layout, point_support({5, 5})).empty());
 }
 
 TEST_CASE("blocks_at includes the boundary") {

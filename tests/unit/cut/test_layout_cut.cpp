@@ -7,6 +7,8 @@
 
 #include "support/cut_case.h"
 #include "support/layout_case.h"
+#include "talus/cut/layout.h"
+#include "talus/cut/selection.h"
 #include "talus/geometry/shapes.h"
 
 using namespace talus;
@@ -49,7 +51,7 @@ SupportInput along(const std::string& name) {
 // Places of the corners that a support holds, each once.
 std::set<std::pair<double, double>> places(const Layout& layout, const SupportInput& support) {
   std::set<std::pair<double, double>> out;
-  for (const SupportedCorner& c : corners_of_support(layout, support)) {
+  for (const SelectedCorner& c : selected_corners(layout, support)) {
     CHECK(layout.blocks[static_cast<size_t>(c.block)].polygon[static_cast<size_t>(c.vertex)] == c.point);
     out.insert({c.point.x, c.point.y});
   }
@@ -143,7 +145,7 @@ TEST_CASE("layout of a cut: a support along a side holds exactly the corners on 
   using Places = std::set<std::pair<double, double>>;
   CHECK(places(layout, along("base")) == Places{{0, 0}, {1, 0}, {3, 0}, {5, 0}, {7, 0}, {8, 0}});
   CHECK(places(layout, along("east")) == Places{{8, 0}, {8, 4}});
-  CHECK(corners_of_support(layout, along("base")).size() == 10);  // two of each block
+  CHECK(selected_corners(layout, along("base")).size() == 10);  // two of each block
   CHECK(places(layout, along("set")).size() == 8);
   SupportInput one = along("base");
   one.block = layout.blocks[static_cast<size_t>(block_holding(layout, {0.5, 2}))].name;

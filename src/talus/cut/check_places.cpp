@@ -1,0 +1,184 @@
+#include "talus/cut/check_places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "talus/base/text.h"
+#include "talus/cut/selection.h"
+
+namespace talus {
+
+namespace {
+
+// Two supports that hold one corner along one axis must ask for the same motion.
+void check_contradictions(const Model& model, const Layout& layout, Findings& findings) {
+  std::map<std::pair<int, int>, std::vector<const SupportInput*>> holders;
+  for (const SupportInput& s : model.supports)
+    for (const SelectedCorner& c : selected_corners(layout, s))
+      if (c.vertex >= 0) holders[{c.block, c.vertex}].push_back(&s);
+  const auto differ = [](const Motion& p, const Motion& q) {
+    const bool both = p.kind != Motion::kFree && q.kind != Motion::kFree;
+    return both && (p.kind != q.kind || p.history != q.history);
+  };
+  for (const auto& [corner, list] : holders) {
+    for (size_t i = 1; i < list.size(); ++i) {
+      const SupportInput &first = *list[0], &other = *list[i];
+      if (!differ(first.x, other.x) && !differ(first.y, other.y)) continue;
+      findings.error(other.where, "support." + other.name,
+                     fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
+                                 layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
+                     "make one of them \"free\" along that axis, or shorten it");
+      return;
+    }
+  }
+}
+
+void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
+  for (const MonitorInput& m : model.monitors) {
+    const std::string path = "monitor." + m.name;
+    if (m.kind == MonitorKind::kPoint && block_of_point(layout, m.point) < 0) {
+      double nearest = std::numeric_limits<double>::infinity();
+      std::string name;
+      for (const BlockShape& b : layout.blocks) {
+        for (size_t i = 0; i < b.polygon.size(); ++i) {
+          const double d = distance_to_segment(m.point, b.polygon[i], b.polygon[(i + 1) % b.polygon.size()]);
+          if (d < nearest) nearest = d, name = b.name;
+        }
+      }
+      findings.error(m.where, path,
+                     fmt::format("({:g}, {:g}) lies outside every block", m.point.x, m.point.y),
+                     fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
+    }
+    if (m.kind == MonitorKind::kBlock) {
+      const std::vector<int> called = layout.blocks_called(m.target_a);
+      if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);
+      if (called.size() > 1)
+        findings.error(m.where, path, fmt::format("\"{}\" is {} blocks, not one", m.target_a, called.size()),
+                       fmt::format("name one of its blocks, for example \"{}\"",
+                                   layout.blocks[static_cast<size_t>(called[0])].name));
+    }
+    if (m.kind == MonitorKind::kContact && m.target_a == m.target_b && !m.target_a.empty())
+      findings.error(m.where, path, fmt::format("names \"{}\" twice", m.target_a),
+                     "name the two partners of the contact");
+    if (m.kind == MonitorKind::kContact) {
+      for (const std::string& name : {m.target_a, m.target_b})
+        if (layout.blocks_called(name).empty()) unknown_block(layout, name, m.where, path, findings);
+    }
+  }
+}
+
+// Whether the line and the block that a place names exist.
+bool names_exist(const Layout& layout, const Selection& place, const Where& where, const std::string& path,
+                 const std::string& key, Findings& findings) {
+  if (!place.along.empty() &&
+      std::find(layout.origins.begin(), layout.origins.end(), place.along) == layout.origins.end()) {
+    const std::string near = closest_name(place.along, layout.origins);
+    findings.error(where, path + "." + key,
+                   fmt::format("there is no side, opening, fault or joint set called \"{}\"", place.along),
+                   !near.empty()            ? fmt::format("did you mean \"{}\"?", near)
+                   : layout.origins.empty() ? "the file has no [[region]]"
+                                            : fmt::format("there is {}", join_or(layout.origins)));
+    return false;
+  }
+  if (!place.block.empty() && layout.blocks_called(place.block).empty()) {
+    unknown_block(layout, place.block, place.where_block, path + ".block", findings);
+    return false;
+  }
+  return true;
+}
+
+void check_corners(const Layout& layout, const Selection& place, const Where& where, const std::string& path,
+                   Findings& findings) {
+  if (!names_exist(layout, place, where, path, "along", findings)) return;
+  if (!selected_corners(layout, place).empty()) return;
+  findings.error(where, path,
+                 !place.along.empty() ? fmt::format("no block edge is left along \"{}\"", place.along)
+                 : place.is_edge      ? "no block edge lies on the segment"
+                                      : "the point lies on no block",
+                 !place.along.empty() ? "see with talus cut which edges there are"
+                 : place.is_edge      ? "give a segment along block edges, corners included"
+                                      : "give a point of a block");
+}
+
+void check_edges(const Layout& layout, const Selection& place, const Where& where, const std::string& path,
+                 const std::string& key, Findings& findings) {
+  if (!names_exist(layout, place, where, path, key, findings)) return;
+  const OuterEdges outer = outer_edges(layout, place);
+  if (outer.partly.block >= 0) {
+    const auto name = [&layout](int b) { return layout.blocks[static_cast<size_t>(b)].name; };
+    findings.error(
+        where, path,
+        fmt::format("an edge of \"{}\" from ({:g}, {:g}) to ({:g}, {:g}) is covered in part by \"{}\"",
+                    name(outer.partly.block), outer.partly.from.x, outer.partly.from.y, outer.partly.to.x,
+                    outer.partly.to.y, name(outer.covered_by)),
+        "cut the block where the other one ends, or choose other edges with block = \"NAME\"");
+    return;
+  }
+  if (!outer.edges.empty()) return;
+  const bool inside = !selected_edges(layout, place).empty();
+  findings.error(where, path,
+                 inside                 ? "every edge there has a block on its other side"
+                 : !place.along.empty() ? fmt::format("no block edge is left along \"{}\"", place.along)
+                                        : "no block edge lies on the segment",
+                 inside ? "choose edges at the outside of the model or of an opening taken out"
+                 : !place.along.empty() ? "see with talus cut which edges there are"
+                                        : "give a segment along whole block edges");
+}
+
+void check_load(const Layout& layout, const LoadInput& l, Findings& findings) {
+  const std::string path = "load." + l.name;
+  if (l.has_place) {
+    if (l.force_x >= 0 || l.force_y >= 0)
+      check_corners(layout, l, l.where, path, findings);
+    else
+      check_edges(layout, l, l.where, path, "along", findings);
+    return;
+  }
+  if (l.block.empty()) return;
+  const std::vector<int> loaded = layout.blocks_called(l.block);
+  if (loaded.empty()) unknown_block(layout, l.block, l.where, path + ".block", findings);
+  const auto held = [&](int i) {
+    const BlockKind kind = layout.blocks[static_cast<size_t>(i)].kind;
+    return kind == BlockKind::kFixed || kind == BlockKind::kDriven;
+  };
+  if (!loaded.empty() && std::all_of(loaded.begin(), loaded.end(), held))
+    findings.warning(l.where, path + ".block",
+                     fmt::format("\"{}\" is fixed or driven: the load has no effect", l.block));
+}
+
+}  // namespace
+
+void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
+                   Findings& findings) {
+  if (name.empty()) return;  // told by the reader
+  if (layout.find_group(name) >= 0) {
+    findings.error(where, path, fmt::format("\"{}\" has no block left", name),
+                   "its rock is taken out, or another region or opening covers it");
+    return;
+  }
+  std::vector<std::string> names = layout.groups;
+  for (const BlockShape& b : layout.blocks) names.push_back(b.name);
+  const std::string near = closest_name(name, names);
+  findings.error(where, path, fmt::format("there is no block, grid or region called \"{}\"", name),
+                 near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
+}
+
+void check_places(const Model& model, const Layout& layout, Findings& findings) {
+  for (const LoadInput& l : model.loads) check_load(layout, l, findings);
+  check_monitors(model, layout, findings);
+  check_contradictions(model, layout, findings);
+  for (const SupportInput& s : model.supports)
+    check_corners(layout, s, s.where, "support." + s.name, findings);
+  for (const BoundaryInput& b : model.boundaries) {
+    const std::string path = "boundary." + b.name;
+    check_edges(layout, b, b.where, path, "along", findings);
+    if (b.kind == BoundaryKind::kTied)
+      check_edges(layout, b.opposite, b.where_opposite, path, b.opposite.along.empty() ? "to_edge" : "to",
+                  findings);
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,202 @@
+#include "talus/model/read_action.h"
+
+#include <algorithm>
+
+#include "talus/model/section_reader.h"
+
+namespace talus {
+
+namespace {
+
+class ActionReader : private SectionReader {
+ public:
+  ActionReader(const TomlSource& source, Model& model, Findings& findings)
+      : SectionReader(source, findings), model_(model) {}
+
+  void read() {
+    for_list("support", [this](const Fields& f) { read_support(f); });
+    for_list("boundary", [this](const Fields& f) { read_boundary(f); });
+    for_list("load", [this](const Fields& f) { read_load(f); });
+  }
+
+ private:
+  void error(const Fields& f, std::string_view key, const std::string& text, const std::string& hint) {
+    findings_.error(f.where(key), f.path_of(key), text, hint);
+  }
+
+  // A segment given as two points.
+  void read_segment(const Fields& f, std::string_view key, Selection& s) {
+    if (!f.has(key)) return;
+    const auto points = f.get<std::vector<Vec2>>(key);
+    s.is_edge = true;
+    if (points.size() != 2 || points[0] == points[1])
+      findings_.error(f.where(key), f.path_of(key), "must be a segment: two different points");
+    else
+      s.from = points[0], s.to = points[1];
+  }
+
+  void read_line_name(const Fields& f, std::string_view key, Selection& s) {
+    s.along = f.get<std::string>(key);
+    if (f.has(key) && s.along.empty())
+      error(f, key, "is empty", "name a side of a region, an opening, a fault or a joint set");
+  }
+
+  // One of point, edge and along.
+  void read_place(const Fields& f, bool with_point, Selection& s) {
+    const int places = (with_point && f.given("point")) + f.given("edge") + f.given("along");
+    if (places != 1)
+      findings_.error(f.where(), f.path(), places > 1 ? "has more than one place" : "has no place",
+                      with_point ? "give one of point = [x, y], edge = [[x0, y0], [x1, y1]], along = \"NAME\""
+                                 : "give one of edge = [[x0, y0], [x1, y1]], along = \"NAME\"");
+    read_line_name(f, "along", s);
+    if (with_point) s.from = s.to = f.get<Vec2>("point");
+    read_segment(f, "edge", s);
+  }
+
+  void read_block_name(const Fields& f, Selection& s) {
+    s.where_block = f.where("block");
+    s.block = f.get<std::string>("block");
+  }
+
+  int history(const Fields& f, std::string_view key) { return refer(f, key, model_.histories, "history"); }
+
+  void read_support(const Fields& f) {
+    claim_name(f, supports_, "support");
+    SupportInput s;
+    s.name = f.get<std::string>("name");
+    s.where = f.where();
+    read_place(f, true, s);
+    read_block_name(f, s);
+    s.x = motion(f, "x", model_.histories);
+    s.y = motion(f, "y", model_.histories);
+    if (s.x.kind == Motion::kFree && s.y.kind == Motion::kFree)
+      findings_.error(f.where(), f.path(), "is free along x and y: it supports nothing");
+    model_.supports.push_back(s);
+  }
+
+  // --- boundaries ---
+
+  void read_boundary(const Fields& f) {
+    claim_name(f, boundaries_, "boundary");
+    BoundaryInput b;
+    b.name = f.get<std::string>("name");
+    b.where = f.where();
+    b.where_material = f.where("material");
+    const auto kind = f.get<std::string>("kind");
+    b.kind = kind == "free_field" ? BoundaryKind::kFreeField
+             : kind == "tied"     ? BoundaryKind::kTied
+                                  : BoundaryKind::kViscous;
+    read_place(f, false, b);
+    read_block_name(f, b);
+    b.material = refer(f, "material", model_.materials, "material");
+    b.history_x = history(f, "velocity_x");
+    b.history_y = history(f, "velocity_y");
+    b.outcrop = f.get<std::string>("motion") == "outcrop";
+    const auto hold = f.get<std::string>("static");
+    b.hold = hold == "roller" ? StaticHold::kRoller : hold == "free" ? StaticHold::kFree : StaticHold::kFixed;
+    if (kind == "viscous") check_input_motion(f);
+    if (kind == "free_field")
+      refuse_input_motion(f, "its column takes the motion of the base that it stands on");
+    if (kind == "tied") refuse_input_motion(f, "tied sides bring none in; give it to the base");
+    if (kind == "tied")
+      read_opposite(f, b);
+    else if (!kind.empty())
+      refuse_keys(f, {"to", "to_edge"}, "is only for kind = \"tied\"", "leave it out");
+    model_.boundaries.push_back(b);
+  }
+
+  void refuse_keys(const Fields& f, const std::vector<const char*>& keys, const std::string& text,
+                   const std::string& hint) {
+    for (const char* key : keys)
+      if (f.given(key)) error(f, key, text, hint);
+  }
+
+  void refuse_input_motion(const Fields& f, const std::string& hint) {
+    refuse_keys(f, {"velocity_x", "velocity_y", "motion"}, "is only for kind = \"viscous\"", hint);
+  }
+
+  // Outcrop and upgoing differ by a factor of two: no default.
+  void check_input_motion(const Fields& f) {
+    const bool input = f.given("velocity_x") || f.given("velocity_y");
+    const std::string within =
+        "\"within\" is the real motion of the base, waves that come down included; a compliant base finds "
+        "that "
+        "out itself";
+    if (f.get<std::string>("motion") == "within")
+      error(
+          f, "motion", within,
+          "give the motion of the base to a [[support]] as x = { velocity = \"HISTORY\" } (a rigid base), or "
+          "the upgoing or outcrop motion here");
+    else if (input && !f.given("motion"))
+      findings_.error(
+          f.where(), f.path_of("motion"), "is missing: upgoing and outcrop motion differ by a factor of two",
+          "give motion = \"outcrop\" for a record at the surface of rock, \"upgoing\" for the wave alone");
+    else if (!input && f.given("motion"))
+      error(f, "motion", "says what no history is", "give velocity_x or velocity_y, or leave it out");
+  }
+
+  void read_opposite(const Fields& f, BoundaryInput& b) {
+    b.where_opposite = f.given("to") ? f.where("to") : f.where("to_edge");
+    if (f.given("to") == f.given("to_edge"))
+      findings_.error(f.where(), f.path(),
+                      f.given("to") ? "has more than one opposite side" : "has no opposite side",
+                      "give one of to = \"NAME\", to_edge = [[x0, y0], [x1, y1]]");
+    read_line_name(f, "to", b.opposite);
+    read_segment(f, "to_edge", b.opposite);
+    b.opposite.block = b.block, b.opposite.where_block = b.where_block;
+    refuse_keys(f, {"material", "static"}, "has no meaning for tied sides, which are tied in every stage",
+                "leave it out");
+    if (!b.along.empty() && b.along == b.opposite.along)
+      error(f, "to", "names the side itself", "name the side at the other end of the model");
+  }
+
+  // --- loads ---
+
+  void read_load(const Fields& f) {
+    claim_name(f, loads_, "load");
+    LoadInput l;
+    l.name = f.get<std::string>("name");
+    l.where = f.given("block") ? f.where("block") : f.where();
+    l.history_x = history(f, "acceleration_x"), l.history_y = history(f, "acceleration_y");
+    l.pressure = history(f, "pressure");
+    l.traction_x = history(f, "traction_x"), l.traction_y = history(f, "traction_y");
+    l.force_x = history(f, "force_x"), l.force_y = history(f, "force_y");
+    read_block_name(f, l);
+    const auto any = [&f](std::initializer_list<const char*> keys) {
+      return std::any_of(keys.begin(), keys.end(), [&f](const char* k) { return f.given(k); });
+    };
+    const bool body = any({"acceleration_x", "acceleration_y"});
+    const bool surface = any({"pressure", "traction_x", "traction_y"}), force = any({"force_x", "force_y"});
+    l.has_place = any({"point", "edge", "along"});
+    if (l.has_place || surface || force) read_place(f, true, l);
+    if (body + surface + force == 0)
+      findings_.error(
+          f.where(), f.path(), "has no effect",
+          "give acceleration_x or acceleration_y, pressure, traction_x or traction_y, or force_x or "
+          "force_y");
+    else if (body + surface + force > 1)
+      findings_.error(f.where(), f.path(), "mixes accelerations, tractions and forces",
+                      "write one [[load]] for each");
+    else if (body && l.has_place)
+      findings_.error(f.where(), f.path(), "has a place, but an acceleration acts on whole blocks",
+                      "name blocks with block = \"NAME\"");
+    else if (surface && f.given("point"))
+      error(f, "point", "has no area for a pressure or traction",
+            "give edge or along, or force_x and force_y");
+    else if (force && l.has_place && !f.given("point"))
+      findings_.error(f.where(), f.path(), "has a force on an edge: forces act at a point",
+                      "give point = [x, y], or traction_x and traction_y per area");
+    model_.loads.push_back(l);
+  }
+
+  Model& model_;
+  std::set<std::string> supports_, boundaries_, loads_;
+};
+
+}  // namespace
+
+void read_action_sections(const TomlSource& source, Model& model, Findings& findings) {
+  ActionReader(source, model, findings).read();
+}
+
+}  // namespace talus

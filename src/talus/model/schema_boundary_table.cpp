@@ -1,0 +1,116 @@
+// What lets waves in and out, and what pushes: boundaries and loads.
+
+#include "talus/model/schema_tables.h"
+
+namespace talus {
+
+namespace {
+
+SectionSpec boundary_section() {
+  return {
+      "boundary",
+      SectionShape::kList,
+      "An edge of the model behind which the ground goes on: it lets waves out, and in. Taken are block "
+      "edges "
+      "with nothing on their other side; each gives half its length to either end corner. Give `edge` or "
+      "`along`.",
+      {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+       {.name = "kind",
+        .type = K::kChoice,
+        .required = true,
+        .choices = {"viscous", "free_field", "tied"},
+        .doc =
+            "`viscous`: dashpots that absorb waves and, with `velocity_x` or `velocity_y`, a compliant base. "
+            "`free_field`: dashpots against a column of level ground that shakes beside the edge. `tied`: "
+            "moves with the opposite side, which is exact for level ground."},
+       {.name = "edge",
+        .type = K::kPoints,
+        .dimension = D::kLength,
+        .doc = "A segment [[x0, y0], [x1, y1]]: all block edges on it."},
+       {.name = "along",
+        .type = K::kName,
+        .refers_to = "side, opening, fault or joint set",
+        .doc = "All block edges along it."},
+       {.name = "block",
+        .type = K::kName,
+        .refers_to = "block, grid or region",
+        .doc = "Only blocks of this name."},
+       {.name = "material",
+        .type = K::kName,
+        .refers_to = "material",
+        .doc = "Of the medium behind the edge; none: that of each block at the edge."},
+       {.name = "velocity_x",
+        .type = K::kName,
+        .refers_to = "history",
+        .doc = "History of the velocity along x that comes in [m/s], of a viscous base."},
+       {.name = "velocity_y", .type = K::kName, .refers_to = "history", .doc = "The same along y."},
+       {.name = "motion",
+        .type = K::kChoice,
+        .choices = {"upgoing", "outcrop", "within"},
+        .doc =
+            "What the histories of velocity are. `upgoing`: the incoming wave alone. `outcrop`: the motion "
+            "of "
+            "the bare half-space, twice the upgoing wave, and halved here. `within` is refused with the way "
+            "out: the real motion of the base belongs to a support."},
+       {.name = "static",
+        .type = K::kChoice,
+        .default_text = "\"fixed\"",
+        .choices = {"fixed", "roller", "free"},
+        .doc = "How the edge stands in static stages: `fixed`, `roller` (along its normal only) or `free`. "
+               "At the "
+               "change to a dynamic stage the reactions stay as constant forces. Not for tied sides."},
+       {.name = "to",
+        .type = K::kName,
+        .refers_to = "side, opening, fault or joint set",
+        .doc = "The opposite side of tied sides, by name."},
+       {.name = "to_edge",
+        .type = K::kPoints,
+        .dimension = D::kLength,
+        .doc = "The opposite side of tied sides, as a segment."}}};
+}
+
+SectionSpec load_section() {
+  const auto history = [](std::string_view name, std::string_view doc) {
+    return KeySpec{.name = name, .type = K::kName, .refers_to = "history", .doc = doc};
+  };
+  return {
+      "load",
+      SectionShape::kList,
+      "What pushes blocks: a body force as an acceleration added to gravity, a pressure or traction on block "
+      "edges (`edge` or `along`, edges with nothing on their other side), or a force at a `point`. In static "
+      "stages it stands at its value of t = 0 on the clock of the histories.",
+      {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+       history("acceleration_x",
+               "History of the acceleration along x [m/s2]. A base that shakes with a(t) is the same as a "
+               "load of -a(t) seen from the base."),
+       history("acceleration_y", "The same along y."),
+       {.name = "point",
+        .type = K::kVector,
+        .dimension = D::kLength,
+        .doc = "Where a force acts: all corners there in equal parts, else the block around it."},
+       {.name = "edge",
+        .type = K::kPoints,
+        .dimension = D::kLength,
+        .doc = "A segment [[x0, y0], [x1, y1]]: all block edges on it."},
+       {.name = "along",
+        .type = K::kName,
+        .refers_to = "side, opening, fault or joint set",
+        .doc = "All block edges along it, for example the wall of an opening."},
+       history("pressure",
+               "History of a pressure [Pa], > 0 pushes into the block: along the normal of the edge in the "
+               "reference shape, turned with the block, on the reference area."),
+       history("traction_x", "History of a traction along x [Pa], on the reference area."),
+       history("traction_y", "The same along y."),
+       history("force_x", "History of a force along x [N], at a point."),
+       history("force_y", "The same along y."),
+       {.name = "block",
+        .type = K::kName,
+        .refers_to = "block, grid or region",
+        .doc = "Only blocks of this name; none: all."}}};
+}
+
+}  // namespace
+
+std::vector<SectionSpec> boundary_sections() { return {boundary_section(), load_section()}; }
+
+}  // namespace talus

@@ -87,19 +87,20 @@ struct FaceState {
 };
 
 /// Work done since the start [J], by cause; > 0: energy given to the blocks. `joints`: elastic joints, stored
-/// and lost. `implicit`: what block-implicit elasticity adds to the elastic force of the step's beginning.
+/// and lost. `boundary`: dashpots, what waves bring in, reactions that stand in for static ones, ties of
+/// sides. `implicit`: what block-implicit elasticity adds to the elastic force of the step's beginning.
 struct WorkDone {
-  double loads = 0, supports = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0, damping = 0,
-         implicit = 0;
+  double loads = 0, supports = 0, boundary = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0,
+         damping = 0, implicit = 0;
 
   WorkDone& operator+=(const WorkDone& o) {
     loads += o.loads, supports += o.supports, bonds += o.bonds, joints += o.joints;
     contact_closing += o.contact_closing, friction += o.friction, damping += o.damping;
-    implicit += o.implicit;
+    implicit += o.implicit, boundary += o.boundary;
     return *this;
   }
   double total() const {
-    return loads + supports + bonds + joints + contact_closing + friction + damping + implicit;
+    return loads + supports + boundary + bonds + joints + contact_closing + friction + damping + implicit;
   }
 };
 
@@ -115,9 +116,15 @@ struct State {
   std::vector<BlockRate> rate;     // [count] at the middle of the step before; the initial rate at the start
   std::vector<BlockForce> contact_force;  // [count] of all rows, at the step before [N], [N m]
 
-  std::vector<std::array<double, 2>> bond_force;     // [n_bond_points] normal, tangential [N]
-  std::vector<FaceState> face;                       // [n_bond_faces]
-  std::vector<std::array<double, 2>> support_force;  // [n_supported_points] x, y [N]
+  std::vector<std::array<double, 2>> bond_force;       // [n_bond_points] normal, tangential [N]
+  std::vector<FaceState> face;                         // [n_bond_faces]
+  std::vector<std::array<double, 2>> support_force;    // [n_supported_points] x, y [N]
+  std::vector<std::array<double, 2>> boundary_force;   // [n_boundary_points] normal, tangential, in all [N]
+  std::vector<std::array<double, 2>> boundary_static;  // of it, the reaction kept from the static stage [N]
+  std::vector<Vec2> boundary_hold;  // [n_boundary_points] displacement at which static stages hold [m]
+  std::vector<std::array<double, 2>> tie_force;  // [n_ties] normal, tangential on the first side [N]
+  std::vector<Vec2> column_displacement;         // [n_column_nodes] of the free field, dynamic part [m]
+  std::vector<Vec2> column_rate;                 // [n_column_nodes] at the middle of the step before [m/s]
   CandidateList candidates;
   std::vector<ContactPair> pairs;  // sorted by (a, b)
   std::vector<Contact> contacts;   // pair by pair

@@ -123,6 +123,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   p.blocks = scene.blocks.count;
   p.bond_faces = static_cast<int>(scene.bonds.faces.size());
   p.supported = static_cast<int>(scene.supported.size());
+  p.boundary = static_cast<int>(scene.boundaries.points.size() + scene.boundaries.ties.size());
   const State state = start_state(scene);
   p.contacts = static_cast<int>(
       find_contacts(scene.blocks, scene.bonds, state, 0.02 * smallest_size(scene.blocks)).size());
@@ -139,7 +140,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   ++p.history_rows, ++p.step_rows;
 
   const double corners = static_cast<double>(scene.blocks.arm.size());
-  const double points = 2.0 * p.bond_faces + p.contacts + p.supported;
+  const double points = 2.0 * p.bond_faces + p.contacts + p.supported + p.boundary;
   const double columns = static_cast<double>(Histories(scene, nullptr).columns().size());
   const double frame = kVtkCorner * corners + kVtkBlock * p.blocks + kVtkContact * points + 2 * kVtkFile;
   p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +

@@ -39,7 +39,7 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.dt_kick;
     f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
     f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
-    f.kind = r < i.work.first_contact ? 1 : r < i.work.first_support ? 0 : 2;
+    f.kind = r < i.work.first_contact ? 1 : r < i.work.first_support ? 0 : r < i.work.first_boundary ? 2 : 3;
     if (f.kind == 0) f.gap = i.work.places[r - i.work.first_contact].gap;
     frames.push_back(f);
   }
@@ -156,11 +156,11 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                  {"rigid", count(BlockKind::kRigid)},
                  {"fixed", count(BlockKind::kFixed)},
                  {"driven", count(BlockKind::kDriven)}};
-  j["contacts"] = {{"bond_faces", scene.bonds.faces.size()},
-                   {"bond_faces_broken", r.broken_faces},
-                   {"supported_points", scene.supported.size()},
-                   {"contact_points_most", r.most_contacts},
-                   {"candidate_list_rebuilds", r.candidate_rebuilds}};
+  j["contacts"] = {
+      {"bond_faces", scene.bonds.faces.size()},         {"bond_faces_broken", r.broken_faces},
+      {"supported_points", scene.supported.size()},     {"boundary_points", scene.boundaries.points.size()},
+      {"tied_points", scene.boundaries.ties.size()},    {"contact_points_most", r.most_contacts},
+      {"candidate_list_rebuilds", r.candidate_rebuilds}};
   j["stages"] = ordered_json::array();
   for (const StageResult& s : r.stages) {
     const int bound = s.plan.bound_block;
@@ -200,6 +200,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                      {"gravity_work", e.gravity},
                      {"load_work", e.work.loads},
                      {"support_work", e.work.supports},
+                     {"boundary_work", e.work.boundary},
                      {"bond_work", e.work.bonds},
                      {"joint_work", e.work.joints},
                      {"contact_closing_work", e.work.contact_closing},

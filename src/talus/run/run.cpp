@@ -59,6 +59,8 @@ class Runner {
                  stage.implicit,
                  true};
     work_.mobility.clear();  // of other inertias
+    const auto is_static = [&](size_t i) { return scene_.model.stages[i].kind == StageKind::kStatic; };
+    enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
     state_.largest_kinetic = 0;
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
     StageResult& out = result_.stages.back();
@@ -199,7 +201,8 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
     findings.throw_if_errors();  // without blocks all else would look wrong
   Layout layout = make_layout(model, cut, findings);
   findings.throw_if_errors();
-  run.scene = build_scene(std::move(model), std::move(layout));
+  run.scene = build_scene(std::move(model), std::move(layout), findings);
+  findings.throw_if_errors();
   run.plans = plan_stages(run.scene, findings);
   findings.throw_if_errors();
   return run;

@@ -53,6 +53,8 @@ void drift(const Scene& scene, const StepSettings& settings, double dt, double t
         fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
                     blocks.name[k], det(kIdentity + state.strain_part[k]), time_end, state.step));
   }
+  for (size_t i = 0; settings.histories_run && i < state.column_rate.size(); ++i)
+    state.column_displacement[i] += dt * state.column_rate[i];
   state.work += work.work.before;
   state.work += work.work.after;
   report.broken_faces = update_bonds(scene.bonds, scene.model.joints, blocks.thickness, dt, state);

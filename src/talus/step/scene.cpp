@@ -4,14 +4,22 @@
 
 namespace talus {
 
-Scene build_scene(Model model, Layout layout) {
+Scene build_scene(Model model, Layout layout, Findings& findings) {
   Scene scene;
   scene.model = std::move(model);
   scene.layout = std::move(layout);
   scene.blocks = build_blocks(scene.model, scene.layout);
   scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
-  scene.loaded = loaded_blocks(scene.model, scene.layout);
+  scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
+  scene.loads = build_loads(scene.model, scene.layout, scene.blocks);
+  return scene;
+}
+
+Scene build_scene(Model model, Layout layout) {
+  Findings findings(model.file, model.text);
+  Scene scene = build_scene(std::move(model), std::move(layout), findings);
+  findings.throw_if_errors();
   return scene;
 }
 
@@ -20,6 +28,13 @@ State start_state(const Scene& scene) {
   state.bond_force.resize(2 * scene.bonds.faces.size());
   state.face.resize(scene.bonds.faces.size());
   state.support_force.resize(scene.supported.size());
+  const BoundarySet& b = scene.boundaries;
+  state.boundary_force.resize(b.points.size());
+  state.boundary_static.resize(b.points.size());
+  state.boundary_hold.resize(b.points.size());
+  state.tie_force.resize(b.ties.size());
+  state.column_displacement.resize(b.free_field.height.size());
+  state.column_rate.resize(b.free_field.height.size());
   state.energy_start = kinetic_energy(scene.blocks, state.rate);
   return state;
 }

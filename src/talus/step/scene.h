@@ -2,6 +2,7 @@
 // Everything a step needs to know and may not change: the model, its blocks, bonds and supports.
 
 #include "talus/contact/bonds.h"
+#include "talus/supports/boundaries.h"
 #include "talus/supports/loads.h"
 #include "talus/supports/supports.h"
 
@@ -13,10 +14,15 @@ struct Scene {
   BlockSet blocks;
   BondSet bonds;
   std::vector<SupportedPoint> supported;
-  std::vector<std::vector<int>> loaded;  // blocks of each load
+  BoundarySet boundaries;
+  LoadSet loads;
 };
 
+/// Boundaries that cannot be are told to `findings`; such a scene is not to be run.
 /// @pre  neither read_model nor make_layout found an error
+Scene build_scene(Model model, Layout layout, Findings& findings);
+
+/// The same; throws InputError instead.
 Scene build_scene(Model model, Layout layout);
 
 /// State at the start of the run: reference shape, initial velocities, nothing broken.

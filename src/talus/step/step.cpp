@@ -159,7 +159,7 @@ class Kick {
     forces_.resize(n);
     elastic_.resize(n);
     local_damping_.resize(settings_.damping_local > 0 ? n : 0);
-    load_ = load_acceleration(model, scene_.loaded, blocks_.count, state_.history_time);
+    push();
     const bool renew = settings_.implicit || work_.mobility.size() != n || work_.mobility_share != share();
     work_.mobility.resize(n);
     work_.workers.for_chunks(n, kBlocks, [&](size_t begin, size_t end) {
@@ -170,16 +170,34 @@ class Kick {
     work_.rate_free = state_.rate;
   }
 
+  // Forces of all loads on the blocks, and the free field through the kick.
+  void push() {
+    const double time = state_.history_time;
+    const std::vector<Vec2> acceleration = load_acceleration(scene_.model, scene_.loads, blocks_.count, time);
+    load_.resize(acceleration.size());
+    for (size_t k = 0; k < load_.size(); ++k) load_[k] = {blocks_.mass[k] * acceleration[k], {}};
+    add_edge_and_point_loads(blocks_, scene_.model, scene_.loads, state_, time, load_);
+
+    boundary_ = {!settings_.histories_run, dt_, work_.dt_kick, time, state_.column_rate};
+    if (boundary_.is_static) return;
+    kick_columns(scene_.boundaries.free_field, scene_.model.histories,
+                 {dt_, work_.dt_kick, time, settings_.damping_mass, scene_.model.inertia == Inertia::kLumped},
+                 acceleration, state_);
+    if (state_.dt_before == 0) return;  // at the start: the velocity of the start
+    for (size_t i = 0; i < state_.column_rate.size(); ++i)
+      boundary_.column_velocity[i] = 0.5 * (boundary_.column_velocity[i] + state_.column_rate[i]);
+  }
+
   void predict_block(size_t k, bool renew) {
     if (!blocks_.moves_freely(static_cast<int>(k))) {
       if (renew) work_.mobility[k] = {};
       return;
     }
     BlockForce& force = forces_[k];
-    force = {blocks_.mass[k] * (scene_.model.gravity + load_[k]), {}};
+    force = BlockForce{blocks_.mass[k] * scene_.model.gravity, {}} + load_[k];
     if (blocks_.kind[k] == BlockKind::kDeformable) {
       elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k]);
-      force.Q = (-blocks_.volume[k]) * elastic_[k].stress;
+      force.Q += (-blocks_.volume[k]) * elastic_[k].stress;
     }
     if (implicit(k))
       work_.mobility[k] =
@@ -252,6 +270,10 @@ class Kick {
                      work_.places);
     work_.first_support = work_.rows.size();
     add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
+    work_.first_boundary = work_.rows.size();
+    add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, boundary_, work_.rows);
+    work_.first_tie = work_.rows.size();
+    add_tie_rows(blocks_, scene_.boundaries.ties, state_, dt_, work_.dt_kick, work_.rows);
     work_.rows.finish();
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
@@ -371,7 +393,8 @@ class Kick {
       add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
       ++s.closed;
     } else {
-      add(0, &WorkDone::supports), add(1, &WorkDone::supports);
+      const auto cause = r < work_.first_boundary ? &WorkDone::supports : &WorkDone::boundary;
+      add(0, cause), add(1, cause);
     }
   }
 
@@ -412,7 +435,7 @@ class Kick {
     if (!blocks_.moves_freely(static_cast<int>(i))) return;
     const double late = late_share(), kick = work_.dt_kick;
     const BlockForce viscous = (-settings_.damping_mass * kick) * momentum(blocks_, i, mean(v0, v1));
-    tally(s.work.before.loads, s.work.after.loads, {(kick * blocks_.mass[i]) * load_[i], {}}, v0, v1, late);
+    tally(s.work.before.loads, s.work.after.loads, kick * load_[i], v0, v1, late);
     tally(s.work.before.damping, s.work.after.damping, viscous, v0, v1, late);
     if (settings_.damping_local > 0)
       tally(s.work.before.damping, s.work.after.damping, local_damping_[i], v0, v1, late);
@@ -437,7 +460,7 @@ class Kick {
     s.strain += blocks_.volume[i] * elastic_[i].density;
     s.kinetic += 0.5 * work(momentum(blocks_, i, v0), v0);
     // weight and elastic resistance, whose energies are taken from the positions
-    const BlockForce own = kick * (forces_[i] + BlockForce{-blocks_.mass[i] * load_[i], {}});
+    const BlockForce own = kick * (forces_[i] + (-1) * load_[i]);
     double before = 0, after = 0;
     tally(before, after, own, v0, v1, late);
     s.kinetic += before;
@@ -455,6 +478,14 @@ class Kick {
       const Impulse& p = work_.rows.impulse[work_.first_support + i];
       state_.support_force[i] = {p[0] / work_.dt_kick, -p[1] / work_.dt_kick};
     }
+    const auto keep = [this](size_t first, std::vector<std::array<double, 2>>& force) {
+      for (size_t i = 0; i < force.size(); ++i) {
+        const Impulse& p = work_.rows.impulse[first + i];
+        force[i] = {p[0] / work_.dt_kick, p[1] / work_.dt_kick};
+      }
+    };
+    keep(work_.first_boundary, state_.boundary_force);
+    keep(work_.first_tie, state_.tie_force);
   }
 
   const Scene& scene_;
@@ -469,7 +500,8 @@ class Kick {
   std::vector<BlockForce>& forces_ = work_.forces;
   std::vector<BlockForce>& local_damping_ = work_.local_damping;
   std::vector<ElasticState>& elastic_ = work_.elastic;
-  std::vector<Vec2> load_;  // acceleration by loads
+  std::vector<BlockForce> load_;  // by loads
+  BoundaryStep boundary_;
 };
 
 }  // namespace
@@ -493,6 +525,13 @@ std::string row_name(const Scene& scene, const State& state, const StepWork& wor
     return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
                        k.edge);
   }
+  const auto boundary = [&](int index, int block) {
+    return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(index)].name,
+                       name(block));
+  };
+  if (row >= work.first_tie) return boundary(scene.boundaries.ties[row - work.first_tie].boundary, p.block_a);
+  if (row >= work.first_boundary)
+    return boundary(scene.boundaries.points[row - work.first_boundary].boundary, p.block_a);
   const SupportedPoint& s = scene.supported[row - work.first_support];
   return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
                      name(s.block));

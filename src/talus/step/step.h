@@ -64,9 +64,9 @@ struct StepWork {
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts
-  RowSet rows;                       // bonds, contacts, supports, in this order
+  RowSet rows;                       // bonds, contacts, supports, boundaries, ties, in this order
   std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
-  size_t first_contact = 0, first_support = 0;
+  size_t first_contact = 0, first_support = 0, first_boundary = 0, first_tie = 0;
   std::vector<BlockRate> rate_before;
   double dt_kick = 0;  // over which the impulses act
   KickWork work;

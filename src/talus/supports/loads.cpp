@@ -1,32 +1,77 @@
 #include "talus/supports/loads.h"
 
+#include "talus/cut/selection.h"
+
 namespace talus {
 
-std::vector<std::vector<int>> loaded_blocks(const Model& model, const Layout& layout) {
-  std::vector<std::vector<int>> loaded;
-  for (const LoadInput& load : model.loads) {
-    std::vector<int> blocks;
-    if (load.block.empty()) {
-      for (size_t i = 0; i < layout.blocks.size(); ++i) blocks.push_back(static_cast<int>(i));
-    } else {
-      blocks = layout.blocks_called(load.block);
-    }
-    loaded.push_back(std::move(blocks));
-  }
-  return loaded;
+namespace {
+
+double value_of(const Model& model, int history, double time) {
+  return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(time);
 }
 
-std::vector<Vec2> load_acceleration(const Model& model, const std::vector<std::vector<int>>& loaded,
-                                    int block_count, double time) {
-  std::vector<Vec2> acceleration(static_cast<size_t>(block_count));
-  const auto value = [&](int history) {
-    return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(time);
-  };
+std::vector<int> loaded_blocks(const LoadInput& load, const Layout& layout) {
+  if (!load.is_body_force()) return {};
+  if (!load.block.empty()) return layout.blocks_called(load.block);
+  std::vector<int> all;
+  for (size_t i = 0; i < layout.blocks.size(); ++i) all.push_back(static_cast<int>(i));
+  return all;
+}
+
+void add_points(const LoadInput& load, int index, const Layout& layout, const BlockSet& blocks,
+                std::vector<LoadedPoint>& points) {
+  const auto arm = [&blocks](int block, Vec2 p) { return p - blocks.centroid[static_cast<size_t>(block)]; };
+  if (load.force_x < 0 && load.force_y < 0) {
+    // a traction that is the same along an edge has its resultant in the middle
+    for (const SelectedEdge& e : outer_edges(layout, load).edges)
+      if (blocks.moves_freely(e.block))
+        points.push_back(
+            {index, e.block, arm(e.block, 0.5 * (e.from + e.to)), e.normal(), e.length() * blocks.thickness});
+    return;
+  }
+  const size_t first = points.size();
+  for (const SelectedCorner& c : selected_corners(layout, load))
+    if (blocks.moves_freely(c.block)) points.push_back({index, c.block, arm(c.block, c.point), {}, 0});
+  for (size_t i = first; i < points.size(); ++i)
+    points[i].area = 1.0 / static_cast<double>(points.size() - first);
+}
+
+}  // namespace
+
+LoadSet build_loads(const Model& model, const Layout& layout, const BlockSet& blocks) {
+  LoadSet set;
   for (size_t i = 0; i < model.loads.size(); ++i) {
-    const Vec2 a{value(model.loads[i].history_x), value(model.loads[i].history_y)};
-    for (const int b : loaded[i]) acceleration[static_cast<size_t>(b)] += a;
+    set.blocks.push_back(loaded_blocks(model.loads[i], layout));
+    if (model.loads[i].has_place) add_points(model.loads[i], static_cast<int>(i), layout, blocks, set.points);
+  }
+  return set;
+}
+
+std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, int block_count, double time) {
+  std::vector<Vec2> acceleration(static_cast<size_t>(block_count));
+  for (size_t i = 0; i < model.loads.size(); ++i) {
+    const LoadInput& l = model.loads[i];
+    const Vec2 a{value_of(model, l.history_x, time), value_of(model, l.history_y, time)};
+    for (const int b : loads.blocks[i]) acceleration[static_cast<size_t>(b)] += a;
   }
   return acceleration;
+}
+
+void add_edge_and_point_loads(const BlockSet& blocks, const Model& model, const LoadSet& loads,
+                              const State& state, double time, std::vector<BlockForce>& force) {
+  for (const LoadedPoint& p : loads.points) {
+    const LoadInput& l = model.loads[static_cast<size_t>(p.load)];
+    const auto block = static_cast<size_t>(p.block);
+    Vec2 f{value_of(model, l.traction_x, time) + value_of(model, l.force_x, time),
+           value_of(model, l.traction_y, time) + value_of(model, l.force_y, time)};
+    if (l.pressure >= 0) {
+      const Vec2 turn = elastic_state(blocks.moduli[block], state.strain_part[block]).rotation;
+      const Vec2 n{turn.x * p.normal.x - turn.y * p.normal.y, turn.y * p.normal.x + turn.x * p.normal.y};
+      f -= value_of(model, l.pressure, time) * n;
+    }
+    f *= p.area;
+    force[block] += {f, outer(f, acting_arm(blocks, state, block, p.arm))};
+  }
 }
 
 }  // namespace talus

@@ -1,0 +1,232 @@
+#include "talus/supports/boundaries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "talus/supports/medium.h"
+
+namespace talus {
+
+namespace {
+
+class BoundaryMaker {
+ public:
+  BoundaryMaker(const Model& model, const Layout& layout, const BlockSet& blocks, Findings& findings)
+      : model_(model), layout_(layout), blocks_(blocks), findings_(findings) {}
+
+  BoundarySet make() {
+    for (size_t i = 0; i < model_.boundaries.size(); ++i) {
+      const BoundaryInput& input = model_.boundaries[i];
+      const std::vector<SelectedEdge> edges = outer_edges(layout_, input).edges;
+      if (edges.empty() || !claim(input, edges)) continue;
+      if (input.kind == BoundaryKind::kTied)
+        add_ties(static_cast<int>(i), edges);
+      else
+        add_edges(static_cast<int>(i), edges);
+    }
+    warn_held();
+    return std::move(set_);
+  }
+
+ private:
+  void error(const BoundaryInput& b, const Where& where, const std::string& text, const std::string& hint) {
+    findings_.error(where, "boundary." + b.name, text, hint);
+  }
+
+  // An edge belongs to one boundary.
+  bool claim(const BoundaryInput& input, const std::vector<SelectedEdge>& edges) {
+    for (const SelectedEdge& e : edges) {
+      const auto [it, fresh] = owner_.insert({{e.block, e.edge}, &input});
+      if (fresh) continue;
+      error(input, input.where,
+            fmt::format("takes an edge of \"{}\" at ({:g}, {:g}) that belongs to boundary \"{}\"",
+                        name(e.block), 0.5 * (e.from + e.to).x, 0.5 * (e.from + e.to).y, it->second->name),
+            "an edge has one boundary: shorten one of the two");
+      return false;
+    }
+    return true;
+  }
+
+  std::string name(int block) const { return layout_.blocks[static_cast<size_t>(block)].name; }
+
+  void add_ties(int boundary, const std::vector<SelectedEdge>& edges) {
+    const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    const std::vector<SelectedEdge> opposite = outer_edges(layout_, input.opposite).edges;
+    if (opposite.empty() || !claim(input, opposite)) return;
+    const auto more = tie_sides(model_, layout_, blocks_, boundary, edges, opposite, findings_);
+    set_.ties.insert(set_.ties.end(), more.begin(), more.end());
+  }
+
+  // The medium behind must have wave speeds.
+  bool has_medium(const BoundaryInput& input, const std::vector<SelectedEdge>& edges) {
+    for (const SelectedEdge& e : edges) {
+      const int material = material_behind(input, layout_, e.block);
+      if (material < 0) return false;  // told by the reader
+      const Material& m = model_.materials[static_cast<size_t>(material)];
+      if (!std::isnan(m.young) && !std::isnan(m.poisson)) continue;
+      error(input, input.material >= 0 ? input.where_material : input.where,
+            fmt::format("has material \"{}\" behind it, which has no {}", m.name,
+                        std::isnan(m.young) ? "young" : "poisson"),
+            fmt::format("give it in [material.{}], or another material = \"NAME\" here", m.name));
+      return false;
+    }
+    return true;
+  }
+
+  void add_edges(int boundary, const std::vector<SelectedEdge>& edges) {
+    const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    if (!has_medium(input, edges)) return;
+    int column = -1;
+    if (input.kind == BoundaryKind::kFreeField) {
+      const size_t before = set_.free_field.columns.size();
+      add_column(model_, layout_, boundary, edges, set_.free_field, findings_);
+      if (set_.free_field.columns.size() == before) return;
+      column = static_cast<int>(before);
+    }
+    const size_t first = set_.points.size();
+    for (const SelectedEdge& e : edges) {
+      if (!blocks_.moves_freely(e.block)) continue;
+      add_point(boundary, column, e, e.from, e.to);
+      add_point(boundary, column, e, e.to, e.from);
+    }
+    if (set_.points.size() == first)
+      error(input, input.where, "lies on fixed or driven blocks only: it does nothing",
+            "let it end at blocks that move");
+  }
+
+  void add_point(int boundary, int column, const SelectedEdge& e, Vec2 end, Vec2 other) {
+    const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    const Impedance z = impedance(model_, material_behind(input, layout_, e.block));
+    const double area = 0.5 * e.length() * model_.thickness;
+    BoundaryPoint p;
+    p.boundary = boundary, p.block = e.block, p.column = column;
+    p.arm = end - blocks_.centroid[static_cast<size_t>(e.block)];
+    p.normal = e.normal();
+    p.dashpot[0] = z.pressure * area, p.dashpot[1] = z.shear * area;
+    p.height = end.y;
+    if (column >= 0) {
+      const FreeField& field = set_.free_field;
+      p.beside = shares_of_segment(field, field.columns[static_cast<size_t>(column)], end, other);
+      for (auto& [element, length] : p.beside) length *= model_.thickness;
+    }
+    set_.points.push_back(std::move(p));
+  }
+
+  // A support that holds every corner of a boundary leaves it nothing to do.
+  void warn_held() {
+    std::set<std::pair<int, std::pair<double, double>>> held;
+    for (const SupportInput& s : model_.supports) {
+      if (s.x.kind == Motion::kFree || s.y.kind == Motion::kFree) continue;
+      for (const SelectedCorner& c : selected_corners(layout_, s))
+        held.insert({c.block, {c.point.x, c.point.y}});
+    }
+    if (held.empty()) return;
+    for (size_t i = 0; i < model_.boundaries.size(); ++i) {
+      const BoundaryInput& b = model_.boundaries[i];
+      if (b.kind == BoundaryKind::kTied) continue;
+      const std::vector<SelectedEdge> edges = outer_edges(layout_, b).edges;
+      const bool all = std::all_of(edges.begin(), edges.end(), [&held](const SelectedEdge& e) {
+        return held.count({e.block, {e.from.x, e.from.y}}) && held.count({e.block, {e.to.x, e.to.y}});
+      });
+      if (all && !edges.empty())
+        findings_.warning(b.where, "boundary." + b.name,
+                          "is held by supports along its whole length: nothing passes it",
+                          "leave out the support; static = \"fixed\" holds the edge in static stages");
+    }
+  }
+
+  const Model& model_;
+  const Layout& layout_;
+  const BlockSet& blocks_;
+  Findings& findings_;
+  BoundarySet set_;
+  std::map<std::pair<int, int>, const BoundaryInput*> owner_;  // of block edges
+};
+
+// The traction of the free field on a point: stress times normal times area [N].
+Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const State& state) {
+  const FreeField& field = set.free_field;
+  Vec2 force;
+  for (const auto& [element, area] : p.beside) {
+    const auto s = column_stress(field, field.columns[static_cast<size_t>(p.column)], element,
+                                 state.column_displacement);
+    force += area * Vec2{s[0] * p.normal.x + s[2] * p.normal.y, s[2] * p.normal.x + s[1] * p.normal.y};
+  }
+  return force;
+}
+
+// Velocity of the medium behind the point as it would be without the blocks.
+Vec2 medium_velocity(const Model& model, const BoundarySet& set, const BoundaryPoint& p,
+                     const BoundaryStep& step) {
+  if (p.column >= 0)
+    return at_height(set.free_field, set.free_field.columns[static_cast<size_t>(p.column)], p.height,
+                     step.column_velocity);
+  const BoundaryInput& b = model.boundaries[static_cast<size_t>(p.boundary)];
+  const auto value = [&](int history) {
+    return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(step.history_time);
+  };
+  // the bare half-space moves at twice the upgoing wave
+  return (b.outcrop ? 1.0 : 2.0) * Vec2{value(b.history_x), value(b.history_y)};
+}
+
+}  // namespace
+
+BoundarySet build_boundaries(const Model& model, const Layout& layout, const BlockSet& blocks,
+                             Findings& findings) {
+  return BoundaryMaker(model, layout, blocks, findings).make();
+}
+
+void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State& state) {
+  for (size_t i = 0; i < set.points.size(); ++i) {
+    const BoundaryPoint& p = set.points[i];
+    if (is_static) {
+      state.boundary_hold[i] = displacement_at(state, static_cast<size_t>(p.block), p.arm);
+      state.boundary_static[i] = {0, 0};
+    } else if (was_static) {
+      state.boundary_static[i] = state.boundary_force[i];
+    }
+  }
+  if (!is_static) return;
+  // what the free field still pushes is part of the reactions from here on
+  std::fill(state.column_displacement.begin(), state.column_displacement.end(), Vec2{});
+  std::fill(state.column_rate.begin(), state.column_rate.end(), Vec2{});
+}
+
+void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
+                       const std::vector<BlockRate>& before, const BoundaryStep& step, RowSet& rows) {
+  for (size_t i = 0; i < set.points.size(); ++i) {
+    const BoundaryPoint& point = set.points[i];
+    const auto block = static_cast<size_t>(point.block);
+    PointRows p;
+    p.block_a = point.block;
+    p.arm_a = acting_arm(blocks, state, block, point.arm);
+    p.normal = point.normal;
+    const Vec2 axis[2] = {point.normal, turn_right(point.normal)};
+    if (step.is_static) {
+      const StaticHold hold = model.boundaries[static_cast<size_t>(point.boundary)].hold;
+      const Vec2 off = displacement_at(state, block, point.arm) - state.boundary_hold[i];
+      for (size_t k = 0; k < 2; ++k) {
+        if (hold == StaticHold::kFree || (hold == StaticHold::kRoller && k == 1))
+          p.row[k].lower = p.row[k].upper = 0;
+        else
+          p.row[k].bias = dot(axis[k], off) / step.dt;
+      }
+    } else {
+      const auto u = relative_velocity(p, before);
+      const Vec2 target = medium_velocity(model, set, point, step),
+                 push = free_field_force(set, point, state);
+      for (size_t k = 0; k < 2; ++k) {
+        const double z = point.dashpot[k], force = state.boundary_static[i][k] + dot(axis[k], push);
+        p.row[k].compliance = 2 / (z * step.dt_kick);
+        p.row[k].bias = u[k] - 2 * dot(axis[k], target) - 2 * force / z;
+      }
+    }
+    rows.add(p, {state.boundary_force[i][0] * step.dt_kick, state.boundary_force[i][1] * step.dt_kick});
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,230 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/cut/joint_set.h"
+#include "talus/supports/free_field.h"
+#include "talus/supports/medium.h"
+
+namespace talus {
+
+namespace {
+
+// Nodes nearer to the one below than this share of the median edge are left out, unless the rock changes
+// there: the column must not ask for shorter steps than the blocks.
+constexpr double kShortElement = 0.3;
+
+// Heights within this share of the side are the same.
+constexpr double kHeightShare = 1e-6;
+
+class ColumnMaker {
+ public:
+  ColumnMaker(const Model& model, const Layout& layout, int boundary, const std::vector<SelectedEdge>& edges,
+              Findings& findings)
+      : model_(model),
+        layout_(layout),
+        input_(model.boundaries[static_cast<size_t>(boundary)]),
+        boundary_(boundary),
+        edges_(edges),
+        findings_(findings) {}
+
+  void make(FreeField& field) {
+    std::vector<double> heights, rises;
+    Vec2 foot = edges_[0].from;
+    for (const SelectedEdge& e : edges_) {
+      for (const Vec2 p : {e.from, e.to}) {
+        heights.push_back(p.y);
+        if (p.y < foot.y) foot = p;
+      }
+      rises.push_back(std::abs(e.to.y - e.from.y));
+    }
+    std::sort(heights.begin(), heights.end());
+    std::sort(rises.begin(), rises.end());
+    tolerance_ = kHeightShare * (heights.back() - heights.front());
+    if (rises.back() <= layout_.touching || tolerance_ == 0) {
+      error("is level: a column of free field stands beside a side that rises",
+            "for a base use kind = \"viscous\"");
+      return;
+    }
+    const std::vector<double> nodes = chosen_nodes(heights, rises[rises.size() / 2]);
+    if (failed_) return;
+    Column c;
+    c.boundary = boundary_;
+    c.first_node = static_cast<int>(field.height.size());
+    c.first_element = static_cast<int>(field.elements.size());
+    c.elements = static_cast<int>(nodes.size()) - 1;
+    c.base = base_under(foot);
+    field.columns.push_back(c);
+    field.height.insert(field.height.end(), nodes.begin(), nodes.end());
+    for (size_t i = 0; i + 1 < nodes.size(); ++i) {
+      const int block = block_between(nodes[i], nodes[i + 1]);
+      if (failed_) return;
+      const int material = material_behind(input_, layout_, block);
+      const Material& m = model_.materials[static_cast<size_t>(material)];
+      field.elements.push_back(
+          {nodes[i + 1] - nodes[i], m.density,
+           jointed_stiffness(plane_moduli(m.young, m.poisson, model_.plane), joints_at(block)), block});
+    }
+  }
+
+ private:
+  void error(const std::string& text, const std::string& hint) {
+    if (!failed_) findings_.error(input_.where, "boundary." + input_.name, text, hint);
+    failed_ = true;
+  }
+
+  // Heights of the corners, without those too near to each other.
+  std::vector<double> chosen_nodes(const std::vector<double>& heights, double median) {
+    std::vector<double> all{heights[0]}, kept{heights[0]};
+    for (const double y : heights)
+      if (y - all.back() > tolerance_) all.push_back(y);
+    bool needed = true;  // the last of `kept`
+    for (size_t i = 1; i < all.size(); ++i) {
+      const bool end = i + 1 == all.size();
+      const bool change =
+          end || !same_rock(block_between(all[i - 1], all[i]), block_between(all[i], all[i + 1]));
+      if (failed_) return {};
+      const bool near = all[i] - kept.back() < kShortElement * median;
+      if (near && !change) continue;
+      if (near && !needed) kept.pop_back();
+      kept.push_back(all[i]);
+      needed = change;
+    }
+    return kept;
+  }
+
+  bool same_rock(int a, int b) const {
+    if (a < 0 || b < 0) return true;  // told already
+    return material_behind(input_, layout_, a) == material_behind(input_, layout_, b) &&
+           layout_.blocks[static_cast<size_t>(a)].group == layout_.blocks[static_cast<size_t>(b)].group;
+  }
+
+  // A block at the side half way between two heights.
+  int block_between(double below, double above) {
+    const double y = 0.5 * (below + above);
+    int found = -1;
+    for (const SelectedEdge& e : edges_) {
+      if (std::min(e.from.y, e.to.y) > y || std::max(e.from.y, e.to.y) < y) continue;
+      if (found >= 0 && material_behind(input_, layout_, found) != material_behind(input_, layout_, e.block))
+        error(fmt::format("has two materials at the height {:.6g} m: not level ground", y),
+              "give material = \"NAME\", or let the side run through the layers once");
+      found = e.block;
+    }
+    if (found < 0)
+      error(fmt::format("has no block edge at the height {:.6g} m", y),
+            "let its edges go up without a gap; another side is another [[boundary]]");
+    return found;
+  }
+
+  bool is_soft(int joint) const {
+    if (joint < 0) return false;
+    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
+    return j.normal_stiffness > 0 || j.shear_stiffness > 0;
+  }
+
+  void add_set(int joint, Vec2 normal, double frequency, std::vector<JointsOfRock>& sets) const {
+    if (!is_soft(joint)) return;
+    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
+    sets.push_back({normal, frequency, j.normal_stiffness, j.shear_stiffness});
+  }
+
+  // Joints with stiffness in the ground around a block at the side.
+  std::vector<JointsOfRock> joints_at(int block) {
+    const auto group = static_cast<size_t>(layout_.blocks[static_cast<size_t>(block)].group);
+    std::vector<JointsOfRock> sets;
+    const size_t first_cut = static_cast<size_t>(layout_.first_cut_group), blocks = model_.blocks.size();
+    if (group >= blocks && group < first_cut) {
+      const GridInput& g = model_.grids[group - blocks];
+      if (g.pattern != GridPattern::kRectangles && is_soft(g.joint)) refuse_pattern(g.name);
+      add_set(g.joint, {1, 0}, g.columns / (g.max.x - g.min.x), sets);
+      add_set(g.joint, {0, 1}, g.rows / (g.max.y - g.min.y), sets);
+    } else if (group >= first_cut && group - first_cut < model_.regions.size()) {
+      add_region_sets(static_cast<int>(group - first_cut), sets);
+    }
+    return sets;
+  }
+
+  void add_region_sets(int region, std::vector<JointsOfRock>& sets) {
+    const RegionInput& r = model_.regions[static_cast<size_t>(region)];
+    const int own = r.joint >= 0 ? r.joint : model_.default_joint;
+    const auto joint_or = [own](int joint) { return joint >= 0 ? joint : own; };
+    for (const TessellationInput& t : model_.tessellations)
+      if ((t.region < 0 || t.region == region) && is_soft(t.joint)) refuse_pattern(t.name);
+    for (const MasonryInput& m : model_.masonry)
+      if ((m.region < 0 || m.region == region) &&
+          (is_soft(joint_or(m.bed_joint)) || is_soft(joint_or(m.head_joint))))
+        refuse_pattern(m.name);
+    for (const JointSetInput& s : model_.joint_sets) {
+      if (s.region >= 0 && s.region != region) continue;
+      const JointSetNote note = describe(s, model_.cut.section_azimuth);
+      const double there =
+          s.trace_length.mean > 0 ? s.trace_length.mean / (s.trace_length.mean + s.gap.mean) : 1;
+      add_set(joint_or(s.joint), {-std::sin(note.angle), std::cos(note.angle)}, there / note.spacing, sets);
+    }
+  }
+
+  void refuse_pattern(const std::string& name) {
+    error(fmt::format("stands beside \"{}\", whose joints have stiffness but no one direction and spacing",
+                      name),
+          "make those joints bonded, or use kind = \"tied\"");
+  }
+
+  // What the foot of the side stands on: a viscous base, a support, or a block that is fixed or driven.
+  ColumnBase base_under(Vec2 foot) {
+    const double tolerance = std::max({tolerance_, layout_.touching, point_tolerance(layout_)});
+    // the block of a level edge of the place that ends at the foot, -1: none
+    const auto ends_here = [&](const Selection& place) {
+      if (place.along.empty() && !place.is_edge) return -1;
+      for (const SelectedEdge& e : selected_edges(layout_, place))
+        if (std::abs(e.normal().y) > 0.5 &&
+            (norm(e.from - foot) <= tolerance || norm(e.to - foot) <= tolerance))
+          return e.block;
+      return -1;
+    };
+    ColumnBase base;
+    for (const BoundaryInput& b : model_.boundaries) {
+      const int block = b.kind == BoundaryKind::kViscous ? ends_here(b) : -1;
+      if (block < 0) continue;
+      const Impedance z = impedance(model_, material_behind(b, layout_, block));
+      base.viscous = true;
+      base.impedance[0] = z.shear, base.impedance[1] = z.pressure;
+      base.history[0] = b.history_x, base.history[1] = b.history_y;
+      base.incoming = b.outcrop ? 1 : 2;
+      return base;
+    }
+    for (const SupportInput& s : model_.supports) {
+      if (ends_here(s) < 0) continue;
+      base.motion[0] = s.x, base.motion[1] = s.y;
+      return base;
+    }
+    for (const int i : blocks_at(layout_, foot, tolerance)) {
+      const BlockShape& b = layout_.blocks[static_cast<size_t>(i)];
+      if (b.kind == BlockKind::kDriven) base.motion[0] = b.motion_x, base.motion[1] = b.motion_y;
+      if (b.kind == BlockKind::kDriven || b.kind == BlockKind::kFixed) return base;
+    }
+    findings_.warning(
+        input_.where, "boundary." + input_.name,
+        fmt::format("stands on nothing at ({:g}, {:g}): its column is held there", foot.x, foot.y),
+        "let a viscous base or a support end at the foot of the side");
+    return base;
+  }
+
+  const Model& model_;
+  const Layout& layout_;
+  const BoundaryInput& input_;
+  const int boundary_;
+  const std::vector<SelectedEdge>& edges_;
+  Findings& findings_;
+  double tolerance_ = 0;  // [m]
+  bool failed_ = false;
+};
+
+}  // namespace
+
+void add_column(const Model& model, const Layout& layout, int boundary,
+                const std::vector<SelectedEdge>& edges, FreeField& field, Findings& findings) {
+  ColumnMaker(model, layout, boundary, edges, findings).make(field);
+}
+
+}  // namespace talus

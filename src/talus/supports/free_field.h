@@ -1,0 +1,86 @@
+#pragma once
+// Level ground beside a free-field side, as a column of linear finite elements that shakes on its own: its
+// velocity and its dynamic stress are what the side is held against. Theory: docs/theory.md 4.12, after
+// Zhao et al. 2016, eq. 34.
+
+#include <array>
+
+#include "talus/blocks/state.h"
+#include "talus/cut/selection.h"
+
+namespace talus {
+
+/// Elastic moduli of plane strain or stress, (xx, yy, xy) from (exx, eyy, gxy), row by row [Pa].
+using Stiffness = std::array<std::array<double, 3>, 3>;
+
+/// Ground between two heights.
+struct ColumnElement {
+  double height = 0;   // [m]
+  double density = 0;  // [kg/m3]
+  Stiffness stiffness{};
+  int block = -1;  // at the side: its body forces act on the element
+};
+
+/// What the column stands on: dashpots with what comes in through them, or a prescribed motion.
+struct ColumnBase {
+  bool viscous = false;
+  double impedance[2] = {0, 0};  // rho cs, rho cp: along x and y [Pa s/m]
+  int history[2] = {-1, -1};     // along x and y
+  double incoming = 0;           // velocity of the bare half-space per value of the history: 2 or 1
+  Motion motion[2];              // when not viscous; kFree: no force either
+};
+
+struct Column {
+  int boundary = -1;  // of the model
+  int first_node = 0, first_element = 0, elements = 0;
+  ColumnBase base;
+};
+
+struct FreeField {
+  std::vector<Column> columns;
+  std::vector<ColumnElement> elements;  // upwards, column by column
+  std::vector<double> height;           // [n_nodes] upwards, column by column [m]
+};
+
+/// One side as a column: nodes at the heights of the corners of its edges.
+/// What cannot be a column (gaps, rock that changes at one height) is told to `findings`.
+/// @param edges  of the side
+void add_column(const Model& model, const Layout& layout, int boundary,
+                const std::vector<SelectedEdge>& edges, FreeField& field, Findings& findings);
+
+/// Elastic moduli of a material with sets of joints that have stiffness: compliances add up (theory 4.13).
+struct JointsOfRock {
+  Vec2 normal;            // unit
+  double frequency = 0;   // joints per length along it [1/m]
+  double kn = 0, ks = 0;  // [Pa/m], 0: hard
+};
+Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfRock>& joints);
+
+/// Longest stable step of the columns [s]; infinite without any.
+double stable_step(const FreeField& field, bool lumped);
+
+/// How columns go through a kick.
+struct ColumnTiming {
+  double dt = 0, dt_kick = 0;  // [s]
+  double history_time = 0;     // [s]
+  double damping_mass = 0;     // [1/s]
+  bool lumped = false;
+};
+
+/// Rates of all nodes after the kick. @param acceleration  body force per mass on each block [m/s2]
+void kick_columns(const FreeField& field, const std::vector<History>& histories, const ColumnTiming& timing,
+                  const std::vector<Vec2>& acceleration, State& state);
+
+/// Stress xx, yy, xy in an element [Pa]. @param column  that it belongs to
+std::array<double, 3> column_stress(const FreeField& field, const Column& column, int element,
+                                    const std::vector<Vec2>& displacement);
+
+/// Value at a height, linear between nodes.
+Vec2 at_height(const FreeField& field, const Column& column, double height, const std::vector<Vec2>& node);
+
+/// Elements that a segment passes, with the length of it that is there times the weight of its first end (1
+/// at `from`, 0 at `to`) [m].
+std::vector<std::pair<int, double>> shares_of_segment(const FreeField& field, const Column& column, Vec2 from,
+                                                      Vec2 to);
+
+}  // namespace talus

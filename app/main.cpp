@@ -16,6 +16,7 @@
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/model/toml_source.h"
+#include "talus/run/base_report.h"
 #include "talus/run/problem_file.h"
 #include "talus/run/progress.h"
 #include "talus/talus.h"
@@ -50,16 +51,18 @@ int check(const ModelArguments& args) {
   const talus::Prediction p = talus::predict(run.scene, run.plans);
   fmt::print("{}: no errors, {} warning{}\n", args.file, findings.warning_count(),
              findings.warning_count() == 1 ? "" : "s");
-  fmt::print("  blocks     {}; {} glued faces, {} contact points at the start, {} supported points\n",
-             p.blocks, p.bond_faces, p.contacts, p.supported);
+  fmt::print("  blocks     {}; {} glued faces, {} contact points at the start, {} supported points{}\n",
+             p.blocks, p.bond_faces, p.contacts, p.supported,
+             p.boundary > 0 ? fmt::format(", {} points at boundaries", p.boundary) : "");
+  fmt::print("{}", talus::base_report(run.scene));
   for (size_t i = 0; i < run.plans.size(); ++i) {
     const talus::StagePlan& plan = run.plans[i];
     const talus::StageInput& stage = run.scene.model.stages[i];
     const std::string bound =
-        plan.bound_block < 0
+        talus::bound_name(run.scene, plan).empty()
             ? (stage.implicit ? "no stable limit: elasticity is implicit" : "no block deforms")
             : fmt::format("stable limit {:.4g} s, set by {}", plan.dt_bound,
-                          run.scene.blocks.name[static_cast<size_t>(plan.bound_block)]) +
+                          talus::bound_name(run.scene, plan)) +
                   (plan.dt_bound < plan.dt_undamped
                        ? fmt::format("; {:.4g} s without damping_stiffness", plan.dt_undamped)
                        : "");
@@ -105,6 +108,7 @@ int run(const ModelArguments& args, const RunArguments& how) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   progress.stop_when(&stop_requested);
+  fmt::print(out, "{}", talus::base_report(prepared.scene));
   const talus::RunResult result = talus::run_stages(
       prepared.scene, prepared.plans, state, progress,
       talus::Workers(threads > 0 ? threads : talus::threads_for(prepared.scene.blocks.count)));

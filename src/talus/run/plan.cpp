@@ -49,13 +49,33 @@ int64_t rows_of(double duration, int64_t steps, double interval) {
   return static_cast<int64_t>(std::min(static_cast<double>(steps), duration / interval));
 }
 
+void limit_by_column(const Scene& scene, const StageInput& stage, const ColumnStep& column, StagePlan& plan,
+                     Findings& findings) {
+  if (column.dt < plan.dt_bound) {
+    plan.dt_bound = column.dt;
+    plan.bound_block = -1, plan.bound_column = column.boundary;
+  }
+  if (plan.dt >= column.dt)
+    findings.error(
+        stage.where_step, "stage." + stage.name + ".time_step",
+        fmt::format("{:.4g} s is above the stable limit {:.4g} s of the {}", plan.dt, column.dt,
+                    bound_name(scene, plan)),
+        "use \"auto\" or a smaller step: no elasticity = \"implicit\" and no moment clamp helps there");
+}
+
 }  // namespace
+
+std::string bound_name(const Scene& scene, const StagePlan& plan) {
+  if (plan.bound_column >= 0)
+    return "free field of " + scene.model.boundaries[static_cast<size_t>(plan.bound_column)].name;
+  return plan.bound_block >= 0 ? scene.blocks.name[static_cast<size_t>(plan.bound_block)] : "";
+}
 
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::vector<StagePlan> plans;
   const StableStep undamped = stable_step(scene.blocks);
   StableStep bound = undamped;
-  const std::string bound_name = bound.block >= 0 ? scene.blocks.name[static_cast<size_t>(bound.block)] : "";
+  const std::string block_name = bound.block >= 0 ? scene.blocks.name[static_cast<size_t>(bound.block)] : "";
   for (const StageInput& stage : scene.model.stages) {
     // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
     // theory 4.5
@@ -67,7 +87,13 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     plan.dt_bound = bound.dt;
     plan.bound_block = bound.block;
     const std::string path = "stage." + stage.name;
-    double wanted = stage.implicit ? crossing_time(scene.blocks) : stage.safety * bound.dt;
+    // the free field has a limit of its own, whatever is done about blocks
+    const ColumnStep column =
+        stage.kind == StageKind::kDynamic
+            ? stable_step(scene.boundaries.free_field, scene.model.inertia == Inertia::kLumped)
+            : ColumnStep{};
+    double wanted = std::min(stage.implicit ? crossing_time(scene.blocks) : stage.safety * bound.dt,
+                             stage.safety * column.dt);
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;
     } else if (bound.block < 0) {
@@ -108,11 +134,12 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     } else if (plan.dt >= bound.dt) {
       findings.error(stage.where_step, path + ".time_step",
                      fmt::format("{:.4g} s is above the stable limit {:.4g} s, set by block \"{}\"", plan.dt,
-                                 bound.dt, bound_name),
+                                 bound.dt, block_name),
                      "use \"auto\", a smaller step, elasticity = \"implicit\", or moment_clamp = true if a "
                      "few slivers set "
                      "the limit");
     }
+    limit_by_column(scene, stage, column, plan, findings);
     plans.push_back(plan);
   }
   return plans;

@@ -14,6 +14,7 @@ struct StagePlan {
   int64_t steps = 0;       // of a static stage: the most
   double dt_bound = 0;     // stable limit before any clamp [s]; infinite when no block deforms
   int bound_block = -1;    // the block that sets it
+  int bound_column = -1;   // or the boundary whose free field does
   double dt_undamped = 0;  // the same without stiffness-proportional damping [s]
   double clamp_dt = 0;     // undamped step that clamped blocks must allow [s]
   int clamped = 0;         // blocks whose moments are raised
@@ -23,6 +24,9 @@ struct StagePlan {
 /// Plans every stage of the scene. A step above the stable limit, or none where none can be derived, is a
 /// finding.
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings);
+
+/// What sets the stable limit, by its name: "" when nothing does.
+std::string bound_name(const Scene& scene, const StagePlan& plan);
 
 struct Prediction {
   int blocks = 0, bond_faces = 0, contacts = 0, supported = 0;

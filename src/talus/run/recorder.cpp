@@ -163,7 +163,6 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
       {"candidate_list_rebuilds", r.candidate_rebuilds}};
   j["stages"] = ordered_json::array();
   for (const StageResult& s : r.stages) {
-    const int bound = s.plan.bound_block;
     ordered_json stage = {{"name", s.name},
                           {"kind", s.kind == StageKind::kStatic ? "static" : "dynamic"},
                           {"begin [s]", s.begin},
@@ -172,7 +171,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                           {"dt [s]", s.plan.dt},
                           {"dt_bound [s]", s.plan.dt_bound},
                           {"dt_bound_undamped [s]", s.plan.dt_undamped},
-                          {"dt_bound_block", bound < 0 ? "" : b.name[static_cast<size_t>(bound)]},
+                          {"dt_bound_block", bound_name(scene, s.plan)},
                           {"blocks_clamped", s.plan.clamped},
                           {"largest_clamp", s.plan.largest_clamp},
                           {"unbalanced", s.unbalanced}};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/cut/joint_set.h"
 #include "talus/supports/free_field.h"
 #include "talus/supports/medium.h"
 
@@ -60,11 +59,14 @@ class ColumnMaker {
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
       const int block = block_between(nodes[i], nodes[i + 1]);
       if (failed_) return;
-      const int material = material_behind(input_, layout_, block);
-      const Material& m = model_.materials[static_cast<size_t>(material)];
-      field.elements.push_back(
-          {nodes[i + 1] - nodes[i], m.density,
-           jointed_stiffness(plane_moduli(m.young, m.poisson, model_.plane), joints_at(block)), block});
+      std::string trouble;
+      const Ground g = ground_at(model_, layout_, block, material_behind(input_, layout_, block), trouble);
+      if (!trouble.empty())
+        error(
+            fmt::format("stands beside \"{}\", whose joints have stiffness but no one direction and spacing",
+                        trouble),
+            "make those joints bonded, or use kind = \"tied\"");
+      field.elements.push_back({nodes[i + 1] - nodes[i], g.density, g.stiffness, block});
     }
   }
 
@@ -115,59 +117,6 @@ class ColumnMaker {
       error(fmt::format("has no block edge at the height {:.6g} m", y),
             "let its edges go up without a gap; another side is another [[boundary]]");
     return found;
-  }
-
-  bool is_soft(int joint) const {
-    if (joint < 0) return false;
-    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
-    return j.normal_stiffness > 0 || j.shear_stiffness > 0;
-  }
-
-  void add_set(int joint, Vec2 normal, double frequency, std::vector<JointsOfRock>& sets) const {
-    if (!is_soft(joint)) return;
-    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
-    sets.push_back({normal, frequency, j.normal_stiffness, j.shear_stiffness});
-  }
-
-  // Joints with stiffness in the ground around a block at the side.
-  std::vector<JointsOfRock> joints_at(int block) {
-    const auto group = static_cast<size_t>(layout_.blocks[static_cast<size_t>(block)].group);
-    std::vector<JointsOfRock> sets;
-    const size_t first_cut = static_cast<size_t>(layout_.first_cut_group), blocks = model_.blocks.size();
-    if (group >= blocks && group < first_cut) {
-      const GridInput& g = model_.grids[group - blocks];
-      if (g.pattern != GridPattern::kRectangles && is_soft(g.joint)) refuse_pattern(g.name);
-      add_set(g.joint, {1, 0}, g.columns / (g.max.x - g.min.x), sets);
-      add_set(g.joint, {0, 1}, g.rows / (g.max.y - g.min.y), sets);
-    } else if (group >= first_cut && group - first_cut < model_.regions.size()) {
-      add_region_sets(static_cast<int>(group - first_cut), sets);
-    }
-    return sets;
-  }
-
-  void add_region_sets(int region, std::vector<JointsOfRock>& sets) {
-    const RegionInput& r = model_.regions[static_cast<size_t>(region)];
-    const int own = r.joint >= 0 ? r.joint : model_.default_joint;
-    const auto joint_or = [own](int joint) { return joint >= 0 ? joint : own; };
-    for (const TessellationInput& t : model_.tessellations)
-      if ((t.region < 0 || t.region == region) && is_soft(t.joint)) refuse_pattern(t.name);
-    for (const MasonryInput& m : model_.masonry)
-      if ((m.region < 0 || m.region == region) &&
-          (is_soft(joint_or(m.bed_joint)) || is_soft(joint_or(m.head_joint))))
-        refuse_pattern(m.name);
-    for (const JointSetInput& s : model_.joint_sets) {
-      if (s.region >= 0 && s.region != region) continue;
-      const JointSetNote note = describe(s, model_.cut.section_azimuth);
-      const double there =
-          s.trace_length.mean > 0 ? s.trace_length.mean / (s.trace_length.mean + s.gap.mean) : 1;
-      add_set(joint_or(s.joint), {-std::sin(note.angle), std::cos(note.angle)}, there / note.spacing, sets);
-    }
-  }
-
-  void refuse_pattern(const std::string& name) {
-    error(fmt::format("stands beside \"{}\", whose joints have stiffness but no one direction and spacing",
-                      name),
-          "make those joints bonded, or use kind = \"tied\"");
   }
 
   // What the foot of the side stands on: a viscous base, a support, or a block that is fixed or driven.

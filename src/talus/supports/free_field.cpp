@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace talus {
 
@@ -108,40 +107,19 @@ size_t element_at(const FreeField& field, const Column& c, double height) {
 
 }  // namespace
 
-Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfRock>& joints) {
-  // compliance: of the rock, and (1/S) N^T Z N of each set, N from stress to traction, Z its 2 x 2 compliance
-  const double d = rock.c11 * rock.c11 - rock.c12 * rock.c12;
-  Stiffness s{{{rock.c11 / d, -rock.c12 / d, 0}, {-rock.c12 / d, rock.c11 / d, 0}, {0, 0, 1 / rock.c33}}};
-  for (const JointsOfRock& j : joints) {
-    const Vec2 n = j.normal;
-    const double zn = j.kn > 0 ? 1 / j.kn : 0, zs = j.ks > 0 ? 1 / j.ks : 0;
-    const Mat2 z{zs + (zn - zs) * n.x * n.x, (zn - zs) * n.x * n.y, (zn - zs) * n.x * n.y,
-                 zs + (zn - zs) * n.y * n.y};
-    const Vec2 column[3] = {{n.x, 0}, {0, n.y}, {n.y, n.x}};
-    for (size_t p = 0; p < 3; ++p)
-      for (size_t q = 0; q < 3; ++q) s[p][q] += j.frequency * dot(column[p], z * column[q]);
-  }
-  // inverse of a symmetric 3 x 3 by cofactors
-  const auto minor = [&s](size_t p, size_t q) {
-    const size_t r0 = (p + 1) % 3, r1 = (p + 2) % 3, c0 = (q + 1) % 3, c1 = (q + 2) % 3;
-    return s[r0][c0] * s[r1][c1] - s[r0][c1] * s[r1][c0];
-  };
-  const double whole = s[0][0] * minor(0, 0) + s[0][1] * minor(0, 1) + s[0][2] * minor(0, 2);
-  Stiffness c;
-  for (size_t p = 0; p < 3; ++p)
-    for (size_t q = 0; q < 3; ++q) c[p][q] = minor(q, p) / whole;
-  return c;
-}
-
-double stable_step(const FreeField& field, bool lumped) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const ColumnElement& e : field.elements) {
-    // fastest motion of a free element: w^2 = 12 q / (rho h^2), lumped 4 q / (rho h^2), q the larger wave
-    // modulus
-    const Stiffness& c = e.stiffness;
-    const double mean = 0.5 * (c[1][1] + c[2][2]);
-    const double q = mean + std::hypot(0.5 * (c[1][1] - c[2][2]), c[1][2]);
-    least = std::min(least, 2 * e.height * std::sqrt(e.density / ((lumped ? 4 : 12) * q)));
+ColumnStep stable_step(const FreeField& field, bool lumped) {
+  ColumnStep least;
+  for (const Column& column : field.columns) {
+    for (int k = 0; k < column.elements; ++k) {
+      const ColumnElement& e = field.elements[static_cast<size_t>(column.first_element + k)];
+      // fastest motion of a free element: w^2 = 12 q / (rho h^2), lumped 4 q / (rho h^2), q the larger
+      // modulus
+      const Stiffness& c = e.stiffness;
+      const double mean = 0.5 * (c[1][1] + c[2][2]);
+      const double q = mean + std::hypot(0.5 * (c[1][1] - c[2][2]), c[1][2]);
+      const double dt = 2 * e.height * std::sqrt(e.density / ((lumped ? 4 : 12) * q));
+      if (dt < least.dt) least = {dt, column.boundary};
+    }
   }
   return least;
 }

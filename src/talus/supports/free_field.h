@@ -3,15 +3,13 @@
 // velocity and its dynamic stress are what the side is held against. Theory: docs/theory.md 4.12, after
 // Zhao et al. 2016, eq. 34.
 
-#include <array>
+#include <limits>
 
 #include "talus/blocks/state.h"
 #include "talus/cut/selection.h"
+#include "talus/supports/ground.h"
 
 namespace talus {
-
-/// Elastic moduli of plane strain or stress, (xx, yy, xy) from (exx, eyy, gxy), row by row [Pa].
-using Stiffness = std::array<std::array<double, 3>, 3>;
 
 /// Ground between two heights.
 struct ColumnElement {
@@ -48,16 +46,13 @@ struct FreeField {
 void add_column(const Model& model, const Layout& layout, int boundary,
                 const std::vector<SelectedEdge>& edges, FreeField& field, Findings& findings);
 
-/// Elastic moduli of a material with sets of joints that have stiffness: compliances add up (theory 4.13).
-struct JointsOfRock {
-  Vec2 normal;            // unit
-  double frequency = 0;   // joints per length along it [1/m]
-  double kn = 0, ks = 0;  // [Pa/m], 0: hard
+/// Longest stable step of the columns [s], and the boundary of the model whose column sets it; infinite and
+/// -1 without any.
+struct ColumnStep {
+  double dt = std::numeric_limits<double>::infinity();
+  int boundary = -1;
 };
-Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfRock>& joints);
-
-/// Longest stable step of the columns [s]; infinite without any.
-double stable_step(const FreeField& field, bool lumped);
+ColumnStep stable_step(const FreeField& field, bool lumped);
 
 /// How columns go through a kick.
 struct ColumnTiming {

@@ -1,0 +1,129 @@
+#include "talus/run/base_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "talus/cut/selection.h"
+#include "talus/supports/medium.h"
+
+namespace talus {
+
+namespace {
+
+// Piece of the vertical line above a point that lies in one block.
+struct Piece {
+  double from = 0, to = 0;  // heights [m]
+  int block = -1;
+};
+
+// Blocks that the vertical line through `foot` passes above it, upwards.
+std::vector<Piece> pieces_above(const Layout& layout, Vec2 foot) {
+  std::vector<Piece> pieces;
+  for (size_t i = 0; i < layout.blocks.size(); ++i) {
+    const Polygon& polygon = layout.blocks[i].polygon;
+    std::vector<double> crossings;
+    for (size_t k = 0; k < polygon.size(); ++k) {
+      const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+      if ((a.x > foot.x) != (b.x > foot.x))
+        crossings.push_back(a.y + (foot.x - a.x) / (b.x - a.x) * (b.y - a.y));
+    }
+    std::sort(crossings.begin(), crossings.end());
+    for (size_t k = 0; k + 1 < crossings.size(); k += 2)
+      if (0.5 * (crossings[k] + crossings[k + 1]) > foot.y)
+        pieces.push_back({crossings[k], crossings[k + 1], static_cast<int>(i)});
+  }
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.from < b.from; });
+  return pieces;
+}
+
+// Layers above the foot for shear (axis 0) or pressure waves; empty when there is a hole or no elastic rock.
+std::vector<WaveLayer> layers_above(const Scene& scene, Vec2 foot, int axis) {
+  std::vector<WaveLayer> layers;
+  double top = foot.y;
+  for (const Piece& p : pieces_above(scene.layout, foot)) {
+    const BlockShape& shape = scene.layout.blocks[static_cast<size_t>(p.block)];
+    const double height = p.to - p.from;
+    if (std::abs(p.from - top) > 1e-3 * height || shape.kind != BlockKind::kDeformable) return {};
+    top = p.to;
+    std::string trouble;
+    const Ground g = ground_at(scene.model, scene.layout, p.block, shape.material, trouble);
+    if (!trouble.empty()) return {};
+    layers.push_back({height, g.density, axis == 0 ? g.stiffness[2][2] : g.stiffness[1][1]});
+  }
+  return layers;
+}
+
+std::string base_line(const Scene& scene, const BoundaryInput& b, int axis) {
+  const History& history = scene.model.histories[static_cast<size_t>(axis == 0 ? b.history_x : b.history_y)];
+  const std::string head =
+      fmt::format("  base       \"{}\": \"{}\" is the {} along {}, {}", b.name, history.name,
+                  b.outcrop ? "outcrop motion" : "upgoing wave", axis == 0 ? "x" : "y",
+                  b.outcrop ? "half of it goes up" : "the outcrop would move twice as much");
+  const std::vector<SelectedEdge> edges = outer_edges(scene.layout, b).edges;
+  const SelectedEdge& e = edges[edges.size() / 2];
+  const Vec2 foot = 0.5 * (e.from + e.to);
+  const std::vector<WaveLayer> layers = layers_above(scene, foot, axis);
+  const double f = dominant_frequency(history);
+  if (layers.empty() || f == 0) return head + "\n";
+  const Impedance z = impedance(scene.model, material_behind(b, scene.layout, e.block));
+  const LayerResponse r = level_response(layers, axis == 0 ? z.shear : z.pressure, f);
+  double height = 0;
+  for (const WaveLayer& l : layers) height += l.height;
+  return head + fmt::format(
+                    ";\n             level ground as above ({:g}, {:g}), {:.4g} m high, would move at the "
+                    "surface {:.3g} "
+                    "and at the base {:.3g} times the outcrop motion at its main {:.3g} Hz\n",
+                    foot.x, foot.y, height, r.surface, r.base, f);
+}
+
+}  // namespace
+
+LayerResponse level_response(const std::vector<WaveLayer>& layers, double impedance, double frequency) {
+  // displacement and stress of a standing wave, from 1 and 0 at the surface downwards
+  const double w = 2 * std::numbers::pi * frequency;
+  double u = 1, stress = 0;
+  for (size_t i = layers.size(); i-- > 0;) {
+    const WaveLayer& l = layers[i];
+    const double z = std::sqrt(l.density * l.modulus),
+                 phase = w * l.height * std::sqrt(l.density / l.modulus);
+    const double below = u * std::cos(phase) - stress / (w * z) * std::sin(phase);
+    stress = stress * std::cos(phase) + w * z * u * std::sin(phase);
+    u = below;
+  }
+  // up and down in the half-space: u = A + B, stress = i w Z (A - B); the outcrop moves 2 A
+  const double outcrop = std::abs(std::complex<double>(u, -stress / (w * impedance)));
+  return {1 / outcrop, std::abs(u) / outcrop};
+}
+
+double dominant_frequency(const History& history) {
+  constexpr size_t kSamples = 2048;
+  const double begin = history.time.front(), span = history.time.back() - begin;
+  std::vector<double> v;
+  for (size_t i = 0; i < kSamples; ++i)
+    v.push_back(history.value_at(begin + span * static_cast<double>(i) / static_cast<double>(kSamples)));
+  double best = 0, largest = 0;
+  for (size_t k = 1; k < kSamples / 2; ++k) {
+    const std::complex<double> turn =
+        std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(kSamples));
+    std::complex<double> at = 1, sum = 0;
+    for (const double x : v) sum += x * at, at *= turn;
+    if (std::abs(sum) > largest) largest = std::abs(sum), best = static_cast<double>(k) / span;
+  }
+  return best;
+}
+
+std::string base_report(const Scene& scene) {
+  std::string text;
+  for (const BoundaryInput& b : scene.model.boundaries) {
+    if (b.kind != BoundaryKind::kViscous) continue;
+    for (const int axis : {0, 1})
+      if ((axis == 0 ? b.history_x : b.history_y) >= 0) text += base_line(scene, b, axis);
+  }
+  return text;
+}
+
+}  // namespace talus

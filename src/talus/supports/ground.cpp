@@ -1,0 +1,104 @@
+#include "talus/supports/ground.h"
+
+#include <cmath>
+
+#include "talus/cut/joint_set.h"
+
+namespace talus {
+
+namespace {
+
+class JointFinder {
+ public:
+  JointFinder(const Model& model, std::string& trouble) : model_(model), trouble_(trouble) {}
+
+  void add_grid(const GridInput& g) {
+    if (g.pattern != GridPattern::kRectangles && is_soft(g.joint)) trouble_ = g.name;
+    add_set(g.joint, {1, 0}, g.columns / (g.max.x - g.min.x));
+    add_set(g.joint, {0, 1}, g.rows / (g.max.y - g.min.y));
+  }
+
+  void add_region(int region) {
+    const RegionInput& r = model_.regions[static_cast<size_t>(region)];
+    const int own = r.joint >= 0 ? r.joint : model_.default_joint;
+    const auto soft = [&](int joint) { return is_soft(joint >= 0 ? joint : own); };
+    const auto here = [region](int of) { return of < 0 || of == region; };
+    for (const TessellationInput& t : model_.tessellations)
+      if (here(t.region) && is_soft(t.joint)) trouble_ = t.name;
+    for (const MasonryInput& m : model_.masonry)
+      if (here(m.region) && (soft(m.bed_joint) || soft(m.head_joint))) trouble_ = m.name;
+    for (const JointSetInput& s : model_.joint_sets) {
+      if (!here(s.region)) continue;
+      const JointSetNote note = describe(s, model_.cut.section_azimuth);
+      const double trace = s.trace_length.mean, there = trace > 0 ? trace / (trace + s.gap.mean) : 1;
+      add_set(s.joint >= 0 ? s.joint : own, {-std::sin(note.angle), std::cos(note.angle)},
+              there / note.spacing);
+    }
+  }
+
+  std::vector<JointsOfRock> sets;
+
+ private:
+  bool is_soft(int joint) const {
+    if (joint < 0) return false;
+    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
+    return j.normal_stiffness > 0 || j.shear_stiffness > 0;
+  }
+
+  void add_set(int joint, Vec2 normal, double frequency) {
+    if (!is_soft(joint)) return;
+    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
+    sets.push_back({normal, frequency, j.normal_stiffness, j.shear_stiffness});
+  }
+
+  const Model& model_;
+  std::string& trouble_;
+};
+
+}  // namespace
+
+Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfRock>& joints) {
+  // compliance: of the rock, and (1/S) N^T Z N of each set, N from stress to traction, Z its 2 x 2 compliance
+  const double d = rock.c11 * rock.c11 - rock.c12 * rock.c12;
+  Stiffness s{{{rock.c11 / d, -rock.c12 / d, 0}, {-rock.c12 / d, rock.c11 / d, 0}, {0, 0, 1 / rock.c33}}};
+  for (const JointsOfRock& j : joints) {
+    const Vec2 n = j.normal;
+    const double zn = j.kn > 0 ? 1 / j.kn : 0, zs = j.ks > 0 ? 1 / j.ks : 0;
+    const Mat2 z{zs + (zn - zs) * n.x * n.x, (zn - zs) * n.x * n.y, (zn - zs) * n.x * n.y,
+                 zs + (zn - zs) * n.y * n.y};
+    const Vec2 column[3] = {{n.x, 0}, {0, n.y}, {n.y, n.x}};
+    for (size_t p = 0; p < 3; ++p)
+      for (size_t q = 0; q < 3; ++q) s[p][q] += j.frequency * dot(column[p], z * column[q]);
+  }
+  // inverse of a symmetric 3 x 3 by cofactors
+  const auto minor = [&s](size_t p, size_t q) {
+    const size_t r0 = (p + 1) % 3, r1 = (p + 2) % 3, c0 = (q + 1) % 3, c1 = (q + 2) % 3;
+    return s[r0][c0] * s[r1][c1] - s[r0][c1] * s[r1][c0];
+  };
+  const double whole = s[0][0] * minor(0, 0) + s[0][1] * minor(0, 1) + s[0][2] * minor(0, 2);
+  Stiffness c;
+  for (size_t p = 0; p < 3; ++p)
+    for (size_t q = 0; q < 3; ++q) c[p][q] = minor(q, p) / whole;
+  return c;
+}
+
+std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, int block,
+                                        std::string& trouble) {
+  // groups are the blocks, the grids, then what was cut, the regions first
+  const auto group = static_cast<size_t>(layout.blocks[static_cast<size_t>(block)].group);
+  const size_t first_cut = static_cast<size_t>(layout.first_cut_group), blocks = model.blocks.size();
+  JointFinder finder(model, trouble);
+  if (group >= blocks && group < first_cut)
+    finder.add_grid(model.grids[group - blocks]);
+  else if (group >= first_cut && group - first_cut < model.regions.size())
+    finder.add_region(static_cast<int>(group - first_cut));
+  return finder.sets;
+}
+
+Ground ground_at(const Model& model, const Layout& layout, int block, int material, std::string& trouble) {
+  const Material& m = model.materials[static_cast<size_t>(material)];
+  return {m.density, jointed_stiffness(plane_moduli(m.young, m.poisson, model.plane),
+                                       joints_around(model, layout, block, trouble))};
+}
+
+}  // namespace talus

@@ -33,7 +33,7 @@ double ray_series(double t, double speed_ratio) {
   return sum;  // 2 at the free surface times half of the outcrop
 }
 
-const char* kMaterials = R"(
+const char* kMaterials = R"toml(
 talus = 1
 [material.soil]
 density = 2000
@@ -52,7 +52,7 @@ duration = "4 s"
 name = "shake"
 kind = "dynamic"
 duration = "4 s"
-)";
+)toml";
 
 std::string grid_of(int columns, int rows, const std::string& more = "") {
   return fmt::format(
@@ -175,7 +175,7 @@ TEST_CASE("A5 upgoing and outcrop motion differ by two, viscous sides visibly fa
 
 TEST_CASE("A5 free-field sides that lean: traction by their true normals") {
   // a parallelogram of ground, cut along its bedding and along its sides
-  const std::string cut = R"(
+  const std::string cut = R"toml(
 [cut]
 sliver_area = 0
 [[region]]
@@ -194,7 +194,7 @@ name = "steep"
 angle = "75.06858282 deg"
 spacing = 4.831
 joint = "glue"
-)";
+)toml";
   for (const bool up : {false, true}) {
     const std::string axis = up ? "y" : "x";
     const std::string text = kMaterials + cut +

@@ -75,8 +75,8 @@ std::string base_line(const Scene& scene, const BoundaryInput& b, int axis) {
   for (const WaveLayer& l : layers) height += l.height;
   return head + fmt::format(
                     ";\n             level ground as above ({:g}, {:g}), {:.4g} m high, would move at the "
-                    "surface {:.3g} "
-                    "and at the base {:.3g} times the outcrop motion at its main {:.3g} Hz\n",
+                    "surface {:.3f} "
+                    "and at the base {:.3f} times the outcrop motion at its main {:.3g} Hz\n",
                     foot.x, foot.y, height, r.surface, r.base, f);
 }
 

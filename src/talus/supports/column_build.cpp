@@ -48,7 +48,7 @@ class ColumnMaker {
     }
     const std::vector<double> nodes = chosen_nodes(heights, rises[rises.size() / 2]);
     if (failed_) return;
-    Column c;
+    GroundColumn c;
     c.boundary = boundary_;
     c.first_node = static_cast<int>(field.height.size());
     c.first_element = static_cast<int>(field.elements.size());
@@ -98,8 +98,10 @@ class ColumnMaker {
 
   bool same_rock(int a, int b) const {
     if (a < 0 || b < 0) return true;  // told already
-    return material_behind(input_, layout_, a) == material_behind(input_, layout_, b) &&
-           layout_.blocks[static_cast<size_t>(a)].group == layout_.blocks[static_cast<size_t>(b)].group;
+    std::string ignored;
+    const Ground p = ground_at(model_, layout_, a, material_behind(input_, layout_, a), ignored);
+    const Ground q = ground_at(model_, layout_, b, material_behind(input_, layout_, b), ignored);
+    return p.density == q.density && p.stiffness == q.stiffness;
   }
 
   // A block at the side half way between two heights.

@@ -12,7 +12,7 @@ struct ColumnMass {
   std::vector<double> diagonal, beside;
 };
 
-ColumnMass mass_of(const FreeField& field, const Column& c, bool lumped) {
+ColumnMass mass_of(const FreeField& field, const GroundColumn& c, bool lumped) {
   const auto n = static_cast<size_t>(c.elements);
   ColumnMass m{std::vector<double>(n + 1), std::vector<double>(n)};
   for (size_t e = 0; e < n; ++e) {
@@ -44,7 +44,7 @@ void solve_tridiagonal(const std::vector<double>& lower, std::vector<double>& di
 // dashpot C at the base, b from mass-proportional damping.
 class ColumnKick {
  public:
-  ColumnKick(const FreeField& field, const Column& column, const std::vector<History>& histories,
+  ColumnKick(const FreeField& field, const GroundColumn& column, const std::vector<History>& histories,
              const ColumnTiming& timing)
       : field_(field),
         c_(column),
@@ -92,14 +92,14 @@ class ColumnKick {
   }
 
   const FreeField& field_;
-  const Column& c_;
+  const GroundColumn& c_;
   const std::vector<History>& histories_;
   const ColumnTiming& t_;
   const ColumnMass mass_;
 };
 
 // Index of the element of a column that holds a height; the ends go on outside.
-size_t element_at(const FreeField& field, const Column& c, double height) {
+size_t element_at(const FreeField& field, const GroundColumn& c, double height) {
   const auto begin = field.height.begin() + c.first_node, last = begin + c.elements;
   const auto above = std::upper_bound(begin, last, height) - begin;
   return static_cast<size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, c.elements - 1));
@@ -109,7 +109,7 @@ size_t element_at(const FreeField& field, const Column& c, double height) {
 
 ColumnStep stable_step(const FreeField& field, bool lumped) {
   ColumnStep least;
-  for (const Column& column : field.columns) {
+  for (const GroundColumn& column : field.columns) {
     for (int k = 0; k < column.elements; ++k) {
       const ColumnElement& e = field.elements[static_cast<size_t>(column.first_element + k)];
       // fastest motion of a free element: w^2 = 12 q / (rho h^2), lumped 4 q / (rho h^2), q the larger
@@ -126,7 +126,7 @@ ColumnStep stable_step(const FreeField& field, bool lumped) {
 
 void kick_columns(const FreeField& field, const std::vector<History>& histories, const ColumnTiming& timing,
                   const std::vector<Vec2>& acceleration, State& state) {
-  for (const Column& c : field.columns) {
+  for (const GroundColumn& c : field.columns) {
     const auto n = static_cast<size_t>(c.elements) + 1, first = static_cast<size_t>(c.first_node);
     std::vector<double> force[2] = {std::vector<double>(n), std::vector<double>(n)},
                         v[2] = {force[0], force[0]};
@@ -147,7 +147,7 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
   }
 }
 
-std::array<double, 3> column_stress(const FreeField& field, const Column& column, int element,
+std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,
                                     const std::vector<Vec2>& displacement) {
   const ColumnElement& e = field.elements[static_cast<size_t>(element)];
   const auto node = static_cast<size_t>(column.first_node + element - column.first_element);
@@ -157,14 +157,15 @@ std::array<double, 3> column_stress(const FreeField& field, const Column& column
   return stress;
 }
 
-Vec2 at_height(const FreeField& field, const Column& column, double height, const std::vector<Vec2>& node) {
+Vec2 at_height(const FreeField& field, const GroundColumn& column, double height,
+               const std::vector<Vec2>& node) {
   const size_t i = static_cast<size_t>(column.first_node) + element_at(field, column, height);
   const double s = std::clamp((height - field.height[i]) / (field.height[i + 1] - field.height[i]), 0.0, 1.0);
   return (1 - s) * node[i] + s * node[i + 1];
 }
 
-std::vector<std::pair<int, double>> shares_of_segment(const FreeField& field, const Column& column, Vec2 from,
-                                                      Vec2 to) {
+std::vector<std::pair<int, double>> shares_of_segment(const FreeField& field, const GroundColumn& column,
+                                                      Vec2 from, Vec2 to) {
   const double length = norm(to - from), rise = to.y - from.y;
   std::vector<std::pair<int, double>> shares;
   const auto add = [&](double s0, double s1, size_t element) {

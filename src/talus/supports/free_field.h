@@ -28,14 +28,14 @@ struct ColumnBase {
   Motion motion[2];              // when not viscous; kFree: no force either
 };
 
-struct Column {
+struct GroundColumn {
   int boundary = -1;  // of the model
   int first_node = 0, first_element = 0, elements = 0;
   ColumnBase base;
 };
 
 struct FreeField {
-  std::vector<Column> columns;
+  std::vector<GroundColumn> columns;
   std::vector<ColumnElement> elements;  // upwards, column by column
   std::vector<double> height;           // [n_nodes] upwards, column by column [m]
 };
@@ -67,15 +67,16 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
                   const std::vector<Vec2>& acceleration, State& state);
 
 /// Stress xx, yy, xy in an element [Pa]. @param column  that it belongs to
-std::array<double, 3> column_stress(const FreeField& field, const Column& column, int element,
+std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,
                                     const std::vector<Vec2>& displacement);
 
 /// Value at a height, linear between nodes.
-Vec2 at_height(const FreeField& field, const Column& column, double height, const std::vector<Vec2>& node);
+Vec2 at_height(const FreeField& field, const GroundColumn& column, double height,
+               const std::vector<Vec2>& node);
 
 /// Elements that a segment passes, with the length of it that is there times the weight of its first end (1
 /// at `from`, 0 at `to`) [m].
-std::vector<std::pair<int, double>> shares_of_segment(const FreeField& field, const Column& column, Vec2 from,
-                                                      Vec2 to);
+std::vector<std::pair<int, double>> shares_of_segment(const FreeField& field, const GroundColumn& column,
+                                                      Vec2 from, Vec2 to);
 
 }  // namespace talus

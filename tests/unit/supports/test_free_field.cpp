@@ -1,0 +1,191 @@
+#include "talus/supports/free_field.h"
+
+#include "support/run_case.h"
+#include "talus/supports/boundaries.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+const PlaneModuli kRock = plane_moduli(9e9, 0.25, Plane::kStrain);
+
+// Strain of intact rock under a stress (xx, yy, xy), and of the joints it crosses, put together from
+// tractions.
+std::array<double, 3> strain_by_hand(const std::array<double, 3>& s,
+                                     const std::vector<JointsOfRock>& joints) {
+  const double e = 9e9, nu = 0.25;
+  std::array<double, 3> strain{((1 - nu * nu) * s[0] - nu * (1 + nu) * s[1]) / e,
+                               ((1 - nu * nu) * s[1] - nu * (1 + nu) * s[0]) / e, 2 * (1 + nu) / e * s[2]};
+  for (const JointsOfRock& j : joints) {
+    const Vec2 n = j.normal, t = turn_left(n), traction{s[0] * n.x + s[2] * n.y, s[2] * n.x + s[1] * n.y};
+    const Vec2 jump = j.frequency * (dot(traction, n) / j.kn * n + dot(traction, t) / j.ks * t);
+    strain[0] += jump.x * n.x, strain[1] += jump.y * n.y, strain[2] += jump.x * n.y + jump.y * n.x;
+  }
+  return strain;
+}
+
+}  // namespace
+
+TEST_CASE("stiffness of jointed ground: the strains of rock and joints add up") {
+  const std::vector<JointsOfRock> joints{{{std::cos(0.3), std::sin(0.3)}, 0.5, 2e9, 1e9},
+                                         {{0, 1}, 0.25, 4e9, 3e9}};
+  const Stiffness c = jointed_stiffness(kRock, joints);
+  for (const std::array<double, 3>& s :
+       {std::array{1e6, 0.0, 0.0}, {0.0, 2e6, 0.0}, {0.0, 0.0, 1e6}, {1e6, -3e6, 5e5}}) {
+    const auto strain = strain_by_hand(s, joints);
+    for (size_t k = 0; k < 3; ++k)
+      CHECK(std::abs(c[k][0] * strain[0] + c[k][1] * strain[1] + c[k][2] * strain[2] - s[k]) < 1e-6);
+  }
+}
+
+TEST_CASE("hard joints add nothing to the stiffness of the ground") {
+  const Stiffness c = jointed_stiffness(kRock, {{{0, 1}, 1, 0, 0}});
+  CHECK(c[0][0] == doctest::Approx(kRock.c11).epsilon(1e-12));
+  CHECK(c[0][1] == doctest::Approx(kRock.c12).epsilon(1e-12));
+  CHECK(c[2][2] == doctest::Approx(kRock.c33).epsilon(1e-12));
+  CHECK(std::abs(c[0][2]) < 1e-3);
+}
+
+namespace {
+
+const std::string kGround = R"(
+talus = 1
+[material.soil]
+density = 2000
+young = "450 MPa"
+poisson = 0.25
+[material.rock]
+density = 2500
+young = "9 GPa"
+poisson = 0.25
+[joint.glue]
+kind = "bonded"
+[joint.soft]
+normal_stiffness = "2 GPa/m"
+shear_stiffness = "1 GPa/m"
+[[boundary]]
+name = "left"
+kind = "free_field"
+edge = [[0, 0], [0, 6]]
+[[stage]]
+name = "go"
+kind = "dynamic"
+duration = "10 ms"
+)";
+
+std::string grid(const std::string& name, double bottom, double top, int rows, const std::string& material,
+                 const std::string& joint = "glue") {
+  return fmt::format(
+      "[[grid]]\nname = \"{}\"\nmin = [0, {}]\nmax = [4, {}]\ncells = [2, {}]\nmaterial = \"{}\"\njoint = "
+      "\"{}\"\n",
+      name, bottom, top, rows, material, joint);
+}
+
+Scene scene_of(const std::string& text, std::string* warnings = nullptr) {
+  Findings findings("case.toml", text);
+  Scene scene = prepare_run("case.toml", text, {}, findings).scene;
+  if (warnings) *warnings = findings.render();
+  return scene;
+}
+
+const std::string kFixed = "[[support]]\nname = \"base\"\nedge = [[0, 0], [4, 0]]\n";
+
+}  // namespace
+
+TEST_CASE("a column has the layers, heights and joints of its side") {
+  const Scene scene =
+      scene_of(kGround + grid("low", 0, 2, 1, "rock") + grid("up", 2, 6, 4, "soil", "soft") + kFixed);
+  const FreeField& f = scene.boundaries.free_field;
+  REQUIRE(f.columns.size() == 1);
+  CHECK(f.height == std::vector<double>{0, 2, 3, 4, 5, 6});
+  CHECK(f.elements[0].density == 2500);
+  CHECK(f.elements[0].stiffness[2][2] == doctest::Approx(3.6e9));
+  // a joint of 1 GPa/m each metre up and none along: 1/G = 1/0.18 + 1/1 (beds) + 0.5/1 (2 m apart) per GPa
+  CHECK(f.elements[1].stiffness[2][2] == doctest::Approx(1e9 / (1 / 0.18 + 1 + 0.5)).epsilon(1e-12));
+  CHECK_FALSE(f.columns[0].base.viscous);
+  CHECK(f.columns[0].base.motion[0].kind == Motion::kFixed);
+}
+
+TEST_CASE("corners close to each other do not make thin elements") {
+  // the rock changes at 2 m and at 2.05 m; the corners at 2.02 m and 4.01 m are of no account
+  std::string text = kGround + kFixed;
+  const double heights[] = {0, 2, 2.02, 2.05, 4, 4.01, 6};
+  for (int k = 0; k < 6; ++k)
+    text += grid(fmt::format("g{}", k), heights[k], heights[k + 1], 1, k == 1 || k == 2 ? "soil" : "rock");
+  CHECK(scene_of(text).boundaries.free_field.height == std::vector<double>{0, 2, 2.05, 4, 6});
+}
+
+TEST_CASE("what a column stands on") {
+  const std::string ground = kGround + grid("g", 0, 6, 3, "soil");
+  std::string warnings;
+  const FreeField none = scene_of(ground, &warnings).boundaries.free_field;
+  CHECK(none.columns[0].base.motion[1].kind == Motion::kFixed);
+  CHECK(warnings.find("boundary.left: stands on nothing at (0, 0): its column is held there") !=
+        std::string::npos);
+
+  const FreeField wave = scene_of(ground +
+                                  "[history.v]\ntime = [0, 1]\nvalue = [0, 0]\n[[boundary]]\nname = "
+                                  "\"base\"\nkind = \"viscous\"\nedge = [[0, 0], [4, 0]]\n"
+                                  "material = \"rock\"\nvelocity_y = \"v\"\nmotion = \"upgoing\"\n")
+                             .boundaries.free_field;
+  CHECK(wave.columns[0].base.viscous);
+  CHECK(wave.columns[0].base.impedance[0] == doctest::Approx(2500.0 * 1200));
+  CHECK(wave.columns[0].base.impedance[1] == doctest::Approx(2500.0 * 1200 * std::sqrt(3.0)));
+  CHECK(wave.columns[0].base.history[0] == -1);
+  CHECK(wave.columns[0].base.history[1] == 0);
+  CHECK(wave.columns[0].base.incoming == 2);
+}
+
+TEST_CASE("shares of a segment: its two ends sum to its length in every element") {
+  const Scene scene = scene_of(kGround + grid("g", 0, 6, 3, "soil") + kFixed);
+  const FreeField& f = scene.boundaries.free_field;
+  const Vec2 a{0, 1}, b{-1, 4.5};
+  std::array<double, 3> length{}, moment{};
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
+    for (const auto& [element, weight] : shares_of_segment(f, f.columns[0], from, to)) {
+      length[static_cast<size_t>(element)] += weight;
+      moment[static_cast<size_t>(element)] += weight * from.y;
+    }
+  const double per_height = norm(b - a) / 3.5;
+  const double pieces[3][2] = {{1, 2}, {2, 4}, {4, 4.5}};
+  for (size_t k = 0; k < 3; ++k) {
+    const double rise = pieces[k][1] - pieces[k][0];
+    CHECK(length[k] == doctest::Approx(rise * per_height).epsilon(1e-12));
+    CHECK(moment[k] ==
+          doctest::Approx(rise * per_height * 0.5 * (pieces[k][0] + pieces[k][1])).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a column that limits the time step is named, and a step above its limit refused") {
+  // stiff rock behind a soft side: waves in the column are faster than in the blocks
+  const std::string text = kGround + grid("g", 0, 6, 3, "soil") + kFixed;
+  std::string fast = text;
+  fast.replace(fast.find("kind = \"free_field\""), 19, "kind = \"free_field\"\nmaterial = \"rock\"");
+  Findings findings("case.toml", fast);
+  const PreparedRun run = prepare_run("case.toml", fast, {}, findings);
+  CHECK(bound_name(run.scene, run.plans[0]) == "free field of left");
+  // 2 m elements of rock: 2 h / (sqrt(12) cp)
+  CHECK(run.plans[0].dt_bound ==
+        doctest::Approx(2 * 2 / std::sqrt(12.0) / (1200 * std::sqrt(3.0))).epsilon(1e-12));
+  CHECK_THROWS_WITH_AS(prepare_run("case.toml", fast, {"stage.go.time_step=0.7 ms"}, findings),
+                       doctest::Contains("is above the stable limit 0.0005556 s of the free field of left"),
+                       InputError);
+}
+
+TEST_CASE("a static stage after a dynamic one puts the free field to rest and keeps the places") {
+  const Scene scene = scene_of(kGround + grid("g", 0, 6, 3, "soil") + kFixed);
+  State s = start_state(scene);
+  for (Vec2& d : s.displacement) d = {1e-3, 2e-3};
+  for (Vec2& d : s.column_displacement) d = {1, 1};
+  for (auto& f : s.boundary_force) f = {5, 7};
+  enter_stage(scene.boundaries, false, true, s);
+  CHECK(s.column_displacement[1] == Vec2{});
+  CHECK(s.boundary_hold[0] == Vec2{1e-3, 2e-3});
+  CHECK(s.boundary_static[0][0] == 0);
+  enter_stage(scene.boundaries, true, false, s);
+  CHECK(s.boundary_static[0][1] == 7);
+  for (auto& f : s.boundary_force) f = {0, 0};
+  enter_stage(scene.boundaries, false, false, s);  // dynamic after dynamic: kept
+  CHECK(s.boundary_static[0][1] == 7);
+}

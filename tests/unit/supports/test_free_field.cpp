@@ -1,5 +1,7 @@
 #include "talus/supports/free_field.h"
 
+#include <fmt/format.h>
+
 #include "support/run_case.h"
 #include "talus/supports/boundaries.h"
 

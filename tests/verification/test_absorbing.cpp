@@ -186,10 +186,10 @@ TEST_CASE("static reactions stay when a viscous base takes over: a settled colum
   });
   CHECK(r.run.stages[0].at_rest);
   check_close("kept reaction of the base [N]", reaction, 2000.0 * 10 * 20, 1e-6, 1e-8);
-  // forces are balanced to 1e-8 of the weight and velocities have fallen to 1e-8 of g H/c = 0.14 m/s; against
-  // the dashpot rho c of the base that leaves 1e-8 g H/c, some times over in a wave. Without the reactions:
-  // 0.14 m/s
-  check_below("velocity after the change of stage [m/s]", fastest, 1e-7, 1e-9);
+  // forces are balanced to 1e-8 of the weight and velocities have fallen to 1e-8 of g H/c = 0.14 m/s: against
+  // the dashpot rho c of the base 1e-8 g H/c. An iterative solver may add its tolerance, 1e-8 m in a step of
+  // 1 ms. Without the reactions: 0.14 m/s
+  check_below("velocity after the change of stage [m/s]", fastest, 1e-5, 1e-8);
   check_below("displacement after it [m]", moved, 1e-8, 1e-10);
   check_below("settled column: energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }

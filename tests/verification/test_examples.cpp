@@ -291,6 +291,22 @@ TEST_CASE("example hammer: the waves leave through the edges") {
   check_below("hammer energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
+TEST_CASE("example hammer has the same bits for any number of threads") {
+  const std::string text = read_text_file(TALUS_SOURCE_DIR "/examples/hammer/hammer.toml");
+  std::vector<State> end;
+  for (const int threads : {1, 3}) {
+    Findings findings("hammer.toml", text);
+    PreparedRun run = prepare_run("hammer.toml", text, {"stage.blow.duration=30 ms"}, findings);
+    end.push_back(start_state(run.scene));
+    MemoryObserver observer(run.scene, nullptr);
+    run_stages(run.scene, run.plans, end.back(), observer, Workers(threads));
+  }
+  bool same = end[0].boundary_force == end[1].boundary_force;
+  for (size_t i = 0; i < end[0].displacement.size(); ++i)
+    same = same && end[0].displacement[i] == end[1].displacement[i];
+  CHECK(same);
+}
+
 TEST_CASE("example blast_hole: the rock keeps still until the blast, which leaves through the edges") {
   double before = 0, most = 0, last = 0, near = 0, far = 0;
   const auto speed = [](const Instant& i, Vec2 at) {

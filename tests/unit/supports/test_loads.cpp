@@ -107,6 +107,7 @@ polygon = [[0, 0], [10, 0], [10, 10], [0, 10]]
 material = "a"
 [[opening]]
 name = "hole"
+shape = "circle"
 center = [5, 5]
 diameter = 2
 [[joint_set]]
@@ -126,12 +127,13 @@ pressure = "push"
   CHECK(push > 0.5 * 3e4 * 3.14 * 2 * 0.5);  // pressure times perimeter, less where a block has both walls
 }
 
-TEST_CASE("work of loads: a free block under a force and a pressure") {
-  // 45 kN along -x on 12 t for 1 ms: v = 3.75 mm/s; F t^2/2m x F = work; the spin and stretch it starts have
-  // theirs
+TEST_CASE("work of loads: a free block under a pressure") {
+  // 45 kN along -x on 12 t for 10 steps: work to the middle of the last kick, whose measure is 1/2 m v- v+
+  // (theory 8)
   const CaseResult r =
       run_case(kPlate + kBlock +
                "kind = \"rigid\"\n[[load]]\nname = \"l\"\nedge = [[4, 0], [4, 3]]\npressure = \"push\"\n");
-  check_close("work of a pressure [J]", r.run.energy.work.loads, 45e3 * 45e3 / 12e3 * 1e-6 / 2, 1e-9, 1e-12);
+  check_close("work of a pressure [J]", r.run.energy.work.loads,
+              45e3 * 45e3 / 12e3 * 1e-6 / 2 * (1 - 0.05 * 0.05), 1e-9, 1e-12);
   check_below("work of a pressure: energy left over / largest term", r.run.closure(), 1e-9, 1e-12);
 }

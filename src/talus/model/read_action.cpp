@@ -1,12 +1,16 @@
 #include "talus/model/read_action.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "talus/model/section_reader.h"
 
 namespace talus {
 
 namespace {
+
+// Velocity at the end of a record, as share of its largest, that is no round-off.
+constexpr double kStillMoving = 1e-2;
 
 class ActionReader : private SectionReader {
  public:
@@ -94,7 +98,11 @@ class ActionReader : private SectionReader {
     b.outcrop = f.get<std::string>("motion") == "outcrop";
     const auto hold = f.get<std::string>("static");
     b.hold = hold == "roller" ? StaticHold::kRoller : hold == "free" ? StaticHold::kFree : StaticHold::kFixed;
-    if (kind == "viscous") check_input_motion(f);
+    if (kind == "viscous") {
+      check_input_motion(f);
+      warn_still_moving(f, "velocity_x", b.history_x);
+      warn_still_moving(f, "velocity_y", b.history_y);
+    }
     if (kind == "free_field")
       refuse_input_motion(f, "its column takes the motion of the base that it stands on");
     if (kind == "tied") refuse_input_motion(f, "tied sides bring none in; give it to the base");
@@ -133,6 +141,19 @@ class ActionReader : private SectionReader {
           "give motion = \"outcrop\" for a record at the surface of rock, \"upgoing\" for the wave alone");
     else if (!input && f.given("motion"))
       error(f, "motion", "says what no history is", "give velocity_x or velocity_y, or leave it out");
+  }
+
+  // The last value of a history is held.
+  void warn_still_moving(const Fields& f, std::string_view key, int history) {
+    if (history < 0) return;
+    const History& h = model_.histories[static_cast<size_t>(history)];
+    double largest = 0;
+    for (const double v : h.value) largest = std::max(largest, std::abs(v));
+    if (std::abs(h.value.back()) > kStillMoving * largest)
+      findings_.warning(f.where(key), f.path_of(key),
+                        fmt::format("history \"{}\" ends at {:.3g} m/s: the ground goes on at that for ever",
+                                    h.name, h.value.back()),
+                        "let a velocity end at 0");
   }
 
   void read_opposite(const Fields& f, BoundaryInput& b) {

@@ -77,8 +77,14 @@ class BoundaryMaker {
     return true;
   }
 
-  void add_edges(int boundary, const std::vector<SelectedEdge>& edges) {
+  void add_edges(int boundary, std::vector<SelectedEdge> edges) {
     const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    std::erase_if(edges, [this](const SelectedEdge& e) { return !blocks_.moves_freely(e.block); });
+    if (edges.empty()) {
+      error(input, input.where, "lies on fixed or driven blocks only: it does nothing",
+            "let it end at blocks that move");
+      return;
+    }
     if (!has_medium(input, edges)) return;
     int column = -1;
     if (input.kind == BoundaryKind::kFreeField) {
@@ -87,15 +93,10 @@ class BoundaryMaker {
       if (set_.free_field.columns.size() == before) return;
       column = static_cast<int>(before);
     }
-    const size_t first = set_.points.size();
     for (const SelectedEdge& e : edges) {
-      if (!blocks_.moves_freely(e.block)) continue;
       add_point(boundary, column, e, e.from, e.to);
       add_point(boundary, column, e, e.to, e.from);
     }
-    if (set_.points.size() == first)
-      error(input, input.where, "lies on fixed or driven blocks only: it does nothing",
-            "let it end at blocks that move");
   }
 
   void add_point(int boundary, int column, const SelectedEdge& e, Vec2 end, Vec2 other) {

@@ -110,6 +110,10 @@ TEST_CASE("wrong boundaries: kinds, places, motions") {
        boundary(kBase + "kind = \"viscous\"\nvelocity_x = \"v\"\nmotion = \"within\"\n"),
        {"boundary.b.motion: \"within\" is the real motion of the base",
         "give the motion of the base to a [[support]]"}},
+      {"moves for ever",
+       boundary(kBase + "kind = \"viscous\"\nvelocity_y = \"w\"\nmotion = \"upgoing\"\n[history.w]\ntime = "
+                        "[0, 1]\nvalue = [0, 2]\n"),
+       {"warning: boundary.b.velocity_y: history \"w\" ends at 2 m/s", "let a velocity end at 0"}},
       {"motion of nothing",
        boundary(kBase + "kind = \"viscous\"\nmotion = \"outcrop\"\n"),
        {"boundary.b.motion: says what no history is"}},

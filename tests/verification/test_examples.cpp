@@ -311,7 +311,7 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
   double before = 0, most = 0, last = 0, near = 0, far = 0;
   const auto speed = [](const Instant& i, Vec2 at) {
     const auto k = static_cast<size_t>(block_of_point(i.scene.layout, at));
-    return velocity_at(i.work.rate_now[k], at - i.scene.blocks.centroid[k]).x;
+    return velocity_at(rate_now(i.work, i.state, k), at - i.scene.blocks.centroid[k]).x;
   };
   const CaseResult r = run_example("blast_hole", [&](const Instant& i) {
     if (i.stage != 1) return;

@@ -211,11 +211,10 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
       const StaticHold hold = model.boundaries[static_cast<size_t>(point.boundary)].hold;
       const Vec2 off = displacement_at(state, block, point.arm) - state.boundary_hold[i];
       for (size_t k = 0; k < 2; ++k) {
-        if (hold == StaticHold::kFree || (hold == StaticHold::kRoller && k == 1))
-          p.row[k].lower = p.row[k].upper = 0;
-        else
-          p.row[k].bias = dot(axis[k], off) / step.dt;
+        p.row[k].bias = dot(axis[k], off) / step.dt;
       }
+      if (hold == StaticHold::kFree) p.lower = p.upper = 0;
+      if (hold != StaticHold::kFixed) p.cohesion = 0;
     } else {
       const auto u = relative_velocity(p, before);
       const Vec2 target = medium_velocity(model, set, point, step),

@@ -61,8 +61,9 @@ TEST_CASE("kobe: step by step from 0.1 to 15 Hz") {
     taper_ends(a, 0.03);
     a = filter(a, r->dt, {0.1, 15, 4, corner});
     const Measures filtered = measure(integrate(a, r->dt));
-    // the reference, run forwards and backwards, left 1e-3 m/s (to its one digit) and 0.03 to 0.13 m; the
-    // steeper gain with -3 dB rings a little longer beyond the cut
+    // the reference states 1e-3 m/s and 0.03 to 0.13 m. Our d lies in that range with -6 dB only, our v
+    // (2.3e-3 and 3.5e-3 m/s) in neither case: the bounds on v, and on d with -3 dB, are what was measured,
+    // rounded up
     const bool same = corner == Corner::k6dB;
     check_below("kobe filtered, " + which + ": v(T) [m/s]", std::abs(filtered.end_velocity),
                 same ? 2.5e-3 : 4e-3, 1e-3);

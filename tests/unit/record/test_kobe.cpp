@@ -84,8 +84,9 @@ TEST_CASE("kobe: step by step from 0.1 to 15 Hz") {
     CHECK(m.size() == 1001);
     check_below("kobe motion, " + which + ": v(T) [m/s]", std::abs(m.velocity.back()), 1e-14, 1e-15);
     check_below("kobe motion, " + which + ": d(T) [m]", std::abs(m.displacement.back()), 1e-14, 1e-15);
-    // 1 %: three digits are given (0.3 % at 3 s), the reference filters by a difference equation whose
-    // low-pass is steeper towards 25 Hz, and steps the oscillator by 5 ms (0.5 % at 0.1 s)
+    // 1 %, chosen to hold what was measured (0.8 % at 0.1 s, 0.9 % at 3 s): three digits are given (0.3 % at
+    // 3 s); the reference filters by a difference equation, whose low-pass ought to be steeper towards 25 Hz
+    // (not measured)
     const std::vector<double> sa = response_spectrum(m.acceleration, m.dt, kPeriods);
     for (size_t i = 0; i < kPeriods.size(); ++i)
       check_close(fmt::format("kobe motion, {}: Sa({:g} s) [m/s2]", which, kPeriods[i]), sa[i], kSpectrum[i],
@@ -101,8 +102,8 @@ TEST_CASE("kobe: the motion against the one of the reference program, sample by 
     MESSAGE("skipped: kobe_ns_20s_processed.csv is not in TALUS_RECORDS");
     return;
   }
-  // the reference's low-pass is a difference equation, steeper than ours above 10 Hz: 1 % of the peak
-  // acceleration, less of what follows by integration
+  // bounds are what was measured, rounded up: 1 % of the peak acceleration, less of what follows by
+  // integration
   Processing how;
   how.band.corner = Corner::k6dB;
   how.duration = 20;

@@ -30,11 +30,12 @@ class ColumnMaker {
 
   void make(FreeField& field) {
     std::vector<double> heights, rises;
-    Vec2 foot = edges_[0].from;
+    Vec2 foot = edges_[0].from, head = foot;
     for (const SelectedEdge& e : edges_) {
       for (const Vec2 p : {e.from, e.to}) {
         heights.push_back(p.y);
         if (p.y < foot.y) foot = p;
+        if (p.y > head.y) head = p;
       }
       rises.push_back(std::abs(e.to.y - e.from.y));
     }
@@ -54,6 +55,7 @@ class ColumnMaker {
     c.first_element = static_cast<int>(field.elements.size());
     c.elements = static_cast<int>(nodes.size()) - 1;
     c.base = base_under(foot);
+    set_top(head, c);
     field.columns.push_back(c);
     field.height.insert(field.height.end(), nodes.begin(), nodes.end());
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {
@@ -121,21 +123,35 @@ class ColumnMaker {
     return found;
   }
 
+  double corner_tolerance() const {
+    return std::max({tolerance_, layout_.touching, point_tolerance(layout_)});
+  }
+
+  // The block of a level edge of the place that ends at an end of the side, -1: none.
+  int level_edge_at(Vec2 end, const Selection& place) const {
+    if (place.along.empty() && !place.is_edge) return -1;
+    for (const SelectedEdge& e : selected_edges(layout_, place))
+      if (std::abs(e.normal().y) > 0.5 &&
+          (norm(e.from - end) <= corner_tolerance() || norm(e.to - end) <= corner_tolerance()))
+        return e.block;
+    return -1;
+  }
+
+  // A viscous edge over the side takes waves out of the column as it does out of the blocks.
+  void set_top(Vec2 head, GroundColumn& c) const {
+    for (const BoundaryInput& b : model_.boundaries) {
+      const int block = b.kind == BoundaryKind::kViscous ? level_edge_at(head, b) : -1;
+      if (block < 0) continue;
+      const Impedance z = impedance(model_, material_behind(b, layout_, block));
+      c.top_impedance[0] = z.shear, c.top_impedance[1] = z.pressure;
+    }
+  }
+
   // What the foot of the side stands on: a viscous base, a support, or a block that is fixed or driven.
   ColumnBase base_under(Vec2 foot) {
-    const double tolerance = std::max({tolerance_, layout_.touching, point_tolerance(layout_)});
-    // the block of a level edge of the place that ends at the foot, -1: none
-    const auto ends_here = [&](const Selection& place) {
-      if (place.along.empty() && !place.is_edge) return -1;
-      for (const SelectedEdge& e : selected_edges(layout_, place))
-        if (std::abs(e.normal().y) > 0.5 &&
-            (norm(e.from - foot) <= tolerance || norm(e.to - foot) <= tolerance))
-          return e.block;
-      return -1;
-    };
     ColumnBase base;
     for (const BoundaryInput& b : model_.boundaries) {
-      const int block = b.kind == BoundaryKind::kViscous ? ends_here(b) : -1;
+      const int block = b.kind == BoundaryKind::kViscous ? level_edge_at(foot, b) : -1;
       if (block < 0) continue;
       const Impedance z = impedance(model_, material_behind(b, layout_, block));
       base.viscous = true;
@@ -145,11 +161,11 @@ class ColumnMaker {
       return base;
     }
     for (const SupportInput& s : model_.supports) {
-      if (ends_here(s) < 0) continue;
+      if (level_edge_at(foot, s) < 0) continue;
       base.motion[0] = s.x, base.motion[1] = s.y;
       return base;
     }
-    for (const int i : blocks_at(layout_, foot, tolerance)) {
+    for (const int i : blocks_at(layout_, foot, corner_tolerance())) {
       const BlockShape& b = layout_.blocks[static_cast<size_t>(i)];
       if (b.kind == BlockKind::kDriven) base.motion[0] = b.motion_x, base.motion[1] = b.motion_y;
       if (b.kind == BlockKind::kDriven || b.kind == BlockKind::kFixed) return base;

@@ -41,7 +41,7 @@ void solve_tridiagonal(const std::vector<double>& lower, std::vector<double>& di
 }
 
 // One column along one axis through a kick: (M (1 + b) + C dt/2) v+ = (M (1 - b) - C dt/2) v- + dt F, the
-// dashpot C at the base, b from mass-proportional damping.
+// dashpots C at base and top, b from mass-proportional damping.
 class ColumnKick {
  public:
   ColumnKick(const FreeField& field, const GroundColumn& column, const std::vector<History>& histories,
@@ -67,6 +67,8 @@ class ColumnKick {
     }
     for (size_t i = 0; i + 1 < n; ++i) lower[i] = upper[i] = (1 + b) * mass_.beside[i];
     set_base(axis, v[0], diagonal[0], upper[0], right[0]);
+    const double top = 0.5 * c_.top_impedance[axis] * t_.dt_kick;
+    diagonal[n - 1] += top, right[n - 1] -= top * v[n - 1];
     solve_tridiagonal(lower, diagonal, upper, right);
     v = std::move(right);
   }

@@ -32,6 +32,7 @@ struct GroundColumn {
   int boundary = -1;  // of the model
   int first_node = 0, first_element = 0, elements = 0;
   ColumnBase base;
+  double top_impedance[2] = {0, 0};  // of dashpots on its top, along x and y [Pa s/m]; 0: free
 };
 
 struct FreeField {

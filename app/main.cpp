@@ -19,6 +19,7 @@
 #include "talus/run/base_report.h"
 #include "talus/run/problem_file.h"
 #include "talus/run/progress.h"
+#include "talus/run/resolution.h"
 #include "talus/talus.h"
 
 namespace {
@@ -54,7 +55,7 @@ int check(const ModelArguments& args) {
   fmt::print("  blocks     {}; {} glued faces, {} contact points at the start, {} supported points{}\n",
              p.blocks, p.bond_faces, p.contacts, p.supported,
              p.boundary > 0 ? fmt::format(", {} points at boundaries", p.boundary) : "");
-  fmt::print("{}", talus::base_report(run.scene));
+  fmt::print("{}{}", talus::base_report(run.scene), talus::resolution_report(run.scene));
   for (size_t i = 0; i < run.plans.size(); ++i) {
     const talus::StagePlan& plan = run.plans[i];
     const talus::StageInput& stage = run.scene.model.stages[i];
@@ -108,7 +109,7 @@ int run(const ModelArguments& args, const RunArguments& how) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   progress.stop_when(&stop_requested);
-  fmt::print(out, "{}", talus::base_report(prepared.scene));
+  fmt::print(out, "{}{}", talus::base_report(prepared.scene), talus::resolution_report(prepared.scene));
   const talus::RunResult result = talus::run_stages(
       prepared.scene, prepared.plans, state, progress,
       talus::Workers(threads > 0 ? threads : talus::threads_for(prepared.scene.blocks.count)));

@@ -21,7 +21,7 @@ ALLOWED = {
     "solve": "base model blocks rows",
     "step": "base geometry model cut blocks rows contact supports solve",
     "output": "base geometry model cut blocks",
-    "run": "base geometry model cut blocks rows contact supports solve step output",
+    "run": "base geometry record model cut blocks rows contact supports solve step output",
     "plot": "base geometry record model cut output",
 }
 

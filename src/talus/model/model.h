@@ -48,6 +48,7 @@ struct History {
   std::vector<double> time;      // [s] strictly rising
   std::vector<double> value;     // SI
   std::vector<double> integral;  // of value, from time[0] to time[i]
+  Where where;
 
   double value_at(double t) const;
   /// Exact integral of the curve from 0 to t.

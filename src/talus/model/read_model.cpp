@@ -185,7 +185,7 @@ class ModelReader : private SectionReader {
   void read_histories() {
     for_named("history", [this](const std::string& name, const Fields& f) {
       History h;
-      h.name = name;
+      h.name = name, h.where = f.where();
       const bool table = f.given("time") || f.given("value"), formula = f.given("expression");
       const bool file = f.given("file");
       for (const char* key : {"duration", "samples"})

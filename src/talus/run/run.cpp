@@ -9,6 +9,7 @@
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/model/read_model.h"
+#include "talus/run/resolution.h"
 
 namespace talus {
 
@@ -204,6 +205,7 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
   run.scene = build_scene(std::move(model), std::move(layout), findings);
   findings.throw_if_errors();
   run.plans = plan_stages(run.scene, findings);
+  check_resolution(run.scene, findings);
   findings.throw_if_errors();
   return run;
 }

@@ -47,6 +47,11 @@ struct BlockSet {
     return kind[static_cast<size_t>(i)] == BlockKind::kDeformable ||
            kind[static_cast<size_t>(i)] == BlockKind::kRigid;
   }
+  bool removed(int i) const { return kind[static_cast<size_t>(i)] == BlockKind::kRemoved; }
+  /// Whether forces between two blocks can move one of them.
+  bool interact(int i, int j) const {
+    return (moves_freely(i) || moves_freely(j)) && !removed(i) && !removed(j);
+  }
   int vertex_count(int i) const {
     return vertex_begin[static_cast<size_t>(i) + 1] - vertex_begin[static_cast<size_t>(i)];
   }

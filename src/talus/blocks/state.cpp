@@ -31,6 +31,7 @@ State initial_state(const BlockSet& blocks, const Layout& layout) {
   s.angle.resize(n);
   s.rate.resize(n);
   s.contact_force.resize(n);
+  s.initial_stress.resize(n);
   for (size_t i = 0; i < n; ++i) {
     if (!blocks.moves_freely(static_cast<int>(i))) continue;
     s.rate[i] = {layout.blocks[i].velocity, spin_matrix(layout.blocks[i].spin)};
@@ -38,17 +39,28 @@ State initial_state(const BlockSet& blocks, const Layout& layout) {
   return s;
 }
 
-ElasticState elastic_state(const PlaneModuli& k, const Mat2& H) {
+ElasticState elastic_state(const PlaneModuli& k, const Mat2& H, const Mat2& T0) {
   const Polar p = polar_strain(H);
-  const double txx = k.c11 * p.exx + k.c12 * p.eyy, tyy = k.c12 * p.exx + k.c11 * p.eyy,
-               txy = 2 * k.c33 * p.exy;
+  const double exx = k.c11 * p.exx + k.c12 * p.eyy, eyy = k.c12 * p.exx + k.c11 * p.eyy,
+               exy = 2 * k.c33 * p.exy;
+  // C : (U - I) is coaxial with U, T0 need not be: without the skew part q J / tr U the stress would be no
+  // derivative of an energy and P F^T no symmetric one, a torque out of nothing
+  const double skew =
+      (T0.xy * (p.exx - p.eyy) - (T0.xx - T0.yy) * p.exy) / (2 + p.exx + p.eyy);
+  const double txx = T0.xx + exx, tyy = T0.yy + eyy, txy = T0.xy + exy + skew, tyx = T0.xy + exy - skew;
   ElasticState e;
-  // R T; T is coaxial with U for an isotropic law, so this is the derivative of the energy and P F^T is
-  // symmetric: no torque comes from the stress
-  e.stress = {p.c * txx - p.s * txy, p.c * txy - p.s * tyy, p.s * txx + p.c * txy, p.s * txy + p.c * tyy};
-  e.density = 0.5 * (p.exx * txx + p.eyy * tyy) + p.exy * txy;
+  e.stress = {p.c * txx - p.s * tyx, p.c * txy - p.s * tyy, p.s * txx + p.c * tyx, p.s * txy + p.c * tyy};
+  e.density = 0.5 * (p.exx * exx + p.eyy * eyy) + p.exy * exy + T0.xx * p.exx + T0.yy * p.eyy +
+              2 * T0.xy * p.exy;
   e.rotation = {p.c, p.s};
   return e;
+}
+
+Mat2 initial_stress_for(const PlaneModuli& before, const PlaneModuli& now, const Mat2& H, const Mat2& T0) {
+  const Polar p = polar_strain(H);
+  const double c11 = before.c11 - now.c11, c12 = before.c12 - now.c12,
+               xy = T0.xy + 2 * (before.c33 - now.c33) * p.exy;
+  return {T0.xx + c11 * p.exx + c12 * p.eyy, xy, xy, T0.yy + c12 * p.exx + c11 * p.eyy};
 }
 
 Mat2 piola_stress(const PlaneModuli& k, const Mat2& H) { return elastic_state(k, H).stress; }
@@ -59,7 +71,8 @@ Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return {};
   const Mat2 F = kIdentity + state.strain_part[k];
-  return (1 / det(F)) * (piola_stress(blocks.moduli[k], state.strain_part[k]) * transpose(F));
+  return (1 / det(F)) *
+         (elastic_state(blocks.moduli[k], state.strain_part[k], state.initial_stress[k]).stress * transpose(F));
 }
 
 Mat2 rotation_minus_identity(double angle) {

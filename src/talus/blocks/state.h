@@ -67,6 +67,7 @@ struct ContactPair {
   int a = -1, b = -1;        // a < b
   int begin = 0, count = 0;  // contact points, in State::contacts
   int face = -1;             // first of their faces in the bond set, -1: none
+  bool from_start = false;   // near each other since the first step: joints between them carry in-situ stress
   double reuse = -1;         // [m]; < 0: not sought yet
   Vec2 arm;                  // reference arm, on the larger block, of the centroid of the smaller one then
   Mat2 turn;                 // F of the larger block, inverted, times F of the smaller one then
@@ -129,6 +130,13 @@ struct State {
   std::vector<ContactPair> pairs;  // sorted by (a, b)
   std::vector<Contact> contacts;   // pair by pair
 
+  std::vector<Mat2> initial_stress;  // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7)
+  std::vector<BlockForce> kept_force;      // [count] of excavated blocks on the others; empty: none
+  double relaxed = 1;                      // share of it that is gone
+  std::vector<Vec2> support_hold;          // [n_supported_points] displacement at which a support began [m]
+  std::vector<Vec2> displacement_start;    // [count] from which displacements are counted; empty: 0 [m]
+  std::vector<Mat2> strain_part_start;     // [count] the same of F - I
+
   WorkDone work;               // through the middle of the step before
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
   double largest_kinetic = 0;  // since the start of the stage [J]
@@ -147,6 +155,12 @@ inline Vec2 displacement_at(const State& s, size_t i, Vec2 X) {
   return s.displacement[i] + s.strain_part[i] * X;
 }
 
+/// The same since displacements were last reset, for results.
+inline Vec2 displacement_shown(const State& s, size_t i, Vec2 X) {
+  const Vec2 u = displacement_at(s, i, X);
+  return s.displacement_start.empty() ? u : u - (s.displacement_start[i] + s.strain_part_start[i] * X);
+}
+
 /// The arm on which G acts: X of a deformable block, the turned arm of any other.
 inline Vec2 acting_arm(const BlockSet& b, const State& s, size_t i, Vec2 X) {
   return b.kind[i] == BlockKind::kDeformable ? X : X + s.strain_part[i] * X;
@@ -162,8 +176,12 @@ struct ElasticState {
   Vec2 rotation;       // (cos, sin) of the rotation of F
 };
 
-/// @param H  F - I
-ElasticState elastic_state(const PlaneModuli& c, const Mat2& H);
+/// @param H   F - I
+/// @param T0  stress at H = 0, symmetric [Pa]; density counts from there
+ElasticState elastic_state(const PlaneModuli& c, const Mat2& H, const Mat2& T0 = {});
+
+/// T0 for other moduli such that the stress at H stays as it is.
+Mat2 initial_stress_for(const PlaneModuli& before, const PlaneModuli& now, const Mat2& H, const Mat2& T0);
 
 /// First Piola-Kirchhoff stress P of a deformable block: linear elastic in the rotated frame (theory 1.5)
 /// [Pa].

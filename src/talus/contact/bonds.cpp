@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/blocks/in_situ.h"
+
 namespace talus {
 
 namespace {
@@ -100,6 +102,16 @@ double transit_time(const Model& model, const BlockSet& blocks, int i) {
   return blocks.size[k] / std::sqrt(blocks.moduli[k].c11 / density);
 }
 
+void close_face(const Model& model, const BlockSet& blocks, BondFace& face) {
+  const Vec2 along = face.arm_b[1] - face.arm_b[0];
+  for (int end = 0; end < 2; ++end) {
+    const double height = blocks.centroid[static_cast<size_t>(face.block_b)].y + face.arm_b[end].y;
+    face.closure[end] = in_situ_closure(model.joints[static_cast<size_t>(face.joint)],
+                                        in_situ_stress(model.in_situ, model.gravity, height),
+                                        turn_right(along) / norm(along));
+  }
+}
+
 }  // namespace
 
 BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks) {
@@ -124,6 +136,7 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
     for (BondFace& face : faces) {
       face.joint = layout.joint_at(a, face.edge_a, b, face.edge_b);
       face.unbreakable = face.joint >= 0 && model.joints[static_cast<size_t>(face.joint)].bonded;
+      if (model.in_situ.given && face.joint >= 0 && !face.unbreakable) close_face(model, blocks, face);
       face.memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
       all_bonded = all_bonded && face.unbreakable;
       if (has_strength(model.joints, face.joint)) bonds.faces.push_back(face);
@@ -151,7 +164,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
                    RowSet& rows, std::vector<int>& owner) {
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
-    if (state.face[f].broken) continue;
+    if (state.face[f].broken || !blocks.interact(face.block_a, face.block_b)) continue;
     const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
     const int nb = blocks.vertex_count(face.block_b);
     const Vec2 edge =
@@ -166,8 +179,8 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       p.normal = normal;
       const Vec2 apart =
           displacement_at(state, a, face.arm_a[end]) - displacement_at(state, b, face.arm_b[end]);
-      p.row[0].bias = dot(normal, apart) / timing.dt;
-      p.row[1].bias = dot(turn_right(normal), apart) / timing.dt;
+      p.row[0].bias = (dot(normal, apart) + face.closure[end].x) / timing.dt;
+      p.row[1].bias = (dot(turn_right(normal), apart) + face.closure[end].y) / timing.dt;
       if (!face.unbreakable) {
         const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;

@@ -16,6 +16,7 @@ struct BondFace {
   int edge_a = -1;
   int edge_b = -1;          // its outward normal is the normal of the face
   Vec2 arm_a[2], arm_b[2];  // reference arms of the two ends, on a and on b
+  Vec2 closure[2];          // at the two ends, by the stress of the ground: normal, tangential [m]
   double length = 0;        // [m]
   int joint = -1;
   bool unbreakable = false;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/blocks/in_situ.h"
+
 namespace talus {
 
 namespace {
@@ -53,7 +55,14 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     const int next = c.key.edge + 1 == blocks.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
     const Vec2 b0 = blocks.corner(c.key.block_b, c.key.edge), edge = blocks.corner(c.key.block_b, next) - b0;
     const double slip = -over.along * norm(edge);
-    place[i] = {over.gap, slip};
+    Vec2 closure;
+    if (pair.from_start && model.in_situ.given && joint != plain) {
+      const double height = blocks.centroid[b].y + b0.y + std::clamp(over.along, 0.0, 1.0) * edge.y;
+      closure = in_situ_closure(property, in_situ_stress(model.in_situ, model.gravity, height),
+                                turn_right(edge) / norm(edge));
+    }
+    // only what was never disturbed sticks with the stress of the ground
+    place[i] = {over.gap, slip, state.step == 0 ? closure.y : 0};
 
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
@@ -64,10 +73,12 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     p.lower = 0, p.cohesion = 0;
     const bool soft = property.normal_stiffness > 0;
     const double size = std::min(blocks.size[a], blocks.size[b]), slop = model.contact.slop * size;
-    p.row[0].bias = soft ? over.gap / timing.dt : hard_bias(over.gap, slop, timing.dt);
+    p.row[0].bias = soft ? (over.gap + closure.x) / timing.dt : hard_bias(over.gap, slop, timing.dt);
 
     Impulse guess{};
-    if (c.memory != Contact::kNone) {
+    if (c.memory == Contact::kNone) {
+      p.row[1].bias = place[i].off / timing.dt;
+    } else {
       guess = {c.force[0] * timing.dt_kick, c.force[1] * timing.dt_kick};
       // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
       const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
@@ -112,7 +123,7 @@ void remember_contacts(const RowSet& rows, size_t first, const std::vector<Conta
       if (slides(p, impulse))
         c.anchor = std::nan("");
       else if (!anchored)
-        c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
+        c.anchor = place[i].slip - (c.memory == Contact::kNone ? place[i].off : c.stretch);
       c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
       c.stretch = -elastic * factor;
       c.memory = Contact::kWhole;

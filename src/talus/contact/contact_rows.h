@@ -12,6 +12,7 @@ namespace talus {
 struct ContactPlace {
   double gap = 0;   // [m] > 0 apart
   double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge
+  double off = 0;   // [m] elastic slip of a new contact, by the stress of the ground
 };
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has

@@ -300,7 +300,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, co
   contacts.reserve(state.contacts.size() + state.contacts.size() / 32);
   auto known = before.begin();
   for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin + list.skin)) {
-    if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
+    if (!blocks.interact(a, b)) continue;
     if (std::binary_search(bonds.tied.begin(), bonds.tied.end(), std::pair(a, b))) continue;
     while (known != before.end() && std::pair(known->a, known->b) < std::pair(a, b)) ++known;
     ContactPair pair;
@@ -310,6 +310,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, co
       if (!same_margin) pair.reuse = -1;
     } else {
       pair.a = a, pair.b = b;
+      pair.from_start = state.step == 0;
       pair.face = first_face(bonds, a, b);
     }
     const auto from = state.contacts.begin() + pair.begin;
@@ -333,7 +334,7 @@ std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& b
   std::vector<ContactPoint> contacts;
   ContactSearch search;
   for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin)) {
-    if ((!blocks.moves_freely(a) && !blocks.moves_freely(b)) || is_tied(bonds, state, a, b)) continue;
+    if (!blocks.interact(a, b) || is_tied(bonds, state, a, b)) continue;
     double clearance = 0;
     const auto& found = search.touch(blocks, state, a, b, margin, look_ahead, clearance);
     contacts.insert(contacts.end(), found.begin(), found.end());

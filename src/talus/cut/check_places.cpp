@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -24,14 +25,16 @@ void check_contradictions(const Model& model, const Layout& layout, Findings& fi
     return both && (p.kind != q.kind || p.history != q.history);
   };
   for (const auto& [corner, list] : holders) {
-    for (size_t i = 1; i < list.size(); ++i) {
-      const SupportInput &first = *list[0], &other = *list[i];
-      if (!differ(first.x, other.x) && !differ(first.y, other.y)) continue;
-      findings.error(other.where, "support." + other.name,
-                     fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
-                                 layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
-                     "make one of them \"free\" along that axis, or shorten it");
-      return;
+    for (size_t i = 0; i < list.size(); ++i) {
+      for (size_t j = i + 1; j < list.size(); ++j) {
+        const SupportInput &first = *list[i], &other = *list[j];
+        if ((!differ(first.x, other.x) && !differ(first.y, other.y)) || !first.meets(other)) continue;
+        findings.error(other.where, "support." + other.name,
+                       fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
+                                   layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
+                       "make one of them \"free\" along that axis, shorten it, or let them act in different stages");
+        return;
+      }
     }
   }
 }
@@ -149,6 +152,56 @@ void check_load(const Layout& layout, const LoadInput& l, Findings& findings) {
                      fmt::format("\"{}\" is fixed or driven: the load has no effect", l.block));
 }
 
+// Every block is excavated once, and what changes is there and not excavated.
+void check_stages(const Model& model, const Layout& layout, Findings& findings) {
+  std::map<int, const StageInput*> gone;
+  for (size_t k = 0; k < model.stages.size(); ++k) {
+    const StageInput& stage = model.stages[k];
+    for (const std::string& name : stage.excavate) {
+      const std::vector<int> called = layout.blocks_called(name);
+      const std::string path = "stage." + stage.name + ".excavate";
+      if (called.empty()) unknown_block(layout, name, stage.where_excavate, path, findings);
+      for (const int i : called) {
+        const auto [it, fresh] = gone.insert({i, &stage});
+        if (fresh) continue;
+        findings.error(stage.where_excavate, path,
+                       fmt::format("takes out \"{}\" of \"{}\", which stage \"{}\" has taken out already",
+                                   layout.blocks[static_cast<size_t>(i)].name, name, it->second->name),
+                       "name every group and block once");
+        break;
+      }
+    }
+    for (const ChangeInput& c : model.changes) {
+      if (c.stage != static_cast<int>(k) || c.block.empty()) continue;
+      const std::vector<int> called = layout.blocks_called(c.block);
+      if (called.empty()) unknown_block(layout, c.block, c.where, "change.block", findings);
+      for (const int i : called) {
+        const BlockKind kind = layout.blocks[static_cast<size_t>(i)].kind;
+        const std::string block = layout.blocks[static_cast<size_t>(i)].name;
+        if (gone.count(i))
+          findings.error(c.where, "change.block", fmt::format("\"{}\" is excavated by then", block),
+                         "leave it out of the change");
+        else if (c.kind != ChangeInput::kSame && (kind == BlockKind::kFixed || kind == BlockKind::kDriven))
+          findings.error(c.where, "change.kind",
+                         fmt::format("\"{}\" is fixed or driven from the start", block),
+                         "start with a deformable or rigid block and fix it in the first stage");
+        else if (c.material >= 0 && kind == BlockKind::kDeformable &&
+                 std::isnan(model.materials[static_cast<size_t>(c.material)].young +
+                            model.materials[static_cast<size_t>(c.material)].poisson))
+          findings.error(c.where, "change.material",
+                         fmt::format("\"{}\" deforms, and material \"{}\" has no young or poisson", block,
+                                     model.materials[static_cast<size_t>(c.material)].name),
+                         "give both in its section");
+        else
+          continue;
+        break;
+      }
+    }
+  }
+  if (gone.size() == layout.blocks.size() && !gone.empty())
+    findings.error(model.stages.back().where, "stage.excavate", "no block is left");
+}
+
 }  // namespace
 
 void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
@@ -170,6 +223,7 @@ void check_places(const Model& model, const Layout& layout, Findings& findings) 
   for (const LoadInput& l : model.loads) check_load(layout, l, findings);
   check_monitors(model, layout, findings);
   check_contradictions(model, layout, findings);
+  check_stages(model, layout, findings);
   for (const SupportInput& s : model.supports)
     check_corners(layout, s, s.where, "support." + s.name, findings);
   for (const BoundaryInput& b : model.boundaries) {

@@ -12,7 +12,7 @@
 
 namespace talus {
 
-enum class BlockKind { kDeformable, kRigid, kFixed, kDriven };
+enum class BlockKind { kDeformable, kRigid, kFixed, kDriven, kRemoved };  // kRemoved: excavated
 
 /// A quantity drawn anew for each joint: its mean and how it scatters.
 struct Scattered {

@@ -1,10 +1,12 @@
 #pragma once
 // What the user asked for: plain data in SI units, names resolved to indices. Nothing here moves.
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "talus/base/vec2.h"
 #include "talus/geometry/polygon.h"
 #include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
@@ -106,7 +108,21 @@ struct Selection {
   Where where_block;
 };
 
-struct SupportInput : Selection {
+/// In which stages something acts.
+struct Staged {
+  std::vector<int> stages;  // of the model; empty: all
+
+  bool acts_in(int stage) const {
+    return stages.empty() || std::find(stages.begin(), stages.end(), stage) != stages.end();
+  }
+  /// Whether there is a stage in which both act.
+  bool meets(const Staged& o) const {
+    return stages.empty() || o.stages.empty() ||
+           std::any_of(stages.begin(), stages.end(), [&o](int s) { return o.acts_in(s); });
+  }
+};
+
+struct SupportInput : Selection, Staged {
   std::string name;
   Motion x, y;
   Where where;
@@ -118,7 +134,7 @@ enum class BoundaryKind { kViscous, kFreeField, kTied };
 enum class StaticHold { kFixed, kRoller, kFree };
 
 /// An edge that lets waves out, and in: dashpots, a column of free field, or ties to the opposite side.
-struct BoundaryInput : Selection {
+struct BoundaryInput : Selection, Staged {
   std::string name;
   BoundaryKind kind = BoundaryKind::kViscous;
   int material = -1;                   // of the medium behind the edge, -1: that of each block
@@ -131,7 +147,7 @@ struct BoundaryInput : Selection {
 
 /// What pushes blocks: an acceleration added to gravity (shaking in the frame of the base), a pressure or
 /// traction on block edges, a force at a point.
-struct LoadInput : Selection {
+struct LoadInput : Selection, Staged {
   std::string name;
   bool has_place = false;                               // point, edge or along is given
   int history_x = -1, history_y = -1;                   // acceleration [m/s2], -1 = none
@@ -170,7 +186,44 @@ struct StageInput {
   double damping_stiffness = 0;  // [s]
   double damping_local = 0;      // [-]
   double unbalanced = 1e-5;
-  Where where, where_step, where_clamp;
+  std::vector<std::string> excavate;  // names of groups and blocks taken out at the start
+  // time since the start [s] and share of the tractions of excavated rock that is gone by then; not falling
+  std::vector<Vec2> relaxation;
+  bool reset_displacements = false;
+  Where where, where_step, where_clamp, where_excavate, where_relaxation;
+
+  /// Share of the tractions of excavated rock that is gone `t` after the start; `before` without a
+  /// relaxation.
+  double relaxed_at(double t, double before) const;
+};
+
+/// What changes at the start of a stage: values of a joint or material, or material and kind of blocks.
+/// NaN: stays as it was.
+struct ChangeInput {
+  int stage = -1, joint = -1, material = -1;
+  std::string block;  // group or block; "": a joint or material changes
+  enum Kind { kSame, kFixed, kFree } kind = kSame;
+  double friction_angle = std::numeric_limits<double>::quiet_NaN();    // [rad]
+  double cohesion = std::numeric_limits<double>::quiet_NaN();          // [Pa]
+  double tensile_strength = std::numeric_limits<double>::quiet_NaN();  // [Pa]
+  double density = std::numeric_limits<double>::quiet_NaN();           // [kg/m3]
+  double young = std::numeric_limits<double>::quiet_NaN();             // [Pa]
+  double poisson = std::numeric_limits<double>::quiet_NaN();           // [-]
+  Where where;
+};
+
+/// Stress of the ground at the start; pressures > 0 push.
+struct InSituInput {
+  bool given = false;
+  bool with_depth = false;                           // else the same everywhere
+  double level = 0;                                  // [m] y at which depth begins
+  double pressure = 0;                               // vertical, there [Pa]
+  double density = 0;                                // of the ground between there and a point [kg/m3]
+  double k0 = std::numeric_limits<double>::quiet_NaN();  // horizontal / vertical; NaN: the two below
+  double horizontal_pressure = 0;                    // at the level [Pa]
+  double horizontal_gradient = 0;                    // with depth [Pa/m]
+  Mat2 stress;                                       // everywhere [Pa], tension > 0
+  Where where, where_level;
 };
 
 enum class MonitorKind { kPoint, kBlock, kSupport, kContact };
@@ -221,6 +274,8 @@ struct Model {
   ContactInput contact;
   SolverInput solver;
   std::vector<StageInput> stages;
+  std::vector<ChangeInput> changes;
+  InSituInput in_situ;
   std::vector<MonitorInput> monitors;
   OutputInput output;
 };

@@ -73,6 +73,7 @@ class ActionReader : private SectionReader {
     read_block_name(f, s);
     s.x = motion(f, "x", model_.histories);
     s.y = motion(f, "y", model_.histories);
+    s.stages = stages(f, model_.stages);
     if (s.x.kind == Motion::kFree && s.y.kind == Motion::kFree)
       findings_.error(f.where(), f.path(), "is free along x and y: it supports nothing");
     model_.supports.push_back(s);
@@ -86,6 +87,7 @@ class ActionReader : private SectionReader {
     b.name = f.get<std::string>("name");
     b.where = f.where();
     b.where_material = f.where("material");
+    b.stages = stages(f, model_.stages);
     const auto kind = f.get<std::string>("kind");
     b.kind = kind == "free_field" ? BoundaryKind::kFreeField
              : kind == "tied"     ? BoundaryKind::kTied
@@ -165,7 +167,7 @@ class ActionReader : private SectionReader {
     read_line_name(f, "to", b.opposite);
     read_segment(f, "to_edge", b.opposite);
     b.opposite.block = b.block, b.opposite.where_block = b.where_block;
-    refuse_keys(f, {"material", "static"}, "has no meaning for tied sides, which are tied in every stage",
+    refuse_keys(f, {"material", "static", "stages"}, "has no meaning for tied sides, which are tied in every stage",
                 "leave it out");
     if (!b.along.empty() && b.along == b.opposite.along)
       error(f, "to", "names the side itself", "name the side at the other end of the model");
@@ -180,6 +182,7 @@ class ActionReader : private SectionReader {
     l.where = f.given("block") ? f.where("block") : f.where();
     l.history_x = history(f, "acceleration_x"), l.history_y = history(f, "acceleration_y");
     l.pressure = history(f, "pressure");
+    l.stages = stages(f, model_.stages);
     l.traction_x = history(f, "traction_x"), l.traction_y = history(f, "traction_y");
     l.force_x = history(f, "force_x"), l.force_y = history(f, "force_y");
     read_block_name(f, l);

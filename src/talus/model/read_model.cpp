@@ -12,6 +12,7 @@
 #include "talus/model/read_action.h"
 #include "talus/model/read_cut.h"
 #include "talus/model/read_history_file.h"
+#include "talus/model/read_stages.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {
@@ -36,9 +37,9 @@ class ModelReader : private SectionReader {
     read_grids();
     read_cut_sections(source_, block_names_, model_, findings_);
     read_contact();
+    read_stage_sections(source_, model_, findings_);
     read_action_sections(source_, model_, findings_);
     read_solver();
-    read_stages();
     read_monitors();
     read_output();
     for (const BlockInput& b : model_.blocks)
@@ -351,51 +352,6 @@ class ModelReader : private SectionReader {
     model_.solver.tolerance = f.get("tolerance", 1e-8);
     model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
     model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";
-  }
-
-  void read_stages() {
-    std::set<std::string> used;
-    for_list("stage", [this, &used](const Fields& f) {
-      claim_name(f, used, "stage");
-      StageInput s;
-      s.name = f.get<std::string>("name");
-      s.kind = f.get<std::string>("kind") == "static" ? StageKind::kStatic : StageKind::kDynamic;
-      s.duration = f.get("duration", 1.0);
-      s.time_step = f.get("time_step", s.time_step);
-      s.safety = f.get("safety", s.safety);
-      s.moment_clamp = f.get("moment_clamp", false);
-      s.implicit = f.get<std::string>("elasticity") == "implicit";
-      s.damping_mass = f.get("damping_mass", 0.0);
-      s.damping_stiffness = f.get("damping_stiffness", 0.0);
-      s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);
-      s.unbalanced = f.get("unbalanced", s.unbalanced);
-      s.where = f.where();
-      s.where_step = f.where("time_step");
-      if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
-        findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
-      s.where_clamp = f.where("moment_clamp");
-      if (s.moment_clamp && s.implicit)
-        findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
-                        "has nothing to do where elasticity = \"implicit\": no block limits the step",
-                        "leave one of the two out");
-      else if (s.moment_clamp && !model_.masonry.empty())
-        findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
-                        "changes how blocks rock, and this model has masonry",
-                        "use elasticity = \"implicit\", or leave time_step to \"auto\"");
-      else if (s.moment_clamp && std::isnan(s.time_step))
-        findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"), "needs a time_step to clamp for",
-                        "give time_step = \"... s\"");
-      if (s.implicit && f.given("safety"))
-        findings_.error(f.where("safety"), f.path_of("safety"),
-                        "is a share of the stable limit, which elasticity = \"implicit\" does not have",
-                        "leave it out");
-      if (!std::isnan(s.time_step) && f.given("safety"))
-        findings_.error(f.where("safety"), f.path_of("safety"),
-                        "belongs to time_step = \"auto\"; the stage gives its own time_step");
-      if (!std::isnan(s.time_step) && s.time_step > s.duration)
-        findings_.error(f.where("time_step"), f.path_of("time_step"), "is longer than the stage");
-      model_.stages.push_back(s);
-    });
   }
 
   void read_monitors() {

@@ -20,6 +20,8 @@ std::string_view kind_of(const toml::node& node) {
   return "a date or time";
 }
 
+constexpr Range kAnyTime{.min = 0};
+
 // Reads the values of one key; every method returns nullopt after having told why.
 class ValueReader {
  public:
@@ -58,6 +60,8 @@ class ValueReader {
         return names(node);
       case KeyType::kTexts:
         return texts(node);
+      case KeyType::kCurve:
+        return curve(node);
       case KeyType::kScattered:
         return wrap(scattered(node));
       case KeyType::kMotion:
@@ -183,6 +187,23 @@ class ValueReader {
       const auto v = entry.value_exact<std::string>();
       if (!v) return wrong(entry, "text in quotes");
       list.push_back(*v);
+    }
+    return Value(list);
+  }
+
+  std::optional<Value> curve(const toml::node& node) const {
+    const toml::array* a = node.as_array();
+    if (!a) return wrong(node, "a list of [time, number], for example [[\"0 s\", 0], [\"0.1 s\", 1]]");
+    KeySpec time_spec = spec_;
+    time_spec.dimension = Dimension::kTime, time_spec.range = kAnyTime;
+    const ValueReader times(time_spec, path_, where_, findings_);
+    std::vector<Vec2> list;
+    for (const toml::node& entry : *a) {
+      const toml::array* pair = entry.as_array();
+      if (!pair || pair->size() != 2) return wrong(entry, "[time, number]");
+      const auto t = times.quantity(*pair->get(0)), v = quantity(*pair->get(1));
+      if (!t || !v) return {};
+      list.push_back({*t, *v});
     }
     return Value(list);
   }

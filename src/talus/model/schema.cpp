@@ -41,6 +41,8 @@ std::string_view type_text(const KeySpec& k) {
       return "list of numbers";
     case K::kTexts:
       return "list of texts";
+    case K::kCurve:
+      return "list of [time, number]";
     case K::kScattered:
       return "quantity or scatter";
     case K::kMotion:
@@ -126,6 +128,8 @@ std::string json_type(const KeySpec& k) {
       return array(R"("type": "number")", R"(, "minItems": 2)");
     case K::kTexts:
       return array(R"("type": "string")", "");
+    case K::kCurve:
+      return array(array(quantity, two), R"(, "minItems": 1)");
     case K::kScattered: {
       const auto table = [&](const std::string& one, const std::string& two_keys) {
         return fmt::format(

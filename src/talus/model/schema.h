@@ -25,6 +25,7 @@ enum class KeyType {
   kPoints,     // list of [x, y]
   kNumbers,    // list of plain numbers
   kTexts,      // list of texts, any number
+  kCurve,      // list of [time, number]
   kScattered,  // quantity, { mean, normal }, { mean, uniform } or { exponential }
   kMotion,     // "fixed", "free", { velocity = "history" } or { displacement = "history" }
 };

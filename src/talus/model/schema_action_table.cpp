@@ -74,7 +74,8 @@ std::vector<SectionSpec> action_sections() {
          .default_text = "\"fixed\"",
          .doc =
              "Along x: \"fixed\", \"free\", { velocity = \"HISTORY\" } or { displacement = \"HISTORY\" }."},
-        {.name = "y", .type = K::kMotion, .default_text = "\"fixed\"", .doc = "The same along y."}}}};
+        {.name = "y", .type = K::kMotion, .default_text = "\"fixed\"", .doc = "The same along y."},
+        stages_key()}}};
 }
 
 }  // namespace talus

@@ -66,7 +66,8 @@ SectionSpec boundary_section() {
        {.name = "to_edge",
         .type = K::kPoints,
         .dimension = D::kLength,
-        .doc = "The opposite side of tied sides, as a segment."}}};
+        .doc = "The opposite side of tied sides, as a segment."},
+       stages_key()}};
 }
 
 SectionSpec load_section() {
@@ -106,7 +107,8 @@ SectionSpec load_section() {
        {.name = "block",
         .type = K::kName,
         .refers_to = "block, grid or region",
-        .doc = "Only blocks of this name; none: all."}}};
+        .doc = "Only blocks of this name; none: all."},
+       stages_key()}};
 }
 
 }  // namespace

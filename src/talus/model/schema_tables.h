@@ -17,7 +17,16 @@ std::vector<SectionSpec> block_sections();
 std::vector<SectionSpec> cut_sections();
 std::vector<SectionSpec> action_sections();
 std::vector<SectionSpec> boundary_sections();
+std::vector<SectionSpec> stage_sections();
 std::vector<SectionSpec> run_sections();
+
+/// The key `stages` of what acts in some stages only.
+inline KeySpec stages_key() {
+  return {.name = "stages",
+          .type = K::kTexts,
+          .refers_to = "stage",
+          .doc = "Names of the stages in which it acts; none: all."};
+}
 
 /// What a block can be, in the order of BlockKind.
 inline const std::vector<std::string>& block_kinds() {

@@ -100,6 +100,20 @@ class SectionReader {
     return i;
   }
 
+  /// Indices of the stages that `stages` names. @pre  `list`, the stages of the model, is read
+  template <class List>
+  std::vector<int> stages(const Fields& f, const List& list) {
+    std::vector<int> found;
+    for (const std::string& name : f.get<std::vector<std::string>>("stages")) {
+      const int i = refer_name(name, f.where("stages"), f.path_of("stages"), list, "stage");
+      if (i >= 0) found.push_back(i);
+    }
+    if (f.has("stages") && f.get<std::vector<std::string>>("stages").empty())
+      findings_.error(f.where("stages"), f.path_of("stages"), "is empty: it would never act",
+                      "name stages, or leave it out for all");
+    return found;
+  }
+
   void claim_name(const Fields& f, std::set<std::string>& used, const std::string& what) {
     if (!f.has("name")) return;
     const std::string name = f.get<std::string>("name");

@@ -21,6 +21,8 @@ const char* fill_of(BlockKind kind) {
       return "#8c8c8c";
     case BlockKind::kDriven:
       return "#b8b0c8";
+    case BlockKind::kRemoved:
+      return "none";
   }
   return "none";
 }
@@ -71,6 +73,10 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
   out += "<g stroke=\"#333333\" stroke-width=\"0.7\" stroke-linejoin=\"round\">\n";
   size_t at = 0;
   for (int i = 0; i < blocks.count; ++i) {
+    if (blocks.removed(i)) {
+      at += static_cast<size_t>(blocks.vertex_count(i));
+      continue;
+    }
     out += fmt::format("<polygon fill=\"{}\" points=\"", fill_of(blocks.kind[static_cast<size_t>(i)]));
     for (int v = 0; v < blocks.vertex_count(i); ++v, ++at)
       out += fmt::format("{:.2f},{:.2f} ", kMargin + scale * (corner[at].x - box.min.x),

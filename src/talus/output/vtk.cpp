@@ -70,11 +70,12 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
   std::vector<uint8_t> types;
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
+    if (blocks.removed(i)) continue;
     for (int v = 0; v < blocks.vertex_count(i); ++v) {
       const Vec2 X = blocks.corner(i, v);
       connectivity.push_back(static_cast<int64_t>(connectivity.size()));
       push3(points, blocks.centroid[k] + offset_now(state, k, X));
-      push3(displacement, displacement_at(state, k, X));
+      push3(displacement, displacement_shown(state, k, X));
       push3(velocity, velocity_at(rate[k], acting_arm(blocks, state, k, X)));
     }
     const Mat2 s = cauchy_stress(blocks, state, i);
@@ -86,7 +87,7 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
   }
   std::string out = file_begin("UnstructuredGrid") + time_field(state.time);
   out +=
-      fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", connectivity.size(), blocks.count);
+      fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", connectivity.size(), id.size());
   out += "<Points>\n" + doubles("Points", 3, points) + "</Points>\n<Cells>\n" +
          integers("connectivity", connectivity) + integers("offsets", offsets) +
          data_array("UInt8", "types", 1, types) + "</Cells>\n";

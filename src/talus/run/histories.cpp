@@ -165,7 +165,7 @@ void Histories::at(const Instant& instant, bool keep) {
       case MonitorKind::kPoint: {
         const auto& [b, arm] = points_[point++];
         const auto k = static_cast<size_t>(b);
-        const Vec2 u = displacement_at(s, k, arm);
+        const Vec2 u = displacement_shown(s, k, arm);
         const Vec2 v = velocity_at(rate_now(instant.work, s, k), acting_arm(scene_.blocks, s, k, arm));
         row.insert(row.end(), {u.x, u.y, v.x, v.y});
         break;

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "talus/contact/pairs.h"
 #include "talus/run/histories.h"
+#include "talus/step/change.h"
 
 namespace talus {
 
@@ -73,10 +75,14 @@ std::string bound_name(const Scene& scene, const StagePlan& plan) {
 
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::vector<StagePlan> plans;
-  const StableStep undamped = stable_step(scene.blocks);
-  StableStep bound = undamped;
-  const std::string block_name = bound.block >= 0 ? scene.blocks.name[static_cast<size_t>(bound.block)] : "";
+  std::optional<Scene> staged;
+  if (blocks_change(scene.model)) staged = scene;
   for (const StageInput& stage : scene.model.stages) {
+    if (staged) change_scene(static_cast<int>(plans.size()), *staged);
+    const BlockSet& blocks = staged ? staged->blocks : scene.blocks;
+    const StableStep undamped = stable_step(blocks);
+    StableStep bound = undamped;
+    const std::string block_name = bound.block >= 0 ? blocks.name[static_cast<size_t>(bound.block)] : "";
     // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
     // theory 4.5
     StagePlan plan;
@@ -92,7 +98,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
         stage.kind == StageKind::kDynamic
             ? stable_step(scene.boundaries.free_field, scene.model.inertia == Inertia::kLumped)
             : ColumnStep{};
-    double wanted = std::min(stage.implicit ? crossing_time(scene.blocks) : stage.safety * bound.dt,
+    double wanted = std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt,
                              stage.safety * column.dt);
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;
@@ -116,14 +122,14 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
       plan.bound_block = -1;
     } else if (plan.dt >= bound.dt && stage.moment_clamp) {
       const double clamp_dt = std::sqrt(plan.dt * (plan.dt + 2 * beta) * (1 + stage.damping_local));
-      if (clamp_dt > median_step(scene.blocks)) {
+      if (clamp_dt > median_step(blocks)) {
         findings.error(stage.where_step, path + ".time_step",
                        fmt::format("{:.4g} s is above the stable limit of a block of median size, {:.4g} s: "
                                    "the moment clamp would change the model, not its slivers",
-                                   plan.dt, median_step(scene.blocks)),
+                                   plan.dt, median_step(blocks)),
                        "use a smaller step");
       }
-      BlockSet clamped = scene.blocks;
+      BlockSet clamped = blocks;
       clamp_moments(clamped, clamp_dt);
       plan.clamp_dt = clamp_dt;
       plan.clamped = clamped.clamped, plan.largest_clamp = clamped.largest_clamp;

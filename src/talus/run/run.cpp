@@ -10,6 +10,7 @@
 #include "talus/base/error.h"
 #include "talus/model/read_model.h"
 #include "talus/run/resolution.h"
+#include "talus/step/change.h"
 
 namespace talus {
 
@@ -46,12 +47,7 @@ class Runner {
     const auto k = static_cast<size_t>(index);
     const StageInput& stage = scene_.model.stages[k];
     const StagePlan& plan = plans_[k];
-    // the moments of clamped blocks change here, and with them the kinetic energy: not a work, so not in the
-    // ledger
-    state_.energy_start -= kinetic_energy(scene_.blocks, state_.rate);
-    scene_.blocks = unclamped_;
-    if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
-    state_.energy_start += kinetic_energy(scene_.blocks, state_.rate);
+    change(index);
     settings_ = {stage.damping_mass,
                  stage.damping_stiffness,
                  stage.damping_local,
@@ -63,6 +59,11 @@ class Runner {
     const auto is_static = [&](size_t i) { return scene_.model.stages[i].kind == StageKind::kStatic; };
     enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
     state_.largest_kinetic = 0;
+    state_.relaxed = stage.relaxed_at(0, state_.relaxed);
+    if (stage.reset_displacements) {
+      state_.displacement_start = state_.displacement;
+      state_.strain_part_start = state_.strain_part;
+    }
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
@@ -80,7 +81,9 @@ class Runner {
       drift(scene_, settings_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_,
             report);
       ++out.steps;
+      state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
+      last_ = report;
       state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.kinetic);
       if (stage.kind == StageKind::kStatic && is_at_rest(stage, report, n)) {
         out.at_rest = true;
@@ -89,13 +92,52 @@ class Runner {
     }
     out.end = state_.time;
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
-      throw NumericalError(
-          fmt::format("static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced "
-                      "force is {:.3g} of the "
-                      "mean, asked for is {:g}. Give a longer duration, or look in steps.csv whether "
-                      "something slides or falls",
-                      stage.name, stage.duration, out.steps, out.unbalanced, stage.unbalanced));
+      throw NumericalError(no_rest(stage, out));
     }
+  }
+
+  // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not
+  // in the ledger: the moments of clamped blocks, what is taken out or gets other moduli.
+  void change(int index) {
+    const std::vector<char> out = excavated_blocks(scene_, index);
+    if (!scene_.model.stages[static_cast<size_t>(index)].excavate.empty()) keep_forces(index, out);
+    const double energy = ledger_energy(scene_, state_);
+    const BlockSet before = std::move(scene_.blocks);
+    const std::vector<SupportedPoint> supported = scene_.supported;
+    scene_.blocks = unclamped_;
+    change_scene(index, scene_);
+    unclamped_ = scene_.blocks;
+    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
+    adapt_state(before, supported, scene_, state_);
+    state_.energy_start += ledger_energy(scene_, state_) - energy;
+    if (before.kind != scene_.blocks.kind) work_.gauss_seidel = GaussSeidel();  // laid out for others
+  }
+
+  // What the blocks to be taken out push on the others now, found on a copy of the state.
+  void keep_forces(int index, const std::vector<char>& out) {
+    state_.kept_force.clear();
+    if (scene_.model.stages[static_cast<size_t>(index)].relaxation.empty()) return;
+    State copy = state_;
+    kick(scene_, settings_, plans_[static_cast<size_t>(index) - 1].dt, work_, copy);
+    state_.kept_force = forces_of_blocks(work_, out);
+  }
+
+  // Why a static stage ended without coming to rest, and where.
+  std::string no_rest(const StageInput& stage, const StageResult& out) const {
+    std::string where;
+    if (last_.worst_block >= 0) {
+      const auto k = static_cast<size_t>(last_.worst_block);
+      const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k], v = state_.rate[k].a;
+      where = fmt::format(
+          " The largest is on block \"{}\" at ({:.4g}, {:.4g}): {:.3g} N; it moves at ({:.3g}, {:.3g}) m/s.",
+          scene_.blocks.name[k], at.x, at.y, last_.worst_force, v.x, v.y);
+    }
+    return fmt::format(
+        "static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced force is "
+        "{:.3g} of the mean, and {:.3g} of the largest velocity is left; asked for is {:g}.{} Give a longer "
+        "duration, or look in steps.csv whether something slides or falls",
+        stage.name, stage.duration, out.steps, out.unbalanced, last_.speed_left, stage.unbalanced, where);
   }
 
   void show(const Instant& instant) {
@@ -111,7 +153,10 @@ class Runner {
 
   // Forces in balance is not enough: a block that swings through its rest position is in balance there.
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    return n >= 1 && report.unbalanced <= stage.unbalanced && report.speed_left <= stage.unbalanced;
+    const bool relaxed =
+        stage.relaxation.empty() ||
+        plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
+    return n >= 1 && relaxed && report.unbalanced <= stage.unbalanced && report.speed_left <= stage.unbalanced;
   }
 
   // The last instant has its forces too, found on a copy so that the state stays between two steps.
@@ -158,7 +203,8 @@ class Runner {
   const std::vector<StagePlan>& plans_;
   State& state_;
   Observer& observer_;
-  const BlockSet unclamped_;
+  BlockSet unclamped_;
+  StepReport last_;
   StepSettings settings_;
   StepWork work_;
   RunResult result_;

@@ -1,5 +1,8 @@
 #include "talus/step/scene.h"
 
+#include <fmt/format.h>
+
+#include "talus/blocks/in_situ.h"
 #include "talus/step/energy.h"
 
 namespace talus {
@@ -13,6 +16,13 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   scene.loads = build_loads(scene.model, scene.layout, scene.blocks);
+  if (const int above = block_above_ground(scene.model, scene.blocks); above >= 0) {
+    const auto k = static_cast<size_t>(above);
+    findings.error(scene.model.in_situ.where_level, "in_situ.level",
+                   fmt::format("{:g} m is below the centroid of \"{}\", which is at {:g} m",
+                               scene.model.in_situ.level, scene.blocks.name[k], scene.blocks.centroid[k].y),
+                   "give the height of the surface, or of the highest deformable block");
+  }
   return scene;
 }
 
@@ -28,6 +38,8 @@ State start_state(const Scene& scene) {
   state.bond_force.resize(2 * scene.bonds.faces.size());
   state.face.resize(scene.bonds.faces.size());
   state.support_force.resize(scene.supported.size());
+  state.support_hold.resize(scene.supported.size());
+  state.initial_stress = initial_stresses(scene.model, scene.blocks);
   const BoundarySet& b = scene.boundaries;
   state.boundary_force.resize(b.points.size());
   state.boundary_static.resize(b.points.size());

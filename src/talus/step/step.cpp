@@ -91,12 +91,14 @@ struct BlockSums {
   double kinetic = 0;              // before the kick, and what weight and elasticity did of it before now
   double jump = 0;                 // of the energy that central differences conserve
   double worst = 0, forces = 0;    // unbalanced force, and force
+  int worst_block = -1;
   int moving = 0;
 
   BlockSums& operator+=(const BlockSums& o) {
     work.before += o.work.before, work.after += o.work.after;
     gravity += o.gravity, strain += o.strain, kinetic += o.kinetic, jump += o.jump;
-    worst = std::max(worst, o.worst), forces += o.forces, moving += o.moving;
+    if (o.worst > worst) worst = o.worst, worst_block = o.worst_block;
+    forces += o.forces, moving += o.moving;
     return *this;
   }
 };
@@ -177,6 +179,8 @@ class Kick {
     load_.resize(acceleration.size());
     for (size_t k = 0; k < load_.size(); ++k) load_[k] = {blocks_.mass[k] * acceleration[k], {}};
     add_edge_and_point_loads(blocks_, scene_.model, scene_.loads, state_, time, load_);
+    for (size_t k = 0; k < state_.kept_force.size(); ++k)
+      load_[k] += (1 - state_.relaxed) * state_.kept_force[k];
 
     boundary_ = {!settings_.histories_run, dt_, work_.dt_kick, time, state_.column_rate};
     if (boundary_.is_static) return;
@@ -196,7 +200,7 @@ class Kick {
     BlockForce& force = forces_[k];
     force = BlockForce{blocks_.mass[k] * scene_.model.gravity, {}} + load_[k];
     if (blocks_.kind[k] == BlockKind::kDeformable) {
-      elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k]);
+      elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k], state_.initial_stress[k]);
       force.Q += (-blocks_.volume[k]) * elastic_[k].stress;
     }
     if (implicit(k))
@@ -416,6 +420,7 @@ class Kick {
           for (size_t i = begin; i < end; ++i) tally_block(i, s);
         });
     work_.work.before += sums.work.before, work_.work.after += sums.work.after;
+    report_.worst_block = sums.worst_block, report_.worst_force = sums.worst;
     report_.unbalanced = sums.forces > 0 ? sums.worst / (sums.forces / sums.moving) : 0;
 
     Energy& e = report_.energy;
@@ -452,7 +457,8 @@ class Kick {
     }
     const BlockForce rows = (1 / kick) * impulse_for(i, v1 - work_.rate_free[i]);
     state_.contact_force[i] = rows;
-    s.worst = std::max(s.worst, force_norm(blocks_, i, force + rows));
+    const double unbalanced = force_norm(blocks_, i, force + rows);
+    if (unbalanced > s.worst) s.worst = unbalanced, s.worst_block = static_cast<int>(i);
     s.forces += 0.5 * (force_norm(blocks_, i, force) + force_norm(blocks_, i, rows));
     ++s.moving;
 
@@ -474,18 +480,18 @@ class Kick {
                                                                      p[1] / work_.dt_kick};
     }
     remember_contacts(work_.rows, work_.first_contact, work_.places, timing(), work_.workers, state_);
-    for (size_t i = 0; i < scene_.supported.size(); ++i) {
-      const Impulse& p = work_.rows.impulse[work_.first_support + i];
-      state_.support_force[i] = {p[0] / work_.dt_kick, -p[1] / work_.dt_kick};
-    }
-    const auto keep = [this](size_t first, std::vector<std::array<double, 2>>& force) {
+    const auto keep = [this](size_t row, const auto& points, double sign,
+                             std::vector<std::array<double, 2>>& force) {
       for (size_t i = 0; i < force.size(); ++i) {
-        const Impulse& p = work_.rows.impulse[first + i];
-        force[i] = {p[0] / work_.dt_kick, p[1] / work_.dt_kick};
+        force[i] = {0, 0};
+        if (!points[i].active) continue;
+        const Impulse& p = work_.rows.impulse[row++];
+        force[i] = {p[0] / work_.dt_kick, sign * p[1] / work_.dt_kick};
       }
     };
-    keep(work_.first_boundary, state_.boundary_force);
-    keep(work_.first_tie, state_.tie_force);
+    keep(work_.first_support, scene_.supported, -1, state_.support_force);
+    keep(work_.first_boundary, scene_.boundaries.points, 1, state_.boundary_force);
+    keep(work_.first_tie, scene_.boundaries.ties, 1, state_.tie_force);
   }
 
   const Scene& scene_;
@@ -529,10 +535,12 @@ std::string row_name(const Scene& scene, const State& state, const StepWork& wor
     return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(index)].name,
                        name(block));
   };
-  if (row >= work.first_tie) return boundary(scene.boundaries.ties[row - work.first_tie].boundary, p.block_a);
+  const BoundarySet& b = scene.boundaries;
+  if (row >= work.first_tie)
+    return boundary(b.ties[nth_active(b.ties, row - work.first_tie)].boundary, p.block_a);
   if (row >= work.first_boundary)
-    return boundary(scene.boundaries.points[row - work.first_boundary].boundary, p.block_a);
-  const SupportedPoint& s = scene.supported[row - work.first_support];
+    return boundary(b.points[nth_active(b.points, row - work.first_boundary)].boundary, p.block_a);
+  const SupportedPoint& s = scene.supported[nth_active(scene.supported, row - work.first_support)];
   return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
                      name(s.block));
 }

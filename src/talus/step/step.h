@@ -44,6 +44,8 @@ struct StepReport {
   bool second_solver = false;  // the other solver was asked
   double drift = 0;            // deepest overlap of hard contacts before the step [m]
   double unbalanced = 0;       // largest unbalanced force of a block / mean force on blocks
+  int worst_block = -1;        // whose unbalanced force is the largest
+  double worst_force = 0;      // that force [N]
   double speed_left = 0;       // static stages: velocity as share of its peak in the stage (set by run/)
   Energy energy;
   int broken_faces = 0;  // in the drift that follows

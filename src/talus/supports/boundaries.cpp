@@ -188,7 +188,7 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
       state.boundary_hold[i] = displacement_at(state, static_cast<size_t>(p.block), p.arm);
       state.boundary_static[i] = {0, 0};
     } else if (was_static) {
-      state.boundary_static[i] = state.boundary_force[i];
+      state.boundary_static[i] = state.boundary_force[i];  // none of a boundary that begins to act
     }
   }
   if (!is_static) return;
@@ -201,6 +201,7 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
                        const std::vector<BlockRate>& before, const BoundaryStep& step, RowSet& rows) {
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& point = set.points[i];
+    if (!point.active) continue;
     const auto block = static_cast<size_t>(point.block);
     PointRows p;
     p.block_a = point.block;

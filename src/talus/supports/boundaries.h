@@ -22,6 +22,7 @@ struct BoundaryPoint {
   int column = -1;                             // of the free field beside it, -1: none
   double height = 0;                           // of the point [m]
   std::vector<std::pair<int, double>> beside;  // elements of the column and the area they push [m2]
+  bool active = true;                          // in this stage; rows are made of active points only
 };
 
 struct BoundarySet {

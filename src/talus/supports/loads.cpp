@@ -26,12 +26,13 @@ void add_points(const LoadInput& load, int index, const Layout& layout, const Bl
     for (const SelectedEdge& e : outer_edges(layout, load).edges)
       if (blocks.moves_freely(e.block))
         points.push_back(
-            {index, e.block, arm(e.block, 0.5 * (e.from + e.to)), e.normal(), e.length() * blocks.thickness});
+            {index, e.block, arm(e.block, 0.5 * (e.from + e.to)), e.normal(), e.length() * blocks.thickness,
+             true});
     return;
   }
   const size_t first = points.size();
   for (const SelectedCorner& c : selected_corners(layout, load))
-    if (blocks.moves_freely(c.block)) points.push_back({index, c.block, arm(c.block, c.point), {}, 0});
+    if (blocks.moves_freely(c.block)) points.push_back({index, c.block, arm(c.block, c.point), {}, 0, true});
   for (size_t i = first; i < points.size(); ++i)
     points[i].area = 1.0 / static_cast<double>(points.size() - first);
 }
@@ -50,6 +51,7 @@ LoadSet build_loads(const Model& model, const Layout& layout, const BlockSet& bl
 std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, int block_count, double time) {
   std::vector<Vec2> acceleration(static_cast<size_t>(block_count));
   for (size_t i = 0; i < model.loads.size(); ++i) {
+    if (!loads.active.empty() && !loads.active[i]) continue;
     const LoadInput& l = model.loads[i];
     const Vec2 a{value_of(model, l.history_x, time), value_of(model, l.history_y, time)};
     for (const int b : loads.blocks[i]) acceleration[static_cast<size_t>(b)] += a;
@@ -60,6 +62,7 @@ std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, in
 void add_edge_and_point_loads(const BlockSet& blocks, const Model& model, const LoadSet& loads,
                               const State& state, double time, std::vector<BlockForce>& force) {
   for (const LoadedPoint& p : loads.points) {
+    if (!p.active) continue;
     const LoadInput& l = model.loads[static_cast<size_t>(p.load)];
     const auto block = static_cast<size_t>(p.block);
     Vec2 f{value_of(model, l.traction_x, time) + value_of(model, l.force_x, time),

@@ -15,11 +15,13 @@ struct LoadedPoint {
   Vec2 arm;         // reference arm [m]
   Vec2 normal;      // of the edge, outward, in the reference shape
   double area = 0;  // of the edge [m2]; of a point: its share of the force [-]
+  bool active = true;  // in this stage
 };
 
 struct LoadSet {
   std::vector<std::vector<int>> blocks;  // of each load of the model that is a body force
   std::vector<LoadedPoint> points;       // of all others, in the order of the model
+  std::vector<char> active;              // [loads] whether a body force acts in this stage; empty: all
 };
 
 /// @pre  the places of the loads have been checked

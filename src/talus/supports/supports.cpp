@@ -11,7 +11,7 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
     for (const SelectedCorner& c : selected_corners(layout, model.supports[s])) {
       if (!blocks.moves_freely(c.block)) continue;
       points.push_back(
-          {static_cast<int>(s), c.block, c.point - blocks.centroid[static_cast<size_t>(c.block)]});
+          {static_cast<int>(s), c.block, c.point - blocks.centroid[static_cast<size_t>(c.block)], true});
     }
   }
   return points;
@@ -20,13 +20,14 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
                       const State& state, double history_end, double dt, double dt_kick, RowSet& rows) {
   for (size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].active) continue;
     const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
     const auto block = static_cast<size_t>(points[i].block);
     PointRows p;
     p.block_a = points[i].block;
     p.arm_a = acting_arm(blocks, state, block, points[i].arm);
     p.normal = {1, 0};
-    const Vec2 now = displacement_at(state, block, points[i].arm);
+    const Vec2 now = displacement_at(state, block, points[i].arm) - state.support_hold[i];
     const auto hold = [&](Row& row, const Motion& motion, double place, double sign) {
       if (motion.kind != Motion::kFree)
         row.bias = sign * (place - motion.displacement_at(history_end, model.histories)) / dt;

@@ -12,13 +12,22 @@ struct SupportedPoint {
   int support = -1;  // index in the model
   int block = -1;
   Vec2 arm;  // reference arm [m]
+  bool active = true;  // in this stage; rows are made of active points only
 };
+
+/// Index of active point number `n`. @pre  there is one
+template <class Points>
+size_t nth_active(const Points& points, size_t n) {
+  size_t i = 0;
+  for (;; ++i)
+    if (points[i].active && n-- == 0) return i;
+}
 
 /// All points of all supports, in the order of the model.
 std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
                                              const BlockSet& blocks);
 
-/// Rows of the supports for a step of length dt: along x, and along -y (the tangent of x).
+/// Rows of the active points for a step of length dt: along x, and along -y (the tangent of x).
 /// @param history_end  clock of the histories at the end of the step [s]
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
                       const State& state, double history_end, double dt, double dt_kick, RowSet& rows);

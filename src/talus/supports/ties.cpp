@@ -115,6 +115,7 @@ void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, con
                   double dt_kick, RowSet& rows) {
   for (size_t i = 0; i < ties.size(); ++i) {
     const TiePoint& t = ties[i];
+    if (!t.active) continue;
     const auto a = static_cast<size_t>(t.block_a), b = static_cast<size_t>(t.block_b);
     PointRows p;
     p.block_a = t.block_a, p.block_b = t.block_b;

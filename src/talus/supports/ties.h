@@ -16,6 +16,7 @@ struct TiePoint {
   int boundary = -1;  // of the model
   int block_a = -1, block_b = -1;
   Vec2 arm_a, arm_b;  // reference arms [m]
+  bool active = true;  // in this stage
 };
 
 /// Ends of all edges of either side with the points of equal height on the other one, each pair once. Sides

@@ -1,0 +1,240 @@
+#include "talus/model/read_stages.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/model/section_reader.h"
+
+namespace talus {
+
+namespace {
+
+class StageReader : private SectionReader {
+ public:
+  StageReader(const TomlSource& source, Model& model, Findings& findings)
+      : SectionReader(source, findings), model_(model) {}
+
+  void read() {
+    read_in_situ();
+    std::set<std::string> used;
+    for_list("stage", [this, &used](const Fields& f) {
+      claim_name(f, used, "stage");
+      read_stage(f);
+    });
+    warn_left();
+    for_list("change", [this](const Fields& f) { read_change(f); });
+  }
+
+ private:
+  void error(const Fields& f, std::string_view key, const std::string& text, const std::string& hint) {
+    findings_.error(f.where(key), f.path_of(key), text, hint);
+  }
+
+  // --- stages ---
+
+  void read_stage(const Fields& f) {
+    StageInput s;
+    s.name = f.get<std::string>("name");
+    s.kind = f.get<std::string>("kind") == "static" ? StageKind::kStatic : StageKind::kDynamic;
+    s.duration = f.get("duration", 1.0);
+    s.time_step = f.get("time_step", s.time_step);
+    s.safety = f.get("safety", s.safety);
+    s.moment_clamp = f.get("moment_clamp", false);
+    s.implicit = f.get<std::string>("elasticity") == "implicit";
+    s.damping_mass = f.get("damping_mass", 0.0);
+    s.damping_stiffness = f.get("damping_stiffness", 0.0);
+    s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);
+    s.unbalanced = f.get("unbalanced", s.unbalanced);
+    s.excavate = f.get<std::vector<std::string>>("excavate");
+    s.relaxation = f.get<std::vector<Vec2>>("relaxation");
+    s.reset_displacements = f.get("reset_displacements", false);
+    s.where = f.where();
+    s.where_step = f.where("time_step");
+    s.where_clamp = f.where("moment_clamp");
+    s.where_excavate = f.where("excavate");
+    s.where_relaxation = f.where("relaxation");
+    if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
+      findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
+    check_step(f, s);
+    check_excavation(f, s);
+    model_.stages.push_back(s);
+  }
+
+  void check_step(const Fields& f, const StageInput& s) {
+    if (s.moment_clamp && s.implicit)
+      findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
+                      "has nothing to do where elasticity = \"implicit\": no block limits the step",
+                      "leave one of the two out");
+    else if (s.moment_clamp && !model_.masonry.empty())
+      findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
+                      "changes how blocks rock, and this model has masonry",
+                      "use elasticity = \"implicit\", or leave time_step to \"auto\"");
+    else if (s.moment_clamp && std::isnan(s.time_step))
+      findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"), "needs a time_step to clamp for",
+                      "give time_step = \"... s\"");
+    if (s.implicit && f.given("safety"))
+      findings_.error(f.where("safety"), f.path_of("safety"),
+                      "is a share of the stable limit, which elasticity = \"implicit\" does not have",
+                      "leave it out");
+    if (!std::isnan(s.time_step) && f.given("safety"))
+      findings_.error(f.where("safety"), f.path_of("safety"),
+                      "belongs to time_step = \"auto\"; the stage gives its own time_step");
+    if (!std::isnan(s.time_step) && s.time_step > s.duration)
+      findings_.error(f.where("time_step"), f.path_of("time_step"), "is longer than the stage");
+  }
+
+  // Shares of earlier excavations go on where they ended; two at a time would need two.
+  void check_excavation(const Fields& f, const StageInput& s) {
+    const bool first = model_.stages.empty();
+    if (f.has("excavate") && s.excavate.empty())
+      error(f, "excavate", "is empty", "name groups or blocks, or leave it out");
+    if (!s.excavate.empty() && pending_)
+      error(f, "excavate",
+            fmt::format("comes while {:g} of the tractions of an earlier excavation still stand", 1 - share_),
+            "let relaxation reach 1 first, at the latest in the stage before");
+    if (f.has("relaxation")) check_relaxation(f, s, first);
+    if (s.excavate.empty() && !f.has("relaxation")) return;
+    if (!s.excavate.empty()) share_ = f.has("relaxation") ? 0 : 1;
+    if (!s.relaxation.empty()) share_ = s.relaxation.back().y;
+    pending_ = share_ < 1;
+  }
+
+  void check_relaxation(const Fields& f, const StageInput& s, bool first) {
+    const auto wrong = [&](const std::string& text, const std::string& hint) {
+      error(f, "relaxation", text, hint);
+    };
+    const std::vector<Vec2>& r = s.relaxation;
+    if (r.empty()) return wrong("is empty", "write [[\"0 s\", 0], [\"0.1 s\", 1]]");
+    if (first)
+      return wrong("has nothing to relax: no stage comes before in which forces come to balance",
+                   "add a static stage before, or leave it out");
+    if (s.excavate.empty() && !pending_)
+      return wrong("has nothing to relax", "name what is taken out in excavate");
+    const double start = s.excavate.empty() ? share_ : 0;
+    if (r.front().x != 0 || std::abs(r.front().y - start) > 1e-12)
+      return wrong(fmt::format("begins with [{:g} s, {:g}]", r.front().x, r.front().y),
+                   fmt::format("the first entry is [\"0 s\", {:g}], the share gone so far", start));
+    for (size_t i = 1; i < r.size(); ++i) {
+      if (!(r[i].x > r[i - 1].x))
+        return wrong(fmt::format("does not go on in time: {:g} s is followed by {:g} s", r[i - 1].x, r[i].x),
+                     "let times rise");
+      if (r[i].y < r[i - 1].y)
+        return wrong(fmt::format("falls from {:g} to {:g}", r[i - 1].y, r[i].y),
+                     "what has gone does not come back: let shares rise or stay");
+    }
+    if (r.back().x > s.duration)
+      wrong(fmt::format("ends at {:g} s, after the stage ({:g} s)", r.back().x, s.duration),
+            "give a longer duration, or end it earlier and go on in the next stage");
+  }
+
+  void warn_left() {
+    if (!pending_ || model_.stages.empty()) return;
+    findings_.warning(model_.stages.back().where, "stage." + model_.stages.back().name,
+                      fmt::format("ends the run while {:g} of the tractions of the excavated rock still stand",
+                                  1 - share_),
+                      "let relaxation reach 1 if the opening shall carry itself");
+  }
+
+  // --- changes ---
+
+  void read_change(const Fields& f) {
+    ChangeInput c;
+    c.where = f.where();
+    c.stage = refer(f, "stage", model_.stages, "stage");
+    c.joint = refer(f, "joint", model_.joints, "joint");
+    c.material = refer(f, "material", model_.materials, "material");
+    c.block = f.get<std::string>("block");
+    const auto kind = f.get<std::string>("kind");
+    c.kind = kind == "fixed" ? ChangeInput::kFixed : kind == "free" ? ChangeInput::kFree : ChangeInput::kSame;
+    const auto value = [&](const char* key, double& to) { to = f.get(key, to); };
+    value("friction_angle", c.friction_angle), value("cohesion", c.cohesion);
+    value("tensile_strength", c.tensile_strength);
+    value("density", c.density), value("young", c.young), value("poisson", c.poisson);
+    check_change(f, c);
+    model_.changes.push_back(c);
+  }
+
+  static bool any_given(const Fields& f, std::initializer_list<const char*> keys) {
+    return std::any_of(keys.begin(), keys.end(), [&f](const char* k) { return f.given(k); });
+  }
+
+  void check_change(const Fields& f, const ChangeInput& c) {
+    const bool of_joint = any_given(f, {"friction_angle", "cohesion", "tensile_strength"});
+    const bool of_material = any_given(f, {"density", "young", "poisson"});
+    if (f.given("joint") + (f.given("material") && !f.given("block")) + f.given("block") != 1) {
+      findings_.error(f.where(), f.path(), "does not say what changes, or names more than one thing",
+                      "give one of joint, material, block (block may go with material and kind)");
+      return;
+    }
+    const char* hint = "write one [[change]] for each joint, material or block";
+    if (f.given("joint") && (of_material || f.given("kind") || !of_joint))
+      findings_.error(f.where(), f.path(), "a joint changes its friction_angle, cohesion or tensile_strength",
+                      hint);
+    else if (f.given("block") && (of_joint || of_material || !(f.given("material") || f.given("kind"))))
+      findings_.error(f.where(), f.path(), "blocks change their material or their kind", hint);
+    else if (f.given("material") && !f.given("block") && (of_joint || f.given("kind") || !of_material))
+      findings_.error(f.where(), f.path(), "a material changes its density, young or poisson", hint);
+    if (c.joint < 0) return;
+    const JointProperty& joint = model_.joints[static_cast<size_t>(c.joint)];
+    if (joint.bonded)
+      error(f, "joint", fmt::format("\"{}\" is bonded: it has no strength to change", joint.name),
+            "give the joint cohesion and tensile_strength instead of kind = \"bonded\"");
+    else if ((c.cohesion > 0 || c.tensile_strength > 0) && joint.cohesion <= 0 && joint.tensile_strength <= 0)
+      error(f, c.cohesion > 0 ? "cohesion" : "tensile_strength",
+            fmt::format("joint \"{}\" has no strength at the start, so that none of its faces is intact",
+                        joint.name),
+            "give it cohesion or tensile_strength in [joint." + joint.name + "]");
+  }
+
+  // --- stress of the ground ---
+
+  void read_in_situ() {
+    if (!source_.root.contains("in_situ")) return;
+    const Fields f = read_table("in_situ");
+    InSituInput& s = model_.in_situ;
+    s.given = true;
+    s.where = f.where();
+    s.where_level = f.where("level");
+    s.with_depth = f.given("level");
+    s.level = f.get("level", 0.0), s.pressure = f.get("pressure", 0.0), s.density = f.get("density", 0.0);
+    s.k0 = f.get("k0", s.k0);
+    s.horizontal_pressure = f.get("horizontal_pressure", 0.0);
+    s.horizontal_gradient = f.get("horizontal_gradient", 0.0);
+    const double xy = f.get("stress_xy", 0.0);
+    s.stress = {f.get("stress_xx", 0.0), xy, xy, f.get("stress_yy", 0.0)};
+
+    const bool constant = any_given(f, {"stress_xx", "stress_yy", "stress_xy"});
+    const bool gradient = any_given(f, {"horizontal_pressure", "horizontal_gradient"});
+    if (constant == s.with_depth) {
+      findings_.error(f.where(), f.path(), constant ? "is given in two ways" : "has no stress",
+                      "give level, density and k0, or stress_xx, stress_yy, stress_xy");
+      return;
+    }
+    if (constant) {
+      for (const char* key : {"pressure", "density", "k0", "horizontal_pressure", "horizontal_gradient"})
+        if (f.given(key)) error(f, key, "belongs to a stress that grows with depth", "give level, or leave it out");
+      return;
+    }
+    if (!f.given("density"))
+      error(f, "density", "is missing: the pressure below the level grows with it",
+            "give the density of the ground, as in [material]");
+    if (f.given("k0") == gradient)
+      error(f, "k0", gradient ? "and a horizontal pressure are given: one too many" : "is missing",
+            "give k0, or horizontal_pressure and horizontal_gradient");
+    if (model_.gravity.x != 0 || model_.gravity.y > 0)
+      error(f, "level", fmt::format("needs gravity along -y; it is [{:g}, {:g}]", model_.gravity.x, model_.gravity.y),
+            "give stress_xx, stress_yy, stress_xy, or model.gravity = [0, -9.81]");
+  }
+
+  Model& model_;
+  double share_ = 1;      // of the tractions of the last excavation that is gone
+  bool pending_ = false;  // whether some stand at the end of the stages read so far
+};
+
+}  // namespace
+
+void read_stage_sections(const TomlSource& source, Model& model, Findings& findings) {
+  StageReader(source, model, findings).read();
+}
+
+}  // namespace talus

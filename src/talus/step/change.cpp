@@ -1,0 +1,152 @@
+#include "talus/step/change.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+
+void set_value(double& value, double to) {
+  if (!std::isnan(to)) value = to;
+}
+
+// Returns whether masses or moduli change.
+bool apply(const ChangeInput& change, Scene& scene) {
+  if (change.joint >= 0) {
+    JointProperty& joint = scene.model.joints[static_cast<size_t>(change.joint)];
+    set_value(joint.friction_angle, change.friction_angle);
+    set_value(joint.cohesion, change.cohesion);
+    set_value(joint.tensile_strength, change.tensile_strength);
+    return false;
+  }
+  if (change.block.empty()) {
+    Material& material = scene.model.materials[static_cast<size_t>(change.material)];
+    set_value(material.density, change.density);
+    set_value(material.young, change.young);
+    set_value(material.poisson, change.poisson);
+    return true;
+  }
+  for (const int i : scene.layout.blocks_called(change.block)) {
+    const auto k = static_cast<size_t>(i);
+    if (change.material >= 0) scene.layout.blocks[k].material = change.material;
+    if (change.kind == ChangeInput::kFixed) scene.blocks.kind[k] = BlockKind::kFixed;
+    if (change.kind == ChangeInput::kFree) scene.blocks.kind[k] = scene.layout.blocks[k].kind;
+  }
+  return change.material >= 0;
+}
+
+void activate(int stage, Scene& scene) {
+  const Model& model = scene.model;
+  const BlockSet& blocks = scene.blocks;
+  const auto acts = [stage](const auto& list, int i) { return list[static_cast<size_t>(i)].acts_in(stage); };
+  for (SupportedPoint& p : scene.supported)
+    p.active = acts(model.supports, p.support) && blocks.moves_freely(p.block);
+  for (BoundaryPoint& p : scene.boundaries.points)
+    p.active = acts(model.boundaries, p.boundary) && blocks.moves_freely(p.block);
+  for (TiePoint& t : scene.boundaries.ties) t.active = blocks.interact(t.block_a, t.block_b);
+  for (LoadedPoint& p : scene.loads.points)
+    p.active = acts(model.loads, p.load) && blocks.moves_freely(p.block);
+  scene.loads.active.clear();
+  for (const LoadInput& l : model.loads) scene.loads.active.push_back(l.acts_in(stage));
+}
+
+BlockForce own_force(const Scene& scene, size_t k, const Mat2& stress) {
+  BlockForce force{scene.blocks.mass[k] * scene.model.gravity, {}};
+  if (scene.blocks.kind[k] == BlockKind::kDeformable) force.Q += (-scene.blocks.volume[k]) * stress;
+  return force;
+}
+
+}  // namespace
+
+void change_scene(int stage, Scene& scene) {
+  bool rebuild = false;
+  for (const ChangeInput& change : scene.model.changes)
+    if (change.stage == stage) rebuild = apply(change, scene) || rebuild;
+  const std::vector<char> out = excavated_blocks(scene, stage);
+  for (size_t i = 0; i < out.size(); ++i)
+    if (out[i]) scene.blocks.kind[i] = BlockKind::kRemoved;
+  if (rebuild) {
+    std::vector<BlockKind> kinds = std::move(scene.blocks.kind);
+    scene.blocks = build_blocks(scene.model, scene.layout);
+    scene.blocks.kind = std::move(kinds);
+  }
+  activate(stage, scene);
+}
+
+bool blocks_change(const Model& model) {
+  return !model.changes.empty() || std::any_of(model.stages.begin(), model.stages.end(),
+                                               [](const StageInput& s) { return !s.excavate.empty(); });
+}
+
+std::vector<char> excavated_blocks(const Scene& scene, int stage) {
+  std::vector<char> out(static_cast<size_t>(scene.blocks.count));
+  for (const std::string& name : scene.model.stages[static_cast<size_t>(stage)].excavate)
+    for (const int i : scene.layout.blocks_called(name)) out[static_cast<size_t>(i)] = 1;
+  return out;
+}
+
+std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector<char>& blocks) {
+  std::vector<BlockForce> force(blocks.size());
+  const RowSet& rows = work.rows;
+  for (size_t r = 0; r < rows.points.size(); ++r) {
+    const PointRows& p = rows.points[r];
+    if (p.block_a < 0 || p.block_b < 0) continue;
+    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    if (blocks[a] == blocks[b]) continue;
+    const bool on_a = blocks[b] != 0;
+    force[on_a ? a : b] += (1 / work.dt_kick) * impulse_on(p, rows.impulse[r], on_a ? 1 : -1);
+  }
+  return force;
+}
+
+void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supported_before,
+                 const Scene& scene, State& state) {
+  const BlockSet& now = scene.blocks;
+  for (int i = 0; i < now.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (before.moves_freely(i) && !now.moves_freely(i)) state.rate[k] = {}, state.contact_force[k] = {};
+    if (scene.layout.blocks[k].kind == BlockKind::kDeformable)
+      state.initial_stress[k] =
+          initial_stress_for(before.moduli[k], now.moduli[k], state.strain_part[k], state.initial_stress[k]);
+  }
+  for (size_t f = 0; f < scene.bonds.faces.size(); ++f) {
+    if (now.interact(scene.bonds.faces[f].block_a, scene.bonds.faces[f].block_b)) continue;
+    state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};
+    state.face[f].mean_force = {};
+  }
+  for (size_t i = 0; i < scene.supported.size(); ++i) {
+    const SupportedPoint& p = scene.supported[i];
+    if (!p.active || supported_before[i].active) continue;
+    const SupportInput& s = scene.model.supports[static_cast<size_t>(p.support)];
+    const auto prescribed = [&](const Motion& m) {
+      return m.displacement_at(state.history_time, scene.model.histories);
+    };
+    state.support_hold[i] = displacement_at(state, static_cast<size_t>(p.block), p.arm) -
+                            Vec2{prescribed(s.x), prescribed(s.y)};
+  }
+  // pairs with blocks that have gone leave the list, others may have come to matter
+  if (before.kind != now.kind) state.candidates.margin = -1;
+}
+
+double ledger_energy(const Scene& scene, const State& state) {
+  const BlockSet& blocks = scene.blocks;
+  double sum = 0;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (!blocks.moves_freely(i)) continue;
+    const BlockRate& v = state.rate[k];
+    const ElasticState elastic =
+        blocks.kind[k] == BlockKind::kDeformable
+            ? elastic_state(blocks.moduli[k], state.strain_part[k], state.initial_stress[k])
+            : ElasticState{};
+    // velocities are half a step behind: what weight and elasticity do until now counts too
+    const BlockForce own = own_force(scene, k, elastic.stress);
+    sum += 0.5 * work(momentum(blocks, k, v), v) + 0.5 * state.dt_before * work(own, v) +
+           blocks.volume[k] * elastic.density -
+           blocks.mass[k] * dot(scene.model.gravity, state.displacement[k]);
+  }
+  return sum;
+}
+
+}  // namespace talus

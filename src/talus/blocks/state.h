@@ -7,6 +7,7 @@
 
 #include "talus/base/vec2.h"
 #include "talus/blocks/block_set.h"
+#include "talus/blocks/bolt.h"
 
 namespace talus {
 
@@ -89,19 +90,21 @@ struct FaceState {
 
 /// Work done since the start [J], by cause; > 0: energy given to the blocks. `joints`: elastic joints, stored
 /// and lost. `boundary`: dashpots, what waves bring in, reactions that stand in for static ones, ties of
-/// sides. `implicit`: what block-implicit elasticity adds to the elastic force of the step's beginning.
+/// sides. `bolts`: of rock bolts, stored and lost. `implicit`: what block-implicit elasticity adds to the
+/// elastic force of the step's beginning.
 struct WorkDone {
   double loads = 0, supports = 0, boundary = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0,
-         damping = 0, implicit = 0;
+         damping = 0, bolts = 0, implicit = 0;
 
   WorkDone& operator+=(const WorkDone& o) {
     loads += o.loads, supports += o.supports, bonds += o.bonds, joints += o.joints;
     contact_closing += o.contact_closing, friction += o.friction, damping += o.damping;
-    implicit += o.implicit, boundary += o.boundary;
+    implicit += o.implicit, boundary += o.boundary, bolts += o.bolts;
     return *this;
   }
   double total() const {
-    return loads + supports + boundary + bonds + joints + contact_closing + friction + damping + implicit;
+    return loads + supports + boundary + bonds + joints + contact_closing + friction + damping + bolts +
+           implicit;
   }
 };
 
@@ -124,6 +127,7 @@ struct State {
   std::vector<std::array<double, 2>> boundary_static;  // of it, the reaction kept from the static stage [N]
   std::vector<Vec2> boundary_hold;  // [n_boundary_points] displacement at which static stages hold [m]
   std::vector<std::array<double, 2>> tie_force;  // [n_ties] normal, tangential on the first side [N]
+  std::vector<Bolt> bolts;                       // installed so far, in the order of installation
   std::vector<Vec2> column_displacement;         // [n_column_nodes] of the free field, dynamic part [m]
   std::vector<Vec2> column_rate;                 // [n_column_nodes] at the middle of the step before [m/s]
   CandidateList candidates;

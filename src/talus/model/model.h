@@ -8,6 +8,7 @@
 
 #include "talus/base/vec2.h"
 #include "talus/geometry/polygon.h"
+#include "talus/model/bolt_input.h"
 #include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
 
@@ -226,13 +227,13 @@ struct InSituInput {
   Where where, where_level;
 };
 
-enum class MonitorKind { kPoint, kBlock, kSupport, kContact };
+enum class MonitorKind { kPoint, kBlock, kSupport, kContact, kBolt };
 
 struct MonitorInput {
   std::string name;
   MonitorKind kind = MonitorKind::kPoint;
   Vec2 point;
-  std::string target_a, target_b;  // names of block, support, or the two contact partners
+  std::string target_a, target_b;  // names of block, support, bolt, or the two contact partners
   double window = 0;               // [s]
   Where where;
 };
@@ -271,6 +272,8 @@ struct Model {
   std::vector<SupportInput> supports;
   std::vector<BoundaryInput> boundaries;
   std::vector<LoadInput> loads;
+  std::vector<BoltType> bolt_types;
+  std::vector<BoltInput> bolts;  // patterns as their bolts
   ContactInput contact;
   SolverInput solver;
   std::vector<StageInput> stages;

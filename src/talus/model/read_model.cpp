@@ -10,6 +10,7 @@
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
 #include "talus/model/read_action.h"
+#include "talus/model/read_bolt.h"
 #include "talus/model/read_cut.h"
 #include "talus/model/read_history_file.h"
 #include "talus/model/read_stages.h"
@@ -40,6 +41,7 @@ class ModelReader : private SectionReader {
     read_stage_sections(source_, model_, findings_);
     read_action_sections(source_, model_, findings_);
     read_solver();
+    read_bolt_sections(source_, model_, findings_);
     read_monitors();
     read_output();
     for (const BlockInput& b : model_.blocks)
@@ -362,11 +364,12 @@ class ModelReader : private SectionReader {
       m.name = f.get<std::string>("name");
       m.window = f.get("window", 0.0);
       m.where = f.where();
-      const int kinds = f.given("point") + f.given("block") + f.given("support") + f.given("contact");
+      const int kinds =
+          f.given("point") + f.given("block") + f.given("support") + f.given("contact") + f.given("bolt");
       if (kinds != 1) {
         findings_.error(f.where(), f.path(),
                         kinds == 0 ? "does not say what to record" : "records more than one thing",
-                        "give one of point, block, support, contact");
+                        "give one of point, block, support, contact, bolt");
         return;
       }
       if (f.given("window") && !f.given("contact"))
@@ -382,6 +385,10 @@ class ModelReader : private SectionReader {
         m.kind = MonitorKind::kSupport;
         m.target_a = f.get<std::string>("support");
         refer(f, "support", model_.supports, "support");
+      } else if (f.given("bolt")) {
+        m.kind = MonitorKind::kBolt;
+        m.target_a = f.get<std::string>("bolt");
+        check_bolt_name(f, m.target_a);
       } else {
         m.kind = MonitorKind::kContact;
         m.where = f.where("contact");
@@ -390,6 +397,13 @@ class ModelReader : private SectionReader {
       }
       model_.monitors.push_back(m);
     });
+  }
+
+  // A bolt, or all of a pattern.
+  void check_bolt_name(const Fields& f, const std::string& name) {
+    for (const BoltInput& b : model_.bolts)
+      if (b.belongs_to(name)) return;
+    refer(f, "bolt", model_.bolts, "bolt");
   }
 
   void read_output() {

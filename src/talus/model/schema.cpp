@@ -200,7 +200,7 @@ std::string schema_markdown() {
     out += "\n";
   }
   out += "### Units\n\n| quantity | units (SI first) |\n|---|---|\n";
-  for (int d = static_cast<int>(D::kLength); d <= static_cast<int>(D::kStiffness); ++d) {
+  for (int d = static_cast<int>(D::kLength); d <= static_cast<int>(D::kLineForce); ++d) {
     const std::string text = describe(static_cast<D>(d));
     const size_t open = text.find(" (");
     out += fmt::format("| {} | {} |\n", text.substr(0, open), text.substr(open + 2, text.size() - open - 3));

@@ -49,7 +49,7 @@ std::vector<SectionSpec> run_sections() {
 
       {"monitor",
        SectionShape::kList,
-       "Columns of histories.csv. Give one of `point`, `block`, `support`, `contact`.",
+       "Columns of histories.csv. Give one of `point`, `block`, `support`, `contact`, `bolt`.",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -67,6 +67,11 @@ std::vector<SectionSpec> run_sections() {
          .type = K::kNames,
          .refers_to = "block, grid or region",
          .doc = "Contact force of the second on the first of two blocks or grids, and its impulse."},
+        {.name = "bolt",
+         .type = K::kName,
+         .refers_to = "bolt",
+         .doc = "Of a bolt or of a whole bolt_pattern: the largest tension and shear force, the largest "
+                "elongation of a piece, and how many pieces have ruptured; of one bolt, before spacing."},
         {.name = "window",
          .dimension = D::kTime,
          .range = kNonNegative,

@@ -18,6 +18,7 @@ std::vector<SectionSpec> cut_sections();
 std::vector<SectionSpec> action_sections();
 std::vector<SectionSpec> boundary_sections();
 std::vector<SectionSpec> stage_sections();
+std::vector<SectionSpec> bolt_sections();
 std::vector<SectionSpec> run_sections();
 
 /// The key `stages` of what acts in some stages only.

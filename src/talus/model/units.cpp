@@ -33,6 +33,7 @@ constexpr DimensionName kNames[] = {
     {Dimension::kStress, "a stress"},
     {Dimension::kForce, "a force"},
     {Dimension::kStiffness, "a stiffness per area"},
+    {Dimension::kLineForce, "a force per length"},
 };
 
 std::string_view trim(std::string_view s) {
@@ -96,6 +97,9 @@ const std::vector<Unit>& all_units() {
       {"Pa/m", D::kStiffness, 1},
       {"MPa/m", D::kStiffness, 1e6},
       {"GPa/m", D::kStiffness, 1e9},
+      {"N/m", D::kLineForce, 1},
+      {"kN/m", D::kLineForce, 1e3},
+      {"MN/m", D::kLineForce, 1e6},
   };
   return units;
 }

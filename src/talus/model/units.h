@@ -21,6 +21,7 @@ enum class Dimension {
   kStress,
   kForce,
   kStiffness,
+  kLineForce,
 };
 
 struct Unit {

@@ -14,7 +14,7 @@ struct ContactFrame {
   Vec2 point;  // [m]
   Vec2 force;  // on the first block [N]
   double normal_force = 0, shear_force = 0, gap = 0;
-  int kind = 0;  // 0 contact, 1 bond, 2 support, 3 boundary
+  int kind = 0;  // 0 contact, 1 bond, 2 support, 3 boundary, 4 bolt
 };
 
 /// The deformed blocks: displacement and velocity at corners; stress (sxx, syy, sxy), block id, kind,

@@ -49,6 +49,7 @@ std::vector<std::string> step_columns() {
           "contact closing work [J]",
           "friction work [J]",
           "damping work [J]",
+          "bolt work [J]",
           "implicit work [J]",
           "energy left over [J]"};
 }
@@ -81,6 +82,7 @@ std::vector<double> step_row(const Instant& i) {
           e.work.contact_closing,
           e.work.friction,
           e.work.damping,
+          e.work.bolts,
           e.work.implicit,
           e.left_over};
 }
@@ -108,6 +110,9 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
         add_columns(m.name, {"reaction_x [N]", "reaction_y [N]"});
         break;
       }
+      case MonitorKind::kBolt:
+        add_columns(m.name, {"axial_force [N]", "shear_force [N]", "elongation [m]", "ruptured"});
+        break;
       case MonitorKind::kContact: {
         Impulses c;
         c.in_a.resize(static_cast<size_t>(blocks.count));
@@ -156,6 +161,18 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
   if (c.window > 0) row.insert(row.end(), 3, 0.0);  // filled in when the window is known
 }
 
+// Largest tension, shear force and elongation along a bolt or a pattern, and the pieces ruptured.
+void Histories::sample_bolt(const Instant& instant, const std::string& name, std::vector<double>& row) const {
+  double axial = 0, shear = 0, elongation = 0, ruptured = 0;
+  for (const BoltPart& p : bolt_parts(scene_.blocks, instant.state)) {
+    if (!scene_.model.bolts[static_cast<size_t>(p.input)].belongs_to(name)) continue;
+    axial = std::max(axial, p.axial), shear = std::max(shear, std::abs(p.shear));
+    elongation = std::max(elongation, p.elongation);
+    ruptured += p.condition == BoltPart::kRuptured;
+  }
+  row.insert(row.end(), {axial, shear, elongation, ruptured});
+}
+
 void Histories::at(const Instant& instant, bool keep) {
   const State& s = instant.state;
   std::vector<double> row{s.time};
@@ -183,6 +200,9 @@ void Histories::at(const Instant& instant, bool keep) {
         row.insert(row.end(), {sum.x, sum.y});
         break;
       }
+      case MonitorKind::kBolt:
+        sample_bolt(instant, m.target_a, row);
+        break;
       case MonitorKind::kContact:
         sample_contact(instant, contacts_[contact++], row);
         break;

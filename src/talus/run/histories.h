@@ -52,6 +52,7 @@ class Histories {
 
   void add_columns(const std::string& name, const std::vector<std::string>& titles);
   void sample_contact(const Instant& instant, Impulses& impulses, std::vector<double>& row) const;
+  void sample_bolt(const Instant& instant, const std::string& name, std::vector<double>& row) const;
   void release(double known_until, bool all);
 
   const Scene& scene_;

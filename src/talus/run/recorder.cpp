@@ -39,7 +39,11 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.dt_kick;
     f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
     f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
-    f.kind = r < i.work.first_contact ? 1 : r < i.work.first_support ? 0 : r < i.work.first_boundary ? 2 : 3;
+    f.kind = r < i.work.first_contact    ? 1
+             : r < i.work.first_support  ? 0
+             : r < i.work.first_boundary ? 2
+             : r < i.work.first_bolt     ? 3
+                                         : 4;
     if (f.kind == 0) f.gap = i.work.places[r - i.work.first_contact].gap;
     frames.push_back(f);
   }
@@ -205,6 +209,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                      {"contact_closing_work", e.work.contact_closing},
                      {"friction_work", e.work.friction},
                      {"damping_work", e.work.damping},
+                     {"bolt_work", e.work.bolts},
                      {"implicit_work", e.work.implicit},
                      {"left_over", e.left_over},
                      {"left_over_largest", r.largest_left_over},

@@ -58,6 +58,7 @@ class Runner {
     work_.mobility.clear();  // of other inertias
     const auto is_static = [&](size_t i) { return scene_.model.stages[i].kind == StageKind::kStatic; };
     enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
+    install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {

@@ -15,6 +15,7 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
+  check_bolts(scene.model, scene.layout, scene.blocks, findings);
   scene.loads = build_loads(scene.model, scene.layout, scene.blocks);
   if (const int above = block_above_ground(scene.model, scene.blocks); above >= 0) {
     const auto k = static_cast<size_t>(above);

@@ -2,6 +2,7 @@
 // Everything a step needs to know and may not change: the model, its blocks, bonds and supports.
 
 #include "talus/contact/bonds.h"
+#include "talus/supports/bolts.h"
 #include "talus/supports/boundaries.h"
 #include "talus/supports/loads.h"
 #include "talus/supports/supports.h"
@@ -18,7 +19,7 @@ struct Scene {
   LoadSet loads;
 };
 
-/// Boundaries that cannot be are told to `findings`; such a scene is not to be run.
+/// Boundaries and bolts that cannot be are told to `findings`; such a scene is not to be run.
 /// @pre  neither read_model nor make_layout found an error
 Scene build_scene(Model model, Layout layout, Findings& findings);
 

@@ -181,6 +181,9 @@ class Kick {
     add_edge_and_point_loads(blocks_, scene_.model, scene_.loads, state_, time, load_);
     for (size_t k = 0; k < state_.kept_force.size(); ++k)
       load_[k] += (1 - state_.relaxed) * state_.kept_force[k];
+    balance_bolts(state_);
+    work_.bolt_forces.assign(state_.bolts.empty() ? 0 : load_.size(), {});
+    if (!state_.bolts.empty()) add_bolt_forces(blocks_, state_, work_.bolt_forces);
 
     boundary_ = {!settings_.histories_run, dt_, work_.dt_kick, time, state_.column_rate};
     if (boundary_.is_static) return;
@@ -203,6 +206,7 @@ class Kick {
       elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k], state_.initial_stress[k]);
       force.Q += (-blocks_.volume[k]) * elastic_[k].stress;
     }
+    if (!work_.bolt_forces.empty()) force += work_.bolt_forces[k];
     if (implicit(k))
       work_.mobility[k] =
           mobility_implicit(blocks_, k, elastic_[k].rotation, share(), tangent_time2() + damping_time2());
@@ -278,6 +282,8 @@ class Kick {
     add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, boundary_, work_.rows);
     work_.first_tie = work_.rows.size();
     add_tie_rows(blocks_, scene_.boundaries.ties, state_, dt_, work_.dt_kick, work_.rows);
+    work_.first_bolt = work_.rows.size();
+    add_bolt_rows(blocks_, state_, work_.rate_before, {dt_, work_.dt_kick, model.contact.alpha}, work_.rows);
     work_.rows.finish();
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
@@ -397,7 +403,9 @@ class Kick {
       add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
       ++s.closed;
     } else {
-      const auto cause = r < work_.first_boundary ? &WorkDone::supports : &WorkDone::boundary;
+      const auto cause = r < work_.first_boundary ? &WorkDone::supports
+                         : r < work_.first_bolt   ? &WorkDone::boundary
+                                                  : &WorkDone::bolts;
       add(0, cause), add(1, cause);
     }
   }
@@ -466,7 +474,12 @@ class Kick {
     s.strain += blocks_.volume[i] * elastic_[i].density;
     s.kinetic += 0.5 * work(momentum(blocks_, i, v0), v0);
     // weight and elastic resistance, whose energies are taken from the positions
-    const BlockForce own = kick * (forces_[i] + (-1) * load_[i]);
+    BlockForce own = kick * (forces_[i] + (-1) * load_[i]);
+    if (!work_.bolt_forces.empty()) {
+      const BlockForce bars = kick * work_.bolt_forces[i];
+      tally(s.work.before.bolts, s.work.after.bolts, bars, v0, v1, late);
+      own += (-1) * bars;
+    }
     double before = 0, after = 0;
     tally(before, after, own, v0, v1, late);
     s.kinetic += before;
@@ -492,6 +505,7 @@ class Kick {
     keep(work_.first_support, scene_.supported, -1, state_.support_force);
     keep(work_.first_boundary, scene_.boundaries.points, 1, state_.boundary_force);
     keep(work_.first_tie, scene_.boundaries.ties, 1, state_.tie_force);
+    remember_bolts(work_.rows, work_.first_bolt, work_.dt_kick, state_);
   }
 
   const Scene& scene_;
@@ -535,6 +549,12 @@ std::string row_name(const Scene& scene, const State& state, const StepWork& wor
     return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(index)].name,
                        name(block));
   };
+  if (row >= work.first_bolt) {
+    const auto [bolt, crossing] = crossing_of_row(state, row - work.first_bolt);
+    return fmt::format("bolt {} between {} and {}",
+                       scene.model.bolts[static_cast<size_t>(state.bolts[bolt].input)].name, name(p.block_a),
+                       name(p.block_b));
+  }
   const BoundarySet& b = scene.boundaries;
   if (row >= work.first_tie)
     return boundary(b.ties[nth_active(b.ties, row - work.first_tie)].boundary, p.block_a);

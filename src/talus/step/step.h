@@ -66,15 +66,16 @@ struct StepWork {
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts
-  RowSet rows;                       // bonds, contacts, supports, boundaries, ties, in this order
+  RowSet rows;                       // bonds, contacts, supports, boundaries, ties, bolts, in this order
   std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
-  size_t first_contact = 0, first_support = 0, first_boundary = 0, first_tie = 0;
+  size_t first_contact = 0, first_support = 0, first_boundary = 0, first_tie = 0, first_bolt = 0;
   std::vector<BlockRate> rate_before;
   double dt_kick = 0;  // over which the impulses act
   KickWork work;
-  std::vector<BlockRate> rate_free;  // rates as they would be without rows
-  std::vector<Impulse> guess;        // of all rows; empty unless it is wanted
-  std::vector<BlockForce> forces;    // weight, loads and elasticity on each block
+  std::vector<BlockRate> rate_free;     // rates as they would be without rows
+  std::vector<Impulse> guess;           // of all rows; empty unless it is wanted
+  std::vector<BlockForce> forces;       // weight, loads, elasticity and bars inside, on each block
+  std::vector<BlockForce> bolt_forces;  // of them, the bars; empty without bolts
   std::vector<BlockForce> local_damping;
   std::vector<ElasticState> elastic;
 };

@@ -1,0 +1,195 @@
+#include "talus/supports/bar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+
+namespace {
+
+// What is left of the stiffness of a spring at its limit: keeps the bar determined when all of it slips.
+constexpr double kHardening = 1e-9;
+
+constexpr int kMostIterations = 200;
+
+// A spring that yields: force, tangent and energy at elongation x from its place without force.
+struct Law {
+  double force, tangent, energy;
+};
+
+Law law(double stiffness, double low, double high, double x) {
+  const double f = stiffness * x;
+  if (f >= low && f <= high) return {f, stiffness, 0.5 * f * x};
+  const double limit = f > high ? high : low, x0 = limit / stiffness, more = x - x0;
+  const double soft = kHardening * stiffness;
+  return {limit + soft * more, soft, 0.5 * limit * x0 + limit * more + 0.5 * soft * more * more};
+}
+
+// The bar as a chain of unknown slips, with its energy, residual and tridiagonal tangent.
+class Chain {
+ public:
+  Chain(const std::vector<double>& rock, const Bolt& bolt) : rock_(rock), bolt_(bolt) {
+    const size_t n = bolt.nodes.size();
+    residual_.resize(n), diagonal_.resize(n), upper_.resize(n);
+  }
+
+  double stretch(size_t j, const std::vector<double>& slip) const { return slip[j + 1] - slip[j] + rock_[j]; }
+
+  // Returns the energy; fills residual (force out of balance) and tangent.
+  double evaluate(const std::vector<double>& slip) {
+    double energy = 0;
+    scale_ = 0;
+    for (size_t i = 0; i < slip.size(); ++i) {
+      const BoltNode& n = bolt_.nodes[i];
+      const Law l = law(n.stiffness, -n.limit, n.limit, slip[i] - n.plastic);
+      residual_[i] = l.force, diagonal_[i] = l.tangent, upper_[i] = 0, energy += l.energy;
+      scale_ = std::max(scale_, std::abs(l.force));
+    }
+    for (size_t j = 0; j < bolt_.segments.size(); ++j) {
+      const BoltSegment& s = bolt_.segments[j];
+      if (s.ruptured) continue;
+      const Law l = law(s.stiffness, -s.yield, s.yield, stretch(j, slip) - s.plastic);
+      residual_[j] -= l.force, residual_[j + 1] += l.force;
+      diagonal_[j] += l.tangent, diagonal_[j + 1] += l.tangent, upper_[j] = -l.tangent;
+      energy += l.energy;
+      scale_ = std::max(scale_, std::abs(l.force));
+    }
+    return energy;
+  }
+
+  double imbalance() const {
+    double most = 0;
+    for (const double r : residual_) most = std::max(most, std::abs(r));
+    return most;
+  }
+  double scale() const { return scale_; }
+
+  // The Newton step from the last evaluation, by the tridiagonal tangent.
+  std::vector<double> newton_step() const {
+    const size_t n = residual_.size();
+    std::vector<double> d = diagonal_, x(n);
+    for (size_t i = 0; i < n; ++i) x[i] = -residual_[i];
+    for (size_t i = 1; i < n; ++i) {
+      const double m = upper_[i - 1] / d[i - 1];
+      d[i] -= m * upper_[i - 1], x[i] -= m * x[i - 1];
+    }
+    x[n - 1] /= d[n - 1];
+    for (size_t i = n - 1; i-- > 0;) x[i] = (x[i] - upper_[i] * x[i + 1]) / d[i];
+    return x;
+  }
+
+ private:
+  const std::vector<double>& rock_;
+  const Bolt& bolt_;
+  std::vector<double> residual_, diagonal_, upper_;
+  double scale_ = 0;
+};
+
+// Minimises the energy of the chain, which is convex: Newton's steps, halved where they lead too far.
+std::vector<double> solve(const std::vector<double>& rock, const Bolt& bolt) {
+  Chain chain(rock, bolt);
+  std::vector<double> slip;
+  for (const BoltNode& n : bolt.nodes) slip.push_back(n.slip);
+  double energy = chain.evaluate(slip);
+  for (int k = 0; k < kMostIterations && chain.imbalance() > 1e-12 * chain.scale(); ++k) {
+    const std::vector<double> step = chain.newton_step();
+    const double before = chain.imbalance();
+    bool better = false;
+    for (double part = 1; part > 1e-6 && !better; part *= 0.5) {
+      std::vector<double> trial = slip;
+      for (size_t i = 0; i < trial.size(); ++i) trial[i] += part * step[i];
+      const double e = chain.evaluate(trial);
+      better = e < energy || chain.imbalance() < 0.5 * before;
+      if (better) slip = std::move(trial), energy = e;
+    }
+    if (!better) break;  // round-off
+  }
+  return slip;
+}
+
+// Takes over the slips; returns how many segments ruptured at them.
+int keep(const std::vector<double>& rock, const std::vector<double>& slip, Bolt& bolt) {
+  int ruptured = 0;
+  for (size_t i = 0; i < slip.size(); ++i) bolt.nodes[i].slip = slip[i];
+  for (size_t j = 0; j < bolt.segments.size(); ++j) {
+    BoltSegment& s = bolt.segments[j];
+    s.stretch = slip[j + 1] - slip[j] + rock[j];
+    if (s.ruptured) continue;
+    if ((s.stretch - s.start) > bolt.rupture_strain * s.gauge) s.ruptured = true, s.force = 0, ++ruptured;
+  }
+  return ruptured;
+}
+
+// A bar held at its ends alone: one spring, which carries no compression (its force may come out negative:
+// that far it is from being taut).
+int stretch_anchored(double rock, Bolt& bolt) {
+  BoltSegment& s = bolt.segments[0];
+  s.stretch = rock;
+  if (s.ruptured) return 0;
+  if (rock - s.start > bolt.rupture_strain * s.gauge) {
+    s.ruptured = true, s.force = 0;
+    return 1;
+  }
+  if (s.stiffness * (rock - s.plastic) > s.yield) s.plastic = rock - s.yield / s.stiffness, s.yielded = true;
+  s.force = s.stiffness * (rock - s.plastic);
+  return 0;
+}
+
+}  // namespace
+
+int balance_bar(const std::vector<double>& rock, Bolt& bolt) {
+  if (bolt.anchored) return stretch_anchored(rock[0], bolt);
+  int ruptured = 0, now = 0;
+  do {
+    now = keep(rock, solve(rock, bolt), bolt);
+    ruptured += now;
+  } while (now > 0);
+  for (BoltNode& n : bolt.nodes) {
+    const double x = n.slip - n.plastic;
+    if (n.stiffness * std::abs(x) > n.limit) n.plastic += x - std::copysign(n.limit / n.stiffness, x);
+  }
+  for (BoltSegment& s : bolt.segments) {
+    if (s.ruptured) continue;
+    const double x = s.stretch - s.plastic;
+    s.force = std::clamp(s.stiffness * x, -s.yield, s.yield);
+    if (s.stiffness * std::abs(x) <= s.yield) continue;
+    s.plastic += x - std::copysign(s.yield / s.stiffness, x);
+    s.yielded = true;
+  }
+  return ruptured;
+}
+
+std::vector<double> elastic_stiffness(const Bolt& bolt, const std::vector<int>& of) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Bolt elastic = bolt;
+  elastic.rupture_strain = kInfinity;
+  std::vector<double> sum(of.size(), 0);
+  for (const int at : of) {
+    for (BoltNode& n : elastic.nodes) n.limit = kInfinity, n.plastic = n.slip = 0;
+    for (BoltSegment& s : elastic.segments) s.yield = kInfinity, s.plastic = s.start = 0;
+    std::vector<double> rock(elastic.segments.size(), 0);
+    rock[static_cast<size_t>(at)] = 1;
+    balance_bar(rock, elastic);
+    for (size_t k = 0; k < of.size(); ++k)
+      sum[k] += std::abs(elastic.segments[static_cast<size_t>(of[k])].force);
+  }
+  return sum;
+}
+
+double stored_energy(const Bolt& bolt) {
+  double sum = 0;
+  for (const BoltNode& n : bolt.nodes) sum += 0.5 * n.stiffness * (n.slip - n.plastic) * (n.slip - n.plastic);
+  for (const BoltSegment& s : bolt.segments) {
+    const double f = bolt.anchored ? std::max(s.force, 0.0) : s.force;
+    if (!s.ruptured) sum += 0.5 * f * f / s.stiffness;
+  }
+  for (const BoltCrossing& c : bolt.crossings) {
+    const double f = c.shear_stiffness * (c.shear - c.shear_plastic);
+    if (c.shear_stiffness > 0 && !bolt.segments[static_cast<size_t>(c.segment)].ruptured)
+      sum += 0.5 * f * (c.shear - c.shear_plastic);
+  }
+  return sum;
+}
+
+}  // namespace talus

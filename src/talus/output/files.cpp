@@ -76,7 +76,7 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
         fs::remove(folder / name, ec);
     } else {
       for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
-                               "blocks_start.svg", "blocks_end.svg"})
+                               "blocks_start.svg", "blocks_end.svg", "bolts.csv"})
         fs::remove(folder / name, ec);
       for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
       for (const auto& entry : fs::directory_iterator(folder, ec))

@@ -48,9 +48,40 @@ double bar_length(double width) {
   return step;
 }
 
+// From pale to dark red by the share of the largest tension; grey in compression, black where it has
+// ruptured.
+std::string colour_of(const BoltLine& line, double largest) {
+  if (line.condition == 2) return "#000000";
+  if (line.axial < 0 || largest <= 0) return "#6b6b6b";
+  const double s = line.axial / largest;
+  return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(250 - 120 * s), static_cast<int>(170 * (1 - s)),
+                     static_cast<int>(120 * (1 - s)));
+}
+
+// Bolts as lines, and the largest tension in words. @param place  from [m] to [px]
+template <class Place>
+std::string bolts_group(const std::vector<BoltLine>& bolts, const Place& place, double x, double y) {
+  if (bolts.empty()) return "";
+  double largest = 0;
+  for (const BoltLine& b : bolts) largest = std::max(largest, b.axial);
+  std::string out = "<g class=\"bolts\" stroke-width=\"2.2\" stroke-linecap=\"round\">\n";
+  for (const BoltLine& b : bolts) {
+    const Vec2 p = place(b.from), q = place(b.to);
+    if (b.crossing && norm(q - p) < 0.5) continue;  // across a closed joint: nothing to see
+    out += fmt::format(
+        "<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\" stroke=\"{}\"><title>{}: {:.4g} kN</title></path>\n", p.x,
+        p.y, q.x, q.y, colour_of(b, largest), escaped(b.bolt), 1e-3 * b.axial);
+  }
+  return out +
+         fmt::format(
+             "</g>\n<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">bolts: dark red {:.4g} kN</text>\n",
+             x, y, 1e-3 * largest);
+}
+
 }  // namespace
 
-std::string blocks_svg(const BlockSet& blocks, const State& state, const std::string& title) {
+std::string blocks_svg(const BlockSet& blocks, const State& state, const std::string& title,
+                       const std::vector<BoltLine>& bolts) {
   // places relative to the first block: no digits are lost far from the origin
   std::vector<Vec2> corner;
   for (int i = 0; i < blocks.count; ++i) {
@@ -84,8 +115,13 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
     out += fmt::format("\"><title>{}</title></polygon>\n", escaped(blocks.name[static_cast<size_t>(i)]));
   }
   const double bar = bar_length((kWidth - 2 * kMargin) / scale), y = height - 14;
+  const auto place = [&](Vec2 p) {
+    const Vec2 q = p - blocks.centroid[0];
+    return Vec2{kMargin + scale * (q.x - box.min.x), kHead + scale * (box.max.y - q.y)};
+  };
+  out += "</g>\n" + bolts_group(bolts, place, kWidth - kMargin, y + 4);
   out += fmt::format(
-      "</g>\n<path d=\"M{0} {1:.1f}h{2:.2f}\" stroke=\"black\" stroke-width=\"3\"/>\n<text x=\"{3:.1f}\" "
+      "<path d=\"M{0} {1:.1f}h{2:.2f}\" stroke=\"black\" stroke-width=\"3\"/>\n<text x=\"{3:.1f}\" "
       "y=\"{4:.1f}\">{5:g} m</text>\n</svg>\n",
       kMargin, y, scale * bar, kMargin + scale * bar + 8, y + 4, bar);
   return out;

@@ -4,10 +4,13 @@
 #include <string>
 
 #include "talus/blocks/state.h"
+#include "talus/output/bolt_lines.h"
 
 namespace talus {
 
-/// All blocks in true proportion, coloured by kind, with the title, the time and a scale bar.
-std::string blocks_svg(const BlockSet& blocks, const State& state, const std::string& title);
+/// All blocks in true proportion, coloured by kind, with the title, the time and a scale bar; over them the
+/// bolts, coloured by their tension as share of the largest.
+std::string blocks_svg(const BlockSet& blocks, const State& state, const std::string& title,
+                       const std::vector<BoltLine>& bolts = {});
 
 }  // namespace talus

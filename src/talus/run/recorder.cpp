@@ -50,6 +50,18 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
   return frames;
 }
 
+// The bolts at an instant, those of stages up to `stage`.
+std::vector<BoltLine> bolt_lines(const Scene& scene, const State& state, int stage) {
+  std::vector<BoltLine> lines;
+  for (const BoltPart& p : bolt_parts(scene.blocks, state)) {
+    const BoltInput& bolt = scene.model.bolts[static_cast<size_t>(p.input)];
+    if (bolt.stage <= stage)
+      lines.push_back({bolt.name, p.piece, p.crossing, p.from, p.to, p.axial, p.shear, p.elongation,
+                       static_cast<int>(p.condition)});
+  }
+  return lines;
+}
+
 std::filesystem::path make_folder(const std::filesystem::path& p) {
   std::error_code ec;
   std::filesystem::create_directories(p, ec);  // a failure shows, with its cause, at the first file
@@ -66,6 +78,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
       histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
       block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
       contact_frames_(folder_ / "fields", "contacts", "vtp"),
+      bolt_frames_(folder_ / "fields", "bolts", "vtp"),
       last_flush_(wall_now()) {
   write_file(folder_ / "model.toml", scene.model.text);
   // replaced at the end: a run that was killed shows as one
@@ -88,8 +101,12 @@ void Recorder::at(const Instant& i) {
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
   if (frame || i.stage_start || i.last) write_frame(i);
   if (i.stage_start && i.stage == 0)
-    write_file(folder_ / "blocks_start.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title));
-  if (i.last) write_file(folder_ / "blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title));
+    write_file(folder_ / "blocks_start.svg",
+               blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
+  if (i.last)
+    write_file(folder_ / "blocks_end.svg",
+               blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
+  if (i.last || (i.stage_start && i.stage > 0)) write_bolts(i);
   if (wall_now() - last_flush_ > 1) {
     history_file_.flush();
     steps_file_.flush();
@@ -127,6 +144,18 @@ void Recorder::write_frame(const Instant& i) {
   for (size_t k = 0; k < i.state.rate.size(); ++k) rates.push_back(rate_now(i.work, i.state, k));
   block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, rates));
   contact_frames_.add(i.state.time, contacts_vtp(contact_frames(scene_, i), i.state.time));
+  if (!scene_.model.bolts.empty())
+    bolt_frames_.add(i.state.time, bolts_vtp(bolt_lines(scene_, i.state, i.stage), i.state.time));
+}
+
+// The bolts at the end of a stage: at the last instant, or at the first of the stage after it.
+void Recorder::write_bolts(const Instant& i) {
+  if (scene_.model.bolts.empty()) return;
+  const int stage = i.last ? i.stage : i.stage - 1;
+  if (bolt_table_.empty()) bolt_table_ = bolts_csv_head();
+  bolt_table_ += bolts_csv_rows(scene_.model.stages[static_cast<size_t>(stage)].name, i.state.time,
+                                bolt_lines(scene_, i.state, stage));
+  write_file(folder_ / "bolts.csv", bolt_table_);
 }
 
 void Recorder::finish(const RunResult& result, const std::vector<std::string>& overrides,

@@ -11,7 +11,8 @@
 
 namespace talus {
 
-/// model.toml, histories.csv, steps.csv, fields/. Rows reach the file at least once a second, frames at once.
+/// model.toml, histories.csv, steps.csv, fields/, with bolts also bolts.csv. Rows reach the file at least
+/// once a second, frames at once.
 class Recorder : public Observer {
  public:
   /// @param folder  ready for results (open_result_folder)
@@ -29,12 +30,14 @@ class Recorder : public Observer {
   void record_step(const Instant& instant);
   void write_dump(const Instant& instant);
   void write_frame(const Instant& instant);
+  void write_bolts(const Instant& instant);
 
   const Scene& scene_;
   std::filesystem::path folder_;
   CsvWriter history_file_, steps_file_;
   Histories histories_;
-  FrameSeries block_frames_, contact_frames_;
+  FrameSeries block_frames_, contact_frames_, bolt_frames_;
+  std::string bolt_table_;  // bolts.csv so far
   double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
   std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0;

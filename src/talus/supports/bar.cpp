@@ -11,7 +11,10 @@ namespace {
 // What is left of the stiffness of a spring at its limit: keeps the bar determined when all of it slips.
 constexpr double kHardening = 1e-9;
 
-constexpr int kMostIterations = 200;
+constexpr int kMostIterations = 100;
+
+// Force out of balance as share of the largest, at which the bar is taken to be in balance.
+constexpr double kBalanced = 1e-9;
 
 // A spring that yields: force, tangent and energy at elongation x from its place without force.
 struct Law {
@@ -31,27 +34,29 @@ class Chain {
  public:
   Chain(const std::vector<double>& rock, const Bolt& bolt) : rock_(rock), bolt_(bolt) {
     const size_t n = bolt.nodes.size();
-    residual_.resize(n), diagonal_.resize(n), upper_.resize(n);
+    residual_.resize(n), held_.resize(n), linked_.resize(n);
   }
 
-  double stretch(size_t j, const std::vector<double>& slip) const { return slip[j + 1] - slip[j] + rock_[j]; }
-
-  // Returns the energy; fills residual (force out of balance) and tangent.
-  double evaluate(const std::vector<double>& slip) {
+  // Returns the energy; fills residual (force out of balance) and tangents.
+  // @param yields  false: as if no spring had a limit
+  double evaluate(const std::vector<double>& slip, bool yields) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     double energy = 0;
     scale_ = 0;
     for (size_t i = 0; i < slip.size(); ++i) {
       const BoltNode& n = bolt_.nodes[i];
-      const Law l = law(n.stiffness, -n.limit, n.limit, slip[i] - n.plastic);
-      residual_[i] = l.force, diagonal_[i] = l.tangent, upper_[i] = 0, energy += l.energy;
+      const double limit = yields ? n.limit : kInfinity;
+      const Law l = law(n.stiffness, -limit, limit, slip[i] - n.plastic);
+      residual_[i] = l.force, held_[i] = l.tangent, energy += l.energy;
       scale_ = std::max(scale_, std::abs(l.force));
     }
     for (size_t j = 0; j < bolt_.segments.size(); ++j) {
       const BoltSegment& s = bolt_.segments[j];
+      linked_[j] = 0;
       if (s.ruptured) continue;
-      const Law l = law(s.stiffness, -s.yield, s.yield, stretch(j, slip) - s.plastic);
-      residual_[j] -= l.force, residual_[j + 1] += l.force;
-      diagonal_[j] += l.tangent, diagonal_[j + 1] += l.tangent, upper_[j] = -l.tangent;
+      const double limit = yields ? s.yield : kInfinity;
+      const Law l = law(s.stiffness, -limit, limit, slip[j + 1] - slip[j] + rock_[j] - s.plastic);
+      residual_[j] -= l.force, residual_[j + 1] += l.force, linked_[j] = l.tangent;
       energy += l.energy;
       scale_ = std::max(scale_, std::abs(l.force));
     }
@@ -65,41 +70,52 @@ class Chain {
   }
   double scale() const { return scale_; }
 
-  // The Newton step from the last evaluation, by the tridiagonal tangent.
+  // The Newton step from the last evaluation. The elimination adds up what holds each node, springs in series
+  // and side by side: without a difference in it, very stiff springs beside soft ones lose no digits.
   std::vector<double> newton_step() const {
     const size_t n = residual_.size();
-    std::vector<double> d = diagonal_, x(n);
+    std::vector<double> held = held_, x(n);
     for (size_t i = 0; i < n; ++i) x[i] = -residual_[i];
-    for (size_t i = 1; i < n; ++i) {
-      const double m = upper_[i - 1] / d[i - 1];
-      d[i] -= m * upper_[i - 1], x[i] -= m * x[i - 1];
+    for (size_t i = 0; i + 1 < n; ++i) {
+      const double pass = linked_[i] / (held[i] + linked_[i]);
+      held[i + 1] += pass * held[i], x[i + 1] += pass * x[i];
     }
-    x[n - 1] /= d[n - 1];
-    for (size_t i = n - 1; i-- > 0;) x[i] = (x[i] - upper_[i] * x[i + 1]) / d[i];
+    x[n - 1] /= held[n - 1];
+    for (size_t i = n - 1; i-- > 0;) x[i] = (x[i] + linked_[i] * x[i + 1]) / (held[i] + linked_[i]);
     return x;
   }
 
  private:
   const std::vector<double>& rock_;
   const Bolt& bolt_;
-  std::vector<double> residual_, diagonal_, upper_;
+  std::vector<double> residual_, held_, linked_;  // [n_nodes]; springs of nodes; segments, the last unused
   double scale_ = 0;
 };
 
-// Minimises the energy of the chain, which is convex: Newton's steps, halved where they lead too far.
+std::vector<double> plus(const std::vector<double>& a, double part, const std::vector<double>& b) {
+  std::vector<double> sum = a;
+  for (size_t i = 0; i < sum.size(); ++i) sum[i] += part * b[i];
+  return sum;
+}
+
+// Minimises the energy of the chain, which is convex: from the elastic answer Newton's steps, halved where
+// they lead too far.
 std::vector<double> solve(const std::vector<double>& rock, const Bolt& bolt) {
   Chain chain(rock, bolt);
   std::vector<double> slip;
   for (const BoltNode& n : bolt.nodes) slip.push_back(n.slip);
-  double energy = chain.evaluate(slip);
-  for (int k = 0; k < kMostIterations && chain.imbalance() > 1e-12 * chain.scale(); ++k) {
+  for (int refine = 0; refine < 2; ++refine) {
+    chain.evaluate(slip, false);
+    slip = plus(slip, 1, chain.newton_step());
+  }
+  double energy = chain.evaluate(slip, true);
+  for (int k = 0; k < kMostIterations && chain.imbalance() > kBalanced * chain.scale(); ++k) {
     const std::vector<double> step = chain.newton_step();
     const double before = chain.imbalance();
     bool better = false;
     for (double part = 1; part > 1e-6 && !better; part *= 0.5) {
-      std::vector<double> trial = slip;
-      for (size_t i = 0; i < trial.size(); ++i) trial[i] += part * step[i];
-      const double e = chain.evaluate(trial);
+      std::vector<double> trial = plus(slip, part, step);
+      const double e = chain.evaluate(trial, true);
       better = e < energy || chain.imbalance() < 0.5 * before;
       if (better) slip = std::move(trial), energy = e;
     }

@@ -1,8 +1,12 @@
 #include "talus/supports/bar.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "talus/base/error.h"
 
 namespace talus {
 
@@ -16,20 +20,25 @@ constexpr int kMostIterations = 100;
 // Force out of balance as share of the largest, at which the bar is taken to be in balance.
 constexpr double kBalanced = 1e-9;
 
-// A spring that yields: force, tangent and energy at elongation x from its place without force.
+// And what is too much to go on with.
+constexpr double kMostLeft = 1e-3;
+
+constexpr int kMostHalvings = 120;
+
+// A spring that yields: force and tangent at elongation x from its place without force.
 struct Law {
-  double force, tangent, energy;
+  double force, tangent;
 };
 
 Law law(double stiffness, double low, double high, double x) {
   const double f = stiffness * x;
-  if (f >= low && f <= high) return {f, stiffness, 0.5 * f * x};
+  if (f >= low && f <= high) return {f, stiffness};
   const double limit = f > high ? high : low, x0 = limit / stiffness, more = x - x0;
   const double soft = kHardening * stiffness;
-  return {limit + soft * more, soft, 0.5 * limit * x0 + limit * more + 0.5 * soft * more * more};
+  return {limit + soft * more, soft};
 }
 
-// The bar as a chain of unknown slips, with its energy, residual and tridiagonal tangent.
+// The bar as a chain of unknown slips, with its residual and tridiagonal tangent.
 class Chain {
  public:
   Chain(const std::vector<double>& rock, const Bolt& bolt) : rock_(rock), bolt_(bolt) {
@@ -37,17 +46,16 @@ class Chain {
     residual_.resize(n), held_.resize(n), linked_.resize(n);
   }
 
-  // Returns the energy; fills residual (force out of balance) and tangents.
+  // Fills residual (force out of balance, the slope of the energy) and tangents.
   // @param yields  false: as if no spring had a limit
-  double evaluate(const std::vector<double>& slip, bool yields) {
+  void evaluate(const std::vector<double>& slip, bool yields) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double energy = 0;
     scale_ = 0;
     for (size_t i = 0; i < slip.size(); ++i) {
       const BoltNode& n = bolt_.nodes[i];
       const double limit = yields ? n.limit : kInfinity;
       const Law l = law(n.stiffness, -limit, limit, slip[i] - n.plastic);
-      residual_[i] = l.force, held_[i] = l.tangent, energy += l.energy;
+      residual_[i] = l.force, held_[i] = l.tangent;
       scale_ = std::max(scale_, std::abs(l.force));
     }
     for (size_t j = 0; j < bolt_.segments.size(); ++j) {
@@ -57,10 +65,8 @@ class Chain {
       const double limit = yields ? s.yield : kInfinity;
       const Law l = law(s.stiffness, -limit, limit, slip[j + 1] - slip[j] + rock_[j] - s.plastic);
       residual_[j] -= l.force, residual_[j + 1] += l.force, linked_[j] = l.tangent;
-      energy += l.energy;
       scale_ = std::max(scale_, std::abs(l.force));
     }
-    return energy;
   }
 
   double imbalance() const {
@@ -69,6 +75,13 @@ class Chain {
     return most;
   }
   double scale() const { return scale_; }
+
+  // Slope of the energy along a step, at the last evaluation.
+  double slope(const std::vector<double>& step) const {
+    double sum = 0;
+    for (size_t i = 0; i < step.size(); ++i) sum += residual_[i] * step[i];
+    return sum;
+  }
 
   // The Newton step from the last evaluation. The elimination adds up what holds each node, springs in series
   // and side by side: without a difference in it, very stiff springs beside soft ones lose no digits.
@@ -98,43 +111,62 @@ std::vector<double> plus(const std::vector<double>& a, double part, const std::v
   return sum;
 }
 
-// Minimises the energy of the chain, which is convex: from the elastic answer Newton's steps, halved where
-// they lead too far.
-std::vector<double> solve(const std::vector<double>& rock, const Bolt& bolt) {
+// Where along a step the energy, which is convex, is least: a root of its slope, which rises. Leaves the
+// chain evaluated there and moves `slip`.
+void go_along(const std::vector<double>& step, Chain& chain, std::vector<double>& slip) {
+  const std::vector<double> begin = slip;
+  const auto slope_at = [&](double part) {
+    slip = plus(begin, part, step);
+    chain.evaluate(slip, true);
+    return chain.slope(step);
+  };
+  if (slope_at(1) <= 0) return;
+  // the root may lie many powers of ten below 1, where all of a bar slips
+  double low = 0, high = 1;
+  for (int k = 0; k < kMostHalvings; ++k) {
+    const double middle = low > 0 ? 0.5 * (low + high) : 0.1 * high;
+    if (middle <= low || middle >= high) break;
+    (slope_at(middle) <= 0 ? low : high) = middle;
+    if (high - low <= 1e-12 * high) break;
+  }
+  slope_at(low > 0 ? low : high);
+}
+
+// Minimises the energy of the chain: from the elastic answer Newton's steps, as far as each leads down.
+// Returns the force left out of balance, as share of the largest.
+double solve(const std::vector<double>& rock, const Bolt& bolt, std::vector<double>& slip) {
   Chain chain(rock, bolt);
-  std::vector<double> slip;
+  slip.clear();
   for (const BoltNode& n : bolt.nodes) slip.push_back(n.slip);
   for (int refine = 0; refine < 2; ++refine) {
     chain.evaluate(slip, false);
     slip = plus(slip, 1, chain.newton_step());
   }
-  double energy = chain.evaluate(slip, true);
-  for (int k = 0; k < kMostIterations && chain.imbalance() > kBalanced * chain.scale(); ++k) {
-    const std::vector<double> step = chain.newton_step();
-    const double before = chain.imbalance();
-    bool better = false;
-    for (double part = 1; part > 1e-6 && !better; part *= 0.5) {
-      std::vector<double> trial = plus(slip, part, step);
-      const double e = chain.evaluate(trial, true);
-      better = e < energy || chain.imbalance() < 0.5 * before;
-      if (better) slip = std::move(trial), energy = e;
-    }
-    if (!better) break;  // round-off
+  chain.evaluate(slip, true);
+  std::vector<double> best = slip;
+  double least = chain.imbalance();
+  for (int k = 0; k < kMostIterations && least > kBalanced * chain.scale(); ++k) {
+    go_along(chain.newton_step(), chain, slip);
+    if (chain.imbalance() < least) best = slip, least = chain.imbalance();
   }
-  return slip;
+  slip = best;
+  chain.evaluate(slip, true);
+  return chain.scale() > 0 ? least / chain.scale() : 0;
 }
 
-// Takes over the slips; returns how many segments ruptured at them.
-int keep(const std::vector<double>& rock, const std::vector<double>& slip, Bolt& bolt) {
-  int ruptured = 0;
+// Takes over the slips; ruptures the segment that is stretched most beyond its limit: the others may unload.
+bool keep(const std::vector<double>& rock, const std::vector<double>& slip, Bolt& bolt) {
+  BoltSegment* worst = nullptr;
+  double most = bolt.rupture_strain;
   for (size_t i = 0; i < slip.size(); ++i) bolt.nodes[i].slip = slip[i];
   for (size_t j = 0; j < bolt.segments.size(); ++j) {
     BoltSegment& s = bolt.segments[j];
     s.stretch = slip[j + 1] - slip[j] + rock[j];
-    if (s.ruptured) continue;
-    if ((s.stretch - s.start) > bolt.rupture_strain * s.gauge) s.ruptured = true, s.force = 0, ++ruptured;
+    const double strain = (s.stretch - s.start) / s.gauge;
+    if (!s.ruptured && strain > most) most = strain, worst = &s;
   }
-  return ruptured;
+  if (worst) worst->ruptured = true, worst->force = 0;
+  return worst != nullptr;
 }
 
 // A bar held at its ends alone: one spring, which carries no compression (its force may come out negative:
@@ -156,11 +188,14 @@ int stretch_anchored(double rock, Bolt& bolt) {
 
 int balance_bar(const std::vector<double>& rock, Bolt& bolt) {
   if (bolt.anchored) return stretch_anchored(rock[0], bolt);
-  int ruptured = 0, now = 0;
-  do {
-    now = keep(rock, solve(rock, bolt), bolt);
-    ruptured += now;
-  } while (now > 0);
+  int ruptured = 0;
+  std::vector<double> slip;
+  double left = solve(rock, bolt, slip);
+  for (; keep(rock, slip, bolt); ++ruptured) left = solve(rock, bolt, slip);
+  if (!(left <= kMostLeft))
+    throw NumericalError(fmt::format(
+        "the statics of a grouted bolt were not solved: {:.2g} of its largest force is out of balance",
+        left));
   for (BoltNode& n : bolt.nodes) {
     const double x = n.slip - n.plastic;
     if (n.stiffness * std::abs(x) > n.limit) n.plastic += x - std::copysign(n.limit / n.stiffness, x);

@@ -9,6 +9,7 @@ namespace talus {
 /// Brings the bar into balance and keeps what slipped, yielded or ruptured.
 /// @param rock  elongation of the rock along each segment since installation [n_segments] [m]
 /// @return the number of segments that ruptured
+/// Throws NumericalError when no balance is found.
 int balance_bar(const std::vector<double>& rock, Bolt& bolt);
 
 /// Elastic stiffness of the forces in `of` segments against the elongations of the rock there, as the largest

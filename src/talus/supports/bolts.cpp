@@ -212,7 +212,7 @@ std::vector<BoltPart> bolt_parts(const BlockSet& blocks, const State& state) {
       part.axial = s.force / bolt.share;
       if (part.crossing) {
         const BoltCrossing& c = bolt.crossings[static_cast<size_t>(s.crossing)];
-        part.axial = 0.0 - c.row[0] / bolt.share, part.shear = c.row[1] / bolt.share;
+        part.axial = 0.0 - c.row[0] / bolt.share, part.shear = 0.0 + c.row[1] / bolt.share;
       }
       part.elongation = s.stretch;
       part.condition = s.ruptured ? BoltPart::kRuptured : s.yielded ? BoltPart::kYielded : BoltPart::kElastic;

@@ -60,6 +60,9 @@ struct Contact {
   std::array<double, 2> force{};  // normal, tangential [N]
   double stretch = 0;             // elastic slip [m]
   double anchor = 0;              // slip coordinate at which it sticks [m]; NaN: it slid
+  double slip = 0;                // [m] beyond the elastic one, both ways added up
+  double slip_signed = 0;         // [m] the same with its sign: > 0 along the tangent
+  bool touched = false;           // the two have been in touch here
 };
 
 /// Two blocks near each other. Their contact points are sought anew when they have moved against each other
@@ -85,6 +88,8 @@ struct CandidateList {
 /// Condition of a face that was intact at the start and may break.
 struct FaceState {
   bool broken = false;
+  int64_t broken_step = -1;            // State::step before which it broke
+  std::array<double, 2> offset{};      // distance of the tied points along the tangent when it broke [m]
   std::array<double, 4> mean_force{};  // running mean of normal, tangential of point 0 and of point 1 [N]
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/blocks/in_situ.h"
+#include "talus/contact/joint_state.h"
 
 namespace talus {
 
@@ -19,7 +20,7 @@ constexpr double kAtLimit = 0.99999;
 bool has_strength(const std::vector<JointProperty>& joints, int joint) {
   if (joint < 0) return false;
   const JointProperty& j = joints[static_cast<size_t>(joint)];
-  return j.bonded || j.cohesion > 0 || j.tensile_strength > 0;
+  return j.bonded || j.can_break();
 }
 
 // Overlaps of antiparallel edges of two blocks in contact, as faces.
@@ -112,6 +113,37 @@ void close_face(const Model& model, const BlockSet& blocks, BondFace& face) {
   }
 }
 
+// What two ends without tensile strength show when they part, and a face without cohesion when it slips.
+bool stands_open(const JointProperty& joint, double opening, double noticed) {
+  return joint.tensile_strength == 0 && opening > noticed;
+}
+
+// Whether a face has come to its limit at both ends: pulled or open, or at the limit of its shear.
+bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointProperty& joint,
+                 const FaceState& now, const FaceOffset& offset) {
+  const double half_area = 0.5 * face.length * blocks.thickness, mu = std::tan(joint.friction_angle);
+  const double noticed =
+      noticeable(blocks, static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
+  int pulled = 0;                               // ends at their tensile strength, or open
+  double shear = 0, shear_limit = 0, slip = 0;  // of the other ends
+  for (size_t end = 0; end < 2; ++end) {
+    const double normal = now.mean_force[2 * end], along = now.mean_force[2 * end + 1];
+    if (stands_open(joint, offset.opening[end], noticed) ||
+        (normal < 0 && normal <= -kAtLimit * joint.tensile_strength * half_area)) {
+      ++pulled;
+      continue;
+    }
+    shear += along;
+    shear_limit += std::max(0.0, joint.cohesion * half_area + mu * normal);
+    const double elastic = joint.shear_stiffness > 0 ? -along / (joint.shear_stiffness * half_area) : 0;
+    slip = std::max(slip, std::abs(offset.tangential[end] - elastic));
+  }
+  // shear as a resultant: how two rigid blocks share it between the ends of a face is not determined
+  const bool sheared = shear != 0 && std::abs(shear) >= kAtLimit * shear_limit;
+  // without cohesion the limit falls to nothing wherever nothing presses, which breaks nothing
+  return pulled == 2 || (sheared && (joint.cohesion > 0 || slip > noticed));
+}
+
 }  // namespace
 
 BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks) {
@@ -137,6 +169,8 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
       face.joint = layout.joint_at(a, face.edge_a, b, face.edge_b);
       face.unbreakable = face.joint >= 0 && model.joints[static_cast<size_t>(face.joint)].bonded;
       if (model.in_situ.given && face.joint >= 0 && !face.unbreakable) close_face(model, blocks, face);
+      face.elastic_shear =
+          face.joint >= 0 && model.joints[static_cast<size_t>(face.joint)].shear_stiffness > 0;
       face.memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
       all_bonded = all_bonded && face.unbreakable;
       if (has_strength(model.joints, face.joint)) bonds.faces.push_back(face);
@@ -146,6 +180,22 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
   }
   tie_around_corners(layout, blocks, without_face, bonds);
   return bonds;
+}
+
+FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face) {
+  const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
+  const int next = (face.edge_b + 1) % blocks.vertex_count(face.block_b);
+  const Vec2 edge = blocks.corner(face.block_b, next) - blocks.corner(face.block_b, face.edge_b);
+  const Vec2 now = edge + state.strain_part[b] * edge;
+  FaceOffset out;
+  out.normal = turn_right(now) / norm(now);
+  for (int end = 0; end < 2; ++end) {
+    const Vec2 apart =
+        displacement_at(state, a, face.arm_a[end]) - displacement_at(state, b, face.arm_b[end]);
+    out.opening[end] = dot(out.normal, apart) + face.closure[end].x;
+    out.tangential[end] = dot(turn_right(out.normal), apart) + face.closure[end].y;
+  }
+  return out;
 }
 
 bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
@@ -166,21 +216,15 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     const BondFace& face = bonds.faces[f];
     if (state.face[f].broken || !blocks.interact(face.block_a, face.block_b)) continue;
     const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
-    const int nb = blocks.vertex_count(face.block_b);
-    const Vec2 edge =
-        blocks.corner(face.block_b, (face.edge_b + 1) % nb) - blocks.corner(face.block_b, face.edge_b);
-    const Vec2 now = edge + state.strain_part[b] * edge;
-    const Vec2 normal = turn_right(now) / norm(now);
+    const FaceOffset apart = face_offset(blocks, state, face);
     for (int end = 0; end < 2; ++end) {
       PointRows p;
       p.block_a = face.block_a, p.block_b = face.block_b;
       p.arm_a = acting_arm(blocks, state, a, face.arm_a[end]);
       p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
-      p.normal = normal;
-      const Vec2 apart =
-          displacement_at(state, a, face.arm_a[end]) - displacement_at(state, b, face.arm_b[end]);
-      p.row[0].bias = (dot(normal, apart) + face.closure[end].x) / timing.dt;
-      p.row[1].bias = (dot(turn_right(normal), apart) + face.closure[end].y) / timing.dt;
+      p.normal = apart.normal;
+      p.row[0].bias = apart.opening[end] / timing.dt;
+      p.row[1].bias = apart.tangential[end] / timing.dt;
       if (!face.unbreakable) {
         const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
@@ -190,7 +234,8 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
           p.partner = static_cast<int>(rows.size()) + (end == 0 ? 1 : -1);
         }
         p.friction = std::tan(joint.friction_angle);
-        p.cohesion = joint.cohesion * half_area * timing.dt_kick;
+        const bool open = stands_open(joint, apart.opening[end], noticeable(blocks, a, b));
+        p.cohesion = open ? 0 : joint.cohesion * half_area * timing.dt_kick;
       }
       // the two tangential rows of a face between rigid blocks say the same: from equal guesses they stay
       // equal. Where a block deforms, unequal ones belong to a balance that must not be disturbed
@@ -204,34 +249,25 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
   }
 }
 
-int update_bonds(const BondSet& bonds, const std::vector<JointProperty>& joints, double thickness, double dt,
-                 State& state) {
+int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+                 double dt, State& state) {
   int broken = 0;
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
     FaceState& now = state.face[f];
     if (face.unbreakable || now.broken) continue;
     const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
-    const double half_area = 0.5 * face.length * thickness, mu = std::tan(joint.friction_angle);
     const double share = dt / (face.memory + dt);
-    int pulled = 0;                     // ends at their tensile strength
-    double shear = 0, shear_limit = 0;  // of the other ends
-    for (size_t end = 0; end < 2; ++end) {
-      const auto& force = state.bond_force[2 * f + end];
-      for (size_t k = 0; k < 2; ++k)
-        now.mean_force[2 * end + k] += share * (force[k] - now.mean_force[2 * end + k]);
-      const double normal = now.mean_force[2 * end];
-      if (normal < 0 && normal <= -kAtLimit * joint.tensile_strength * half_area) {
-        ++pulled;
-        continue;
+    for (size_t end = 0; end < 2; ++end)
+      for (size_t k = 0; k < 2; ++k) {
+        double& mean = now.mean_force[2 * end + k];
+        mean += share * (state.bond_force[2 * f + end][k] - mean);
       }
-      shear += now.mean_force[2 * end + 1];
-      shear_limit += std::max(0.0, joint.cohesion * half_area + mu * normal);
-    }
-    // shear as a resultant: how two rigid blocks share it between the ends of a face is not determined
-    const bool at_limit = pulled == 2 || (shear != 0 && std::abs(shear) >= kAtLimit * shear_limit);
-    if (!at_limit) continue;
+    const FaceOffset offset = face_offset(blocks, state, face);
+    if (!is_at_limit(blocks, face, joint, now, offset)) continue;
     now.broken = true;
+    now.broken_step = state.step;
+    now.offset = {offset.tangential[0], offset.tangential[1]};
     state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};
     ++broken;
   }

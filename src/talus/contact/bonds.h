@@ -20,6 +20,7 @@ struct BondFace {
   double length = 0;        // [m]
   int joint = -1;
   bool unbreakable = false;
+  bool elastic_shear = false;  // the joint has shear stiffness
   double memory = 0;  // [s] time over which forces are averaged before strength is judged: one block transit
 };
 
@@ -41,9 +42,18 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
                    const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
                    RowSet& rows, std::vector<int>& owner);
 
-/// Follows the mean forces of breakable faces over a step of length dt and breaks those at their limit at
-/// both ends. Returns the number broken.
-int update_bonds(const BondSet& bonds, const std::vector<JointProperty>& joints, double thickness, double dt,
-                 State& state);
+/// How far the tied points of a face are apart, material point from material point, counted from the joint
+/// without force (the stress of the ground has closed it).
+struct FaceOffset {
+  Vec2 normal;           // of the face now, from b into a
+  double opening[2];     // along the normal, > 0 apart [m]
+  double tangential[2];  // motion of a along the tangent, as b sees it [m]
+};
+FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face);
+
+/// Follows the mean forces of breakable faces over a step of length dt and breaks those at their limit, or
+/// open, at both ends. Returns the number broken.
+int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+                 double dt, State& state);
 
 }  // namespace talus

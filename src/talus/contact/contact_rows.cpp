@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/blocks/in_situ.h"
+#include "talus/contact/joint_state.h"
 
 namespace talus {
 
@@ -31,6 +32,14 @@ double beyond(double off, double slop) {
   return off > 0 ? off - 0.5 * slop : off + 0.5 * slop;
 }
 
+// How far a contact is from where it sticks, before the kick [m].
+double off_anchor(const Contact& c, double slip) {
+  // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
+  const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
+  if (c.memory == Contact::kNone) return 0;
+  return anew ? c.stretch : slip - c.anchor;
+}
+
 }  // namespace
 
 void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
@@ -42,7 +51,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
   std::vector<JointProperty> joints = model.joints;
   joints.emplace_back();
   std::vector<double> friction;
-  for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_angle));
+  for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_after()));
   const size_t plain = joints.size() - 1;
 
   const auto add = [&](const ContactPair& pair, size_t i) {
@@ -62,7 +71,9 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
                                 turn_right(edge) / norm(edge));
     }
     // only what was never disturbed sticks with the stress of the ground
-    place[i] = {over.gap, slip, state.step == 0 ? closure.y : 0};
+    const double off = state.step == 0 ? closure.y : 0;
+    const double rise = dilation_rise(property, c.slip), gap = over.gap - rise;
+    place[i] = {over.gap, slip, off, rise, c.slip, c.slip_signed};
 
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
@@ -73,21 +84,25 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     p.lower = 0, p.cohesion = 0;
     const bool soft = property.normal_stiffness > 0;
     const double size = std::min(blocks.size[a], blocks.size[b]), slop = model.contact.slop * size;
-    p.row[0].bias = soft ? (over.gap + closure.x) / timing.dt : hard_bias(over.gap, slop, timing.dt);
+    p.row[0].bias = soft ? (gap + closure.x) / timing.dt : hard_bias(gap, slop, timing.dt);
+    // what a broken face keeps, end by end, while it is in touch
+    if (pair.face >= 0 && gap <= noticeable(blocks, a, b)) {
+      const double impulse = c.length * blocks.thickness * timing.dt_kick;
+      p.lower = -property.residual_tensile_strength * impulse;
+      p.cohesion = property.residual_cohesion * impulse;
+    }
 
     Impulse guess{};
     if (c.memory == Contact::kNone) {
       p.row[1].bias = place[i].off / timing.dt;
     } else {
       guess = {c.force[0] * timing.dt_kick, c.force[1] * timing.dt_kick};
-      // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
-      const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
-      const double off = anew ? c.stretch : slip - c.anchor;
+      const double off = off_anchor(c, slip);
       p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing.dt;
     }
     if (property.restitution >= 0 || soft || property.shear_stiffness > 0) {
       const auto u = relative_velocity(p, before);
-      if (property.restitution >= 0 && over.gap + timing.dt * u[0] <= 0 && u[0] < 0)
+      if (property.restitution >= 0 && gap + timing.dt * u[0] <= 0 && u[0] < 0)
         p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
       if (soft || property.shear_stiffness > 0) {
         // two ends with different joints close on their own
@@ -120,6 +135,14 @@ void remember_contacts(const RowSet& rows, size_t first, const std::vector<Conta
       double elastic = p.row[1].compliance * impulse[1];
       if (p.partner >= 0) elastic += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
       const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
+      const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0;
+      c.touched = c.touched || held;
+      if (held && slides(p, impulse)) {
+        // the place where it would stick goes along with the slip that is not elastic
+        const double gone =
+            off_anchor(c, place[i].slip) + timing.dt * relative_velocity(p, state.rate)[1] + elastic * factor;
+        c.slip += std::abs(gone), c.slip_signed += gone;
+      }
       if (slides(p, impulse))
         c.anchor = std::nan("");
       else if (!anchored)

@@ -13,6 +13,8 @@ struct ContactPlace {
   double gap = 0;   // [m] > 0 apart
   double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge
   double off = 0;   // [m] elastic slip of a new contact, by the stress of the ground
+  double rise = 0;  // [m] gap at which it is in touch: dilation
+  double slipped = 0, slipped_signed = 0;  // [m] Contact::slip, ::slip_signed before this kick
 };
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has
@@ -23,7 +25,8 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
                       const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
                       RowSet& rows, std::vector<ContactPlace>& place);
 
-/// Stores force and anchor of each contact in the state.
+/// Stores force, anchor and slip of each contact in the state.
+/// @pre  state.rate are the rates after the kick
 /// @param first  index of the first contact row in `rows`
 void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
                        const RowTiming& timing, const Workers& workers, State& state);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/contact/hand_over.h"
 
 namespace talus {
 
@@ -126,6 +127,7 @@ Contact contact_of(const ContactPoint& point, const std::vector<ContactPoint>& a
   if (!from) return c;
   const bool same = from->key == c.key;
   c.force = from->force, c.stretch = from->stretch;
+  c.slip = from->slip, c.slip_signed = from->slip_signed, c.touched = from->touched;
   c.anchor = same ? from->anchor : 0;
   c.memory = same ? from->memory : Contact::kPassed;
   return c;
@@ -194,6 +196,7 @@ class Updater {
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
         changed.contact.push_back(contact_of(p, found, joints_of_, known, pair.count));
+      hand_over(blocks_, bonds_, s, pair, changed.contact.data() + at, found.size());
       if (static_cast<int>(found.size()) == pair.count) {
         std::copy(changed.contact.begin() + static_cast<std::ptrdiff_t>(at), changed.contact.end(),
                   state_.contacts.begin() + pair.begin);

@@ -2,6 +2,7 @@
 // What the user asked for: plain data in SI units, names resolved to indices. Nothing here moves.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -33,6 +34,19 @@ struct JointProperty {
   double normal_stiffness = 0;  // kn [Pa/m], 0 = hard
   double shear_stiffness = 0;   // ks [Pa/m], 0 = hard
   double restitution = -1;      // ratio of normal velocities, -1 = as the scheme gives (theory 7.1)
+  double dilation_angle = 0;    // [rad] rise per slip
+  double dilation_slip = std::numeric_limits<double>::infinity();             // [m] slip up to which it rises
+  double residual_friction_angle = std::numeric_limits<double>::quiet_NaN();  // [rad], NaN = friction_angle
+  double residual_cohesion = 0, residual_tensile_strength = 0;                // [Pa]
+
+  /// Friction angle once a face has slipped or opened [rad].
+  double friction_after() const {
+    return std::isnan(residual_friction_angle) ? friction_angle : residual_friction_angle;
+  }
+  /// Whether a face that touches at the start has anything to lose.
+  bool can_break() const {
+    return !bonded && (cohesion > 0 || tensile_strength > 0 || friction_after() < friction_angle);
+  }
 };
 
 enum class ContactLaw { kExact, kSmoothed };
@@ -216,14 +230,14 @@ struct ChangeInput {
 /// Stress of the ground at the start; pressures > 0 push.
 struct InSituInput {
   bool given = false;
-  bool with_depth = false;                           // else the same everywhere
-  double level = 0;                                  // [m] y at which depth begins
-  double pressure = 0;                               // vertical, there [Pa]
-  double density = 0;                                // of the ground between there and a point [kg/m3]
+  bool with_depth = false;                               // else the same everywhere
+  double level = 0;                                      // [m] y at which depth begins
+  double pressure = 0;                                   // vertical, there [Pa]
+  double density = 0;                                    // of the ground between there and a point [kg/m3]
   double k0 = std::numeric_limits<double>::quiet_NaN();  // horizontal / vertical; NaN: the two below
-  double horizontal_pressure = 0;                    // at the level [Pa]
-  double horizontal_gradient = 0;                    // with depth [Pa/m]
-  Mat2 stress;                                       // everywhere [Pa], tension > 0
+  double horizontal_pressure = 0;                        // at the level [Pa]
+  double horizontal_gradient = 0;                        // with depth [Pa/m]
+  Mat2 stress;                                           // everywhere [Pa], tension > 0
   Where where, where_level;
 };
 
@@ -241,6 +255,16 @@ struct MonitorInput {
 struct OutputInput {
   double history_interval = 0, steps_interval = 0,
          field_interval = 0;  // [s] 0 = every step; fields: stage ends
+};
+
+/// Search for the factor of safety by strength reduction (`talus safety`).
+struct SafetyInput {
+  double lowest = 0.5, highest = 4;  // factors between which it is sought
+  double tolerance = 0.01;           // of the factor
+  double displacement =
+      std::numeric_limits<double>::quiet_NaN();  // [m] at which a trial has failed, NaN = automatic
+  std::vector<int> joints;                       // reduced; empty: all
+  Where where;
 };
 
 struct Model {
@@ -281,6 +305,7 @@ struct Model {
   InSituInput in_situ;
   std::vector<MonitorInput> monitors;
   OutputInput output;
+  SafetyInput safety;
 };
 
 }  // namespace talus

@@ -44,6 +44,7 @@ class ModelReader : private SectionReader {
     read_bolt_sections(source_, model_, findings_);
     read_monitors();
     read_output();
+    read_safety();
     for (const BlockInput& b : model_.blocks)
       check_material_of(b.kind, b.material, b.where, "block." + b.name);
     for (const GridInput& g : model_.grids) check_material_of(g.kind, g.material, g.where, "grid." + g.name);
@@ -169,20 +170,48 @@ class ModelReader : private SectionReader {
       j.normal_stiffness = f.get("normal_stiffness", 0.0);
       j.shear_stiffness = f.get("shear_stiffness", 0.0);
       j.restitution = f.get("restitution", -1.0);
-      if (f.given("restitution") && (j.normal_stiffness > 0 || j.cohesion > 0 || j.tensile_strength > 0))
+      j.dilation_angle = f.get("dilation_angle", 0.0);
+      j.dilation_slip = f.get("dilation_slip", j.dilation_slip);
+      j.residual_friction_angle = f.get("residual_friction_angle", j.residual_friction_angle);
+      j.residual_cohesion = f.get("residual_cohesion", 0.0);
+      j.residual_tensile_strength = f.get("residual_tensile_strength", 0.0);
+      if (f.given("restitution") && (j.normal_stiffness > 0 || j.can_break() || j.dilation_angle > 0))
         findings_.error(f.where("restitution"), f.path_of("restitution"),
-                        "is only for hard joints without strength",
-                        "leave out the stiffness and the strengths");
+                        "is only for hard joints without strength, weakening and dilation",
+                        "leave out the stiffness, the strengths and the dilation");
       for (const char* key : {"friction_angle", "cohesion", "tensile_strength", "normal_stiffness",
-                              "shear_stiffness", "restitution"}) {
+                              "shear_stiffness", "restitution", "dilation_angle", "dilation_slip",
+                              "residual_friction_angle", "residual_cohesion", "residual_tensile_strength"}) {
         if (j.bonded && f.given(key))
           findings_.error(f.where(key), f.path_of(key),
                           "has no meaning for a bonded joint, which never breaks",
                           "leave it out, or make the joint kind = \"frictional\"");
       }
+      if (!j.bonded) check_residual(f, j);
       model_.joints.push_back(j);
       joint_where_.push_back(f.where());
     });
+  }
+
+  // What is left of a joint is no more than what it had, and its rise costs no less than friction takes.
+  void check_residual(const Fields& f, const JointProperty& j) {
+    for (const auto& [key, peak] :
+         {std::pair("residual_friction_angle", "friction_angle"), std::pair("residual_cohesion", "cohesion"),
+          std::pair("residual_tensile_strength", "tensile_strength")})
+      if (f.given(key) && f.get(key, 0.0) > f.get(peak, 0.0))
+        findings_.error(f.where(key), f.path_of(key), fmt::format("is larger than {}", peak),
+                        fmt::format("give at most {}, or leave it out", peak));
+    if (j.dilation_angle > j.friction_after())
+      findings_.error(
+          f.where("dilation_angle"), f.path_of("dilation_angle"),
+          fmt::format("is {}, larger than the {} of {}: slip would give energy",
+                      with_unit(j.dilation_angle, Dimension::kAngle),
+                      f.given("residual_friction_angle") ? "residual_friction_angle" : "friction_angle",
+                      with_unit(j.friction_after(), Dimension::kAngle)),
+          "give at most that");
+    if (f.given("dilation_slip") && j.dilation_angle == 0)
+      findings_.error(f.where("dilation_slip"), f.path_of("dilation_slip"),
+                      "has no meaning without dilation_angle", "give dilation_angle, or leave it out");
   }
 
   void read_histories() {
@@ -328,6 +357,11 @@ class ModelReader : private SectionReader {
     for (const char* key : {"smoothing_force", "smoothing_slip"})
       if (f.given(key) && contact.law == ContactLaw::kExact)
         findings_.error(f.where(key), f.path_of(key), "belongs to law = \"smoothed\"");
+    for (const JointProperty& j : model_.joints)
+      if (contact.law == ContactLaw::kSmoothed && j.dilation_angle > 0)
+        findings_.error(f.where("law"), f.path_of("law"),
+                        fmt::format("never slips by its rules, and joint \"{}\" dilates with slip", j.name),
+                        "use law = \"exact\", or leave dilation_angle out");
     for_list("contact_pair", [this](const Fields& p) {
       ContactPairInput c;
       const auto names = p.get<std::vector<std::string>>("between");
@@ -411,6 +445,27 @@ class ModelReader : private SectionReader {
     model_.output.history_interval = f.get("history_interval", 0.0);
     model_.output.steps_interval = f.get("steps_interval", 0.0);
     model_.output.field_interval = f.get("field_interval", 0.0);
+  }
+
+  void read_safety() {
+    const Fields f = read_table("safety");
+    SafetyInput& s = model_.safety;
+    s.lowest = f.get("lowest", s.lowest);
+    s.highest = f.get("highest", s.highest);
+    s.tolerance = f.get("tolerance", s.tolerance);
+    s.displacement = f.get("displacement_limit", s.displacement);
+    s.where = f.where();
+    if (!(s.lowest < s.highest))
+      findings_.error(f.where("highest"), f.path_of("highest"), "must be larger than lowest");
+    for (const std::string& name : f.get<std::vector<std::string>>("joints")) {
+      const int i = refer_name(name, f.where("joints"), f.path_of("joints"), model_.joints, "joint");
+      if (i < 0) continue;
+      s.joints.push_back(i);
+      if (model_.joints[static_cast<size_t>(i)].bonded)
+        findings_.error(f.where("joints"), f.path_of("joints"),
+                        fmt::format("joint \"{}\" is bonded: it has no strength to reduce", name),
+                        "leave it out");
+    }
   }
 
   Model& model_;

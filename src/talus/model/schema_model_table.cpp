@@ -108,7 +108,35 @@ std::vector<SectionSpec> model_sections() {
          .range = {.min = 0, .max = 1},
          .doc = "Ratio of the normal velocities after and before a touch; none: what the scheme gives "
                 "(docs/theory.md "
-                "7.1). Only for hard joints."}}},
+                "7.1). Only for hard joints."},
+        {.name = "dilation_angle",
+         .dimension = D::kAngle,
+         .range = {.min = 0, .max = 1.5533430342749532},
+         .default_text = "\"0 deg\"",
+         .doc = "Rise of the joint as it slips, either way: the faces part by tan(dilation_angle) x slip. At "
+                "most the "
+                "residual friction angle, else slip would give energy."},
+        {.name = "dilation_slip",
+         .dimension = D::kLength,
+         .range = kPositive,
+         .doc = "Slip, added up over both ways, at which the rise ends; none: it never does."},
+        {.name = "residual_friction_angle",
+         .dimension = D::kAngle,
+         .range = {.min = 0, .max = 1.5533430342749532},
+         .doc = "Friction angle once a face that touched at the start has slipped or opened, and of all that "
+                "comes "
+                "into touch later; none: `friction_angle`."},
+        {.name = "residual_cohesion",
+         .dimension = D::kStress,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa\"",
+         .doc =
+             "Cohesion of a face once it has slipped or opened, where the two blocks still touch along it."},
+        {.name = "residual_tensile_strength",
+         .dimension = D::kStress,
+         .range = kNonNegative,
+         .default_text = "\"0 Pa\"",
+         .doc = "Tensile strength of a face once it has slipped; where it opens nothing is left."}}},
 
       {"history",
        SectionShape::kNamed,

@@ -98,6 +98,38 @@ std::vector<SectionSpec> run_sections() {
          .range = kNonNegative,
          .default_text = "\"0 s\"",
          .doc = "Spacing of the ParaView frames; 0: only the start and the end of each stage."}}},
+
+      {"safety",
+       SectionShape::kTable,
+       "How `talus safety` seeks the factor of safety: tan(friction angle), cohesion and tensile strength of "
+       "joints, "
+       "peak and residual, are divided by a factor F; the static stages before the first dynamic one are run "
+       "from "
+       "the start; the largest F at which they come to rest is found by halving. Other verbs ignore it.",
+       {{.name = "lowest",
+         .range = kPositive,
+         .default_text = "0.5",
+         .doc = "Factor at which the model should stand; tried first."},
+        {.name = "highest",
+         .range = kPositive,
+         .default_text = "4",
+         .doc = "Factor at which it should fail; tried second."},
+        {.name = "tolerance",
+         .range = {.min = 1e-6, .max = 1},
+         .default_text = "0.01",
+         .doc =
+             "Difference of the last factor that stands and the first that fails at which the search ends."},
+        {.name = "displacement_limit",
+         .type = K::kQuantityAuto,
+         .dimension = D::kLength,
+         .range = kPositive,
+         .default_text = "\"auto\"",
+         .doc = "A trial has failed when some block has moved this far since the start of its stage. "
+                "\"auto\": a "
+                "tenth of the smallest block's size (the square root of its area)."},
+        {.name = "joints",
+         .type = K::kTexts,
+         .doc = "Names of the joints whose strength is reduced; none: all but bonded ones."}}},
   };
 }
 

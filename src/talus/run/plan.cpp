@@ -20,7 +20,8 @@ constexpr double kWarnClampShare = 0.03;
 constexpr double kMostSteps = 1e12;
 
 // Measured sizes of one cell or item in result files [bytes], from runs of the examples.
-constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 120, kVtkFile = 1700;
+constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 152, kVtkFile = 1900,
+                 kJointRow = 200;
 
 // Median over the deformable blocks; infinite without any.
 double median_of_deformable(const BlockSet& blocks, const std::function<double(int)>& value) {
@@ -174,11 +175,15 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
 
   const double corners = static_cast<double>(scene.blocks.arm.size());
   const double points = 2.0 * p.bond_faces + p.contacts + p.supported + p.boundary;
+  const auto breakable = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(),
+                                       [](const BondFace& f) { return !f.unbreakable; });
+  const double joint_rows =
+      (2.0 * static_cast<double>(breakable) + p.contacts) * static_cast<double>(plans.size());
   const double columns = static_cast<double>(Histories(scene, nullptr).columns().size());
   const double frame = kVtkCorner * corners + kVtkBlock * p.blocks + kVtkContact * points + 2 * kVtkFile;
   p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +
                          static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
-             frame * static_cast<double>(p.frames) + 5000 +
+             frame * static_cast<double>(p.frames) + kJointRow * joint_rows + 5000 +
              2 * (900 + 50 * corners + 60.0 * p.blocks);  // tables, frames, summary, two pictures
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies

@@ -7,6 +7,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/contact/joint_state.h"
 
 namespace talus {
 
@@ -47,7 +48,8 @@ double contact_margin(const Scene& scene, const State& state, double dt) {
   }
   // rounded up to a power of two times the share, so that the candidate list survives small changes of speed
   double margin = kMarginShare * smallest_size(blocks);
-  while (margin < 4 * fastest * dt) margin *= 2;
+  const double rise = largest_rise(scene.model, state);  // faces that rode up are that far apart and in touch
+  while (margin < 4 * fastest * dt + 2 * rise) margin *= 2;
   return margin;
 }
 

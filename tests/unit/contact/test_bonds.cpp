@@ -67,7 +67,7 @@ Scene grid_scene(int joint, GridPattern pattern = GridPattern::kRectangles) {
 Scene pair_scene(int joint) { return scene_of({box(0, 0, 1, 1), box(0, 1, 1, 2)}, joint); }
 
 int update(const Scene& s, double dt, State& state) {
-  return update_bonds(s.bonds, s.model.joints, s.blocks.thickness, dt, state);
+  return update_bonds(s.blocks, s.bonds, s.model.joints, dt, state);
 }
 
 constexpr double kEnd = 0.5 * 1 * kThickness;  // area of half the face of pair_scene [m2]

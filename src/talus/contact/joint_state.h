@@ -1,0 +1,35 @@
+#pragma once
+// What has become of a joint at a point: how far it slipped, rose over its roughness and opened. Theory:
+// docs/theory.md sections 3.5 and 4.17.
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/blocks/state.h"
+
+namespace talus {
+
+/// Slip and opening of a joint below this share of the smaller block are none [m].
+inline double noticeable(const BlockSet& blocks, size_t a, size_t b) {
+  return 1e-6 * std::min(blocks.size[a], blocks.size[b]);
+}
+
+/// Rise of a joint that has slipped by `slip`, both ways added up (4.8) [m].
+inline double dilation_rise(const JointProperty& joint, double slip) {
+  if (joint.dilation_angle == 0) return 0;
+  return std::tan(joint.dilation_angle) * std::min(slip, joint.dilation_slip);
+}
+
+/// The largest rise of all contacts [m]; 0, at no cost, where no joint dilates.
+double largest_rise(const Model& model, const State& state);
+
+/// kApart: near each other, but never in touch.
+enum class JointState { kIntact, kSlipped, kOpen, kApart };
+const char* state_name(JointState state);
+
+/// @param normal_force  > 0 pressing [N]
+/// @param opening       gap less the rise [m]
+/// @param noticed       noticeable() of the two blocks [m]
+JointState joint_state(bool touched, double normal_force, double slip, double opening, double noticed);
+
+}  // namespace talus

@@ -58,7 +58,7 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
                       "replace the results in it",
                       folder.string()));
     const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
-                      fs::exists(folder / "record.json", ec) ||
+                      fs::exists(folder / "record.json", ec) || fs::exists(folder / "safety.json", ec) ||
                       (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
     if (!empty && !ours)
       throw FileError(
@@ -74,8 +74,10 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
            {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
             "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"})
         fs::remove(folder / name, ec);
+    } else if (kind == ResultKind::kSafety) {
+      for (const char* name : {"safety.json", "safety.csv", "model.toml"}) fs::remove(folder / name, ec);
     } else {
-      for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "run.log",
+      for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "run.log",
                                "blocks_start.svg", "blocks_end.svg", "bolts.csv"})
         fs::remove(folder / name, ec);
       for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);

@@ -14,7 +14,7 @@ void write_file(const std::filesystem::path& path, const std::string& content);
 /// Prepares the folder for results. Throws FileError when it holds anything and `force` is false, or when
 /// what it holds is no (even unfinished) run of talus: then even `force` removes nothing.
 /// Of an earlier run, cut or record only the files of the same kind are removed.
-enum class ResultKind { kRun, kCut, kRecord };
+enum class ResultKind { kRun, kCut, kRecord, kSafety };
 void open_result_folder(const std::filesystem::path& folder, bool force, ResultKind kind = ResultKind::kRun);
 
 /// A table written row by row; every row is complete in the file when append() returns after flush().

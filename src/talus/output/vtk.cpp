@@ -44,13 +44,14 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
 }
 
 std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time) {
-  std::vector<double> points, force, normal, shear, gap;
-  std::vector<int64_t> kind, connectivity, offsets;
+  std::vector<double> points, force, normal, shear, gap, slip, opening;
+  std::vector<int64_t> kind, state, connectivity, offsets;
   for (const ContactFrame& c : contacts) {
     push3(points, c.point);
     push3(force, c.force);
-    normal.push_back(c.normal_force), shear.push_back(c.shear_force), gap.push_back(c.gap),
-        kind.push_back(c.kind);
+    normal.push_back(c.normal_force), shear.push_back(c.shear_force), gap.push_back(c.gap);
+    slip.push_back(c.slip), opening.push_back(c.opening);
+    kind.push_back(c.kind), state.push_back(c.state);
     connectivity.push_back(static_cast<int64_t>(connectivity.size()));
     offsets.push_back(static_cast<int64_t>(connectivity.size()));
   }
@@ -62,7 +63,8 @@ std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time)
   out += "<Points>\n" + doubles("Points", 3, points) + "</Points>\n<Verts>\n" +
          integers("connectivity", connectivity) + integers("offsets", offsets) + "</Verts>\n";
   out += "<PointData>\n" + doubles("force [N]", 3, force) + doubles("normal force [N]", 1, normal) +
-         doubles("shear force [N]", 1, shear) + doubles("gap [m]", 1, gap) + integers("kind", kind) +
+         doubles("shear force [N]", 1, shear) + doubles("gap [m]", 1, gap) + doubles("slip [m]", 1, slip) +
+         doubles("opening [m]", 1, opening) + integers("kind", kind) + integers("state", state) +
          "</PointData>\n";
   return out + "</Piece>\n</PolyData>\n</VTKFile>\n";
 }

@@ -30,12 +30,8 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
   const RowSet& rows = i.work.rows;
   for (size_t r = 0; r < rows.points.size(); ++r) {
     const PointRows& p = rows.points[r];
-    const auto a = static_cast<size_t>(p.block_a);
     ContactFrame f;
-    // the acting arm of a deformable block is the reference one
-    const bool deforms = scene.blocks.kind[a] == BlockKind::kDeformable;
-    const Vec2 from_centroid = deforms ? p.arm_a + i.state.strain_part[a] * p.arm_a : p.arm_a;
-    f.point = scene.blocks.centroid[a] + i.state.displacement[a] + from_centroid;
+    f.point = point_now(scene, i.state, p);
     f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.dt_kick;
     f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
     f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
@@ -45,6 +41,10 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
              : r < i.work.first_bolt     ? 3
                                          : 4;
     if (f.kind == 0) f.gap = i.work.places[r - i.work.first_contact].gap;
+    if (const auto joint = joint_point(scene, i, r)) {
+      f.slip = joint->slip, f.opening = joint->opening;
+      f.state = static_cast<int>(joint->state);
+    }
     frames.push_back(f);
   }
   return frames;
@@ -100,6 +100,9 @@ void Recorder::at(const Instant& i) {
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
   if (frame || i.stage_start || i.last) write_frame(i);
+  // a stage ends at the instant at which the next one starts
+  if (i.stage_start && i.stage > 0) write_joints(i, i.stage - 1);
+  if (i.last) write_joints(i, i.stage);
   if (i.stage_start && i.stage == 0)
     write_file(folder_ / "blocks_start.svg",
                blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
@@ -158,17 +161,30 @@ void Recorder::write_bolts(const Instant& i) {
   write_file(folder_ / "bolts.csv", bolt_table_);
 }
 
+void Recorder::write_joints(const Instant& i, int stage) {
+  joint_summary_ = {};
+  if (joints_.empty()) joints_ = joint_header();
+  for (size_t r = 0; r < i.work.first_support; ++r) {
+    const auto point = joint_point(scene_, i, r);
+    if (!point || point->state == JointState::kApart) continue;
+    joint_summary_.add(*point);
+    joints_ += joint_row(scene_, *point, scene_.model.stages[static_cast<size_t>(stage)].name, i.state.time);
+  }
+  joint_summary_.time = i.state.time;
+  write_file(folder_ / "joints.csv", joints_);
+}
+
 void Recorder::finish(const RunResult& result, const std::vector<std::string>& overrides,
                       const Findings& findings) {
   histories_.finish();
   history_file_.flush();
   steps_file_.flush();
   write_file(folder_ / "summary.json",
-             summary_text(scene_, result, overrides, findings, block_frames_.count()));
+             summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_));
 }
 
 std::string summary_text(const Scene& scene, const RunResult& r, const std::vector<std::string>& overrides,
-                         const Findings& findings, int frames) {
+                         const Findings& findings, int frames, const JointSummary& joints) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -194,6 +210,19 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
       {"supported_points", scene.supported.size()},     {"boundary_points", scene.boundaries.points.size()},
       {"tied_points", scene.boundaries.ties.size()},    {"contact_points_most", r.most_contacts},
       {"candidate_list_rebuilds", r.candidate_rebuilds}};
+  j["joints"] = {{"time [s]", joints.time},
+                 {"points", joints.points},
+                 {"intact", joints.intact},
+                 {"slipped", joints.slipped},
+                 {"open", joints.open},
+                 {"slip_largest [m]", joints.largest.slip},
+                 {"opening_largest [m]", joints.widest}};
+  if (joints.largest.slip > 0)
+    j["joints"]["slip_largest_at"] = {{"x [m]", joints.largest.point.x},
+                                      {"y [m]", joints.largest.point.y},
+                                      {"blocks",
+                                       {b.name[static_cast<size_t>(joints.largest.block_a)],
+                                        b.name[static_cast<size_t>(joints.largest.block_b)]}}};
   j["stages"] = ordered_json::array();
   for (const StageResult& s : r.stages) {
     ordered_json stage = {{"name", s.name},

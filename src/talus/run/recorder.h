@@ -7,12 +7,13 @@
 #include "talus/output/files.h"
 #include "talus/output/vtk.h"
 #include "talus/run/histories.h"
+#include "talus/run/joint_report.h"
 #include "talus/run/run.h"
 
 namespace talus {
 
-/// model.toml, histories.csv, steps.csv, fields/, with bolts also bolts.csv. Rows reach the file at least
-/// once a second, frames at once.
+/// model.toml, histories.csv, steps.csv, joints.csv, fields/, with bolts also bolts.csv. Rows reach the file at least once a second,
+/// frames at once.
 class Recorder : public Observer {
  public:
   /// @param folder  ready for results (open_result_folder)
@@ -31,6 +32,7 @@ class Recorder : public Observer {
   void write_dump(const Instant& instant);
   void write_frame(const Instant& instant);
   void write_bolts(const Instant& instant);
+  void write_joints(const Instant& instant, int stage);
 
   const Scene& scene_;
   std::filesystem::path folder_;
@@ -39,6 +41,8 @@ class Recorder : public Observer {
   FrameSeries block_frames_, contact_frames_, bolt_frames_;
   std::string bolt_table_;  // bolts.csv so far
   double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
+  std::string joints_;  // joints.csv so far
+  JointSummary joint_summary_;
   std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0;
   int64_t dump_step_ = -1;
@@ -47,6 +51,7 @@ class Recorder : public Observer {
 
 /// Text of summary.json.
 std::string summary_text(const Scene& scene, const RunResult& result,
-                         const std::vector<std::string>& overrides, const Findings& findings, int frames);
+                         const std::vector<std::string>& overrides, const Findings& findings, int frames,
+                         const JointSummary& joints = {});
 
 }  // namespace talus

@@ -251,3 +251,37 @@ TEST_CASE("the predicted output size is that of the run within a third") {
   }
   std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("joints.csv, the summary and the frames tell slip, opening and state of each point") {
+  const std::string text =
+      read_text_file(std::string(TALUS_SOURCE_DIR) + "/examples/rough_joint/rough_joint.toml");
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("talus_joints_{}", getpid());
+  Findings findings("m", text);
+  PreparedRun p = prepare_run("m", text, {}, findings);
+  open_result_folder(folder, true);
+  Recorder recorder(p.scene, folder);
+  State state = start_state(p.scene);
+  const RunResult r = run_stages(p.scene, p.plans, state, recorder);
+  REQUIRE(r.failure.empty());
+  recorder.finish(r, {}, findings);
+  // two ends of the face after "press", two contacts after "shear"
+  const std::string joints = read_text_file((folder / "joints.csv").string());
+  CHECK(std::count(joints.begin(), joints.end(), '\n') == 5);
+  CHECK(joints.find("\"press\",") != std::string::npos);
+  CHECK(joints.find("\"face 0 end 1\",\"lower\",\"upper\",\"rough\"") != std::string::npos);
+  CHECK(joints.find(",intact\n") < joints.find(",slipped\n"));
+  CHECK(joints.rfind(",slipped\n") == joints.size() - 9);
+  const std::string summary = read_text_file((folder / "summary.json").string());
+  for (const char* part :
+       {"\"points\": 2", "\"intact\": 0", "\"slipped\": 2", "\"open\": 0", "\"slip_largest_at\""}) {
+    INFO(summary);
+    CHECK(summary.find(part) != std::string::npos);
+  }
+  std::string last;
+  for (const auto& e : std::filesystem::directory_iterator(folder / "fields"))
+    if (e.path().extension() == ".vtp") last = std::max(last, e.path().string());
+  const std::string frame = read_text_file(last);
+  for (const char* name : {"\"slip [m]\"", "\"opening [m]\"", "\"state\""})
+    CHECK(frame.find(name) != std::string::npos);
+  std::filesystem::remove_all(folder);
+}

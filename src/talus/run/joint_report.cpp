@@ -1,0 +1,91 @@
+#include "talus/run/joint_report.h"
+
+#include <fmt/format.h>
+
+#include "talus/contact/bonds.h"
+
+namespace talus {
+
+namespace {
+
+// An intact end of a face: what parts it is elastic, unless it stands open.
+std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t row) {
+  const auto owner = static_cast<size_t>(i.work.bond_owner[row]);
+  const BondFace& face = scene.bonds.faces[owner / 2];
+  if (face.unbreakable) return std::nullopt;
+  JointPoint out;
+  out.face = true;
+  out.id = fmt::format("face {} end {}", owner / 2, owner % 2);
+  out.joint = face.joint;
+  out.length = 0.5 * face.length;
+  out.opening = std::max(0.0, face_offset(scene.blocks, i.state, face).opening[owner % 2]);
+  return out;
+}
+
+JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
+  const size_t k = row - i.work.first_contact;
+  const Contact& c = i.state.contacts[k];
+  const ContactPlace& place = i.work.places[k];
+  JointPoint out;
+  out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+  out.joint = c.joint;
+  out.length = c.length;
+  out.slip = place.slipped, out.slip_signed = place.slipped_signed;
+  out.rise = place.rise;
+  out.opening = std::max(0.0, place.gap - place.rise);
+  out.state = joint_state(
+      c.touched, c.force[0], out.slip, out.opening,
+      noticeable(scene.blocks, static_cast<size_t>(c.key.block_a), static_cast<size_t>(c.key.block_b)));
+  return out;
+}
+
+}  // namespace
+
+Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
+  const auto a = static_cast<size_t>(p.block_a);
+  // the acting arm of a deformable block is the reference one
+  const bool deforms = scene.blocks.kind[a] == BlockKind::kDeformable;
+  const Vec2 from_centroid = deforms ? p.arm_a + state.strain_part[a] * p.arm_a : p.arm_a;
+  return scene.blocks.centroid[a] + state.displacement[a] + from_centroid;
+}
+
+std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size_t row) {
+  if (row >= i.work.first_support) return std::nullopt;
+  const bool is_face = row < i.work.first_contact;
+  std::optional<JointPoint> out = is_face ? face_point(scene, i, row) : contact_point(scene, i, row);
+  if (!out) return out;
+  const PointRows& p = i.work.rows.points[row];
+  out->block_a = p.block_a, out->block_b = p.block_b;
+  out->point = point_now(scene, i.state, p);
+  out->normal_force = i.work.rows.impulse[row][0] / i.work.dt_kick;
+  out->shear_force = i.work.rows.impulse[row][1] / i.work.dt_kick;
+  return out;
+}
+
+void JointSummary::add(const JointPoint& p) {
+  ++points;
+  intact += p.state == JointState::kIntact;
+  slipped += p.state == JointState::kSlipped;
+  open += p.state == JointState::kOpen;
+  if (p.slip > largest.slip) largest = p;
+  if (p.state == JointState::kOpen) widest = std::max(widest, p.opening);
+}
+
+std::string joint_header() {
+  return "stage,time [s],id,block_a,block_b,joint,x [m],y [m],length [m],normal_force [N],shear_force "
+         "[N],slip "
+         "[m],slip_signed [m],opening [m],dilation [m],state\n";
+}
+
+std::string joint_row(const Scene& scene, const JointPoint& p, const std::string& stage, double time) {
+  const auto block = [&scene](int i) { return scene.blocks.name[static_cast<size_t>(i)]; };
+  const std::string joint = p.joint < 0 ? "" : scene.model.joints[static_cast<size_t>(p.joint)].name;
+  // names of cells hold a comma
+  return fmt::format(
+      "\"{}\",{:.17g},\"{}\",\"{}\",\"{}\",\"{}\",{:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},"
+      "{:.9g},{:.9g},{}\n",
+      stage, time, p.id, block(p.block_a), block(p.block_b), joint, p.point.x, p.point.y, p.length,
+      p.normal_force, p.shear_force, p.slip, p.slip_signed, p.opening, p.rise, state_name(p.state));
+}
+
+}  // namespace talus

@@ -1,0 +1,43 @@
+#pragma once
+// The condition of joints, point by point: for joints.csv, for the contact frames and for the summary of a
+// run. Theory: docs/theory.md section 4.17.
+
+#include <optional>
+#include <string>
+
+#include "talus/contact/joint_state.h"
+#include "talus/run/instant.h"
+
+namespace talus {
+
+/// One point of a joint: an end of a glued face that may break, or a contact point.
+struct JointPoint {
+  bool face = false;
+  std::string id;  // "face 3 end 0", "0:2 on 1:4": corner 2 of block 0 on edge 4 of block 1
+  int block_a = -1, block_b = -1, joint = -1;
+  Vec2 point;                                               // [m]
+  double length = 0;                                        // that it stands for, 0: a corner alone [m]
+  double normal_force = 0, shear_force = 0;                 // [N] normal > 0 pressing
+  double slip = 0, slip_signed = 0, opening = 0, rise = 0;  // [m]
+  JointState state = JointState::kIntact;
+};
+
+/// The point of row `row`; none for supports, boundaries and bonds that never break.
+std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant, size_t row);
+
+/// Where a point of rows is now [m].
+Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
+
+struct JointSummary {
+  double time = 0;
+  int points = 0, intact = 0, slipped = 0, open = 0;
+  JointPoint largest;  // of the largest slip
+  double widest = 0;   // [m]
+
+  void add(const JointPoint& p);
+};
+
+std::string joint_header();
+std::string joint_row(const Scene& scene, const JointPoint& p, const std::string& stage, double time);
+
+}  // namespace talus

@@ -13,6 +13,7 @@
 #include "cut_command.h"
 #include "plot_command.h"
 #include "record_command.h"
+#include "safety_command.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/model/toml_source.h"
@@ -179,6 +180,16 @@ int run_command(int argc, char** argv) {
   cut_verb->add_flag("--force", force, "replace the results in that folder");
   cut_verb->footer("Example: talus cut examples/tunnel/tunnel.toml -o out/tunnel");
 
+  CLI::App* safety_verb = app.add_subcommand(
+      "safety", "seek the factor of safety: joint strength divided by a factor until the model fails");
+  add_model_arguments(*safety_verb, model);
+  safety_verb->add_option("-o,--output", folder, "folder for the results")->required();
+  safety_verb->add_flag("--force", force, "replace the results in that folder");
+  safety_verb->add_option("--threads", how.threads, "threads inside a step, 0: as many as pay")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  safety_verb->footer("Example: talus safety examples/toppling/toppling.toml -o out/toppling");
+
   talus::app::PlotArguments plot;
   CLI::App* plot_verb =
       app.add_subcommand("plot", "draw histories of one or more result folders as SVG and PNG");
@@ -206,7 +217,7 @@ int run_command(int argc, char** argv) {
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
-  const std::vector<std::string> verbs{"run", "check", "cut", "plot", "record", "replay", "schema"};
+  const std::vector<std::string> verbs{"run", "check", "cut", "plot", "record", "replay", "safety", "schema"};
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
     fmt::print(
@@ -222,6 +233,8 @@ int run_command(int argc, char** argv) {
   if (*run_verb) return run(model, how);
   if (*check_verb) return check(model);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
+  if (*safety_verb)
+    return talus::app::safety_command(model.file, model.overrides, folder, force, how.threads);
   if (*replay_verb) return replay(problem, method, tolerance);
   if (*record_verb) return talus::app::record_command(record);
   if (*plot_verb) return talus::app::plot_command(plot);

@@ -11,3 +11,4 @@
 #include "talus/base/version.h"
 #include "talus/run/recorder.h"
 #include "talus/run/run.h"
+#include "talus/run/safety.h"

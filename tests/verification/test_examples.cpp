@@ -399,3 +399,20 @@ TEST_CASE("example bolted_tunnel comes to rest, no bolt yields") {
   });
   check_below("bolted_tunnel energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
+
+TEST_CASE("example rough_joint: breaks, weakens, rides up") {
+  const CaseResult r = run_example("rough_joint");
+  const double t = M_PI / 180, n = 100e3 + 2500 * 0.2 * 9.81;
+  const auto &push = r.column("push.reaction_x"), &y = r.column("upper.displacement_y");
+  const double residual = 5e3 + n * std::tan(30 * t);
+  // a step of 5 um and less is 5 kN of elastic shear; the limit is judged after it
+  check_close("rough_joint force at which it breaks [N]", *std::max_element(push.begin(), push.end()),
+              50e3 + n * std::tan(40 * t), 4e-2, 1e-2);
+  check_close("rough_joint force at the end [N]", push.back(), residual, 1e-3, 1e-6);
+  check_close("rough_joint rise over the closed joint [m]", y.back() + n / 10e9, 5e-3 * std::tan(5 * t), 1e-3,
+              1e-6);
+  for (const Contact& c : r.state.contacts)
+    check_close("rough_joint slip [m]", c.slip, 10e-3 - residual / 1e9, 1e-3, 1e-6);
+  CHECK(r.run.broken_faces == 1);
+  check_below("rough_joint energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
+}

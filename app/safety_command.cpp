@@ -1,0 +1,35 @@
+#include "safety_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "talus/model/toml_source.h"
+#include "talus/talus.h"
+
+namespace talus::app {
+
+int safety_command(const std::string& file, const std::vector<std::string>& overrides,
+                   const std::string& folder, bool force, int threads) {
+  const std::string text = read_text_file(file);
+  Findings findings(file, text);
+  const PreparedRun prepared = prepare_run(file, text, overrides, findings);
+  if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
+  open_result_folder(folder, force, ResultKind::kSafety);
+  const std::filesystem::path out(folder);
+  write_file(out / "model.toml", prepared.scene.model.text);
+  fmt::print("  {:>9}  {:<6}  {:<18}  {:>9}  {:>8}  {:>10}  {:>10}  {}\n", "factor", "", "ended by",
+             "time [s]", "steps", "unbalanced", "moved [m]", "block");
+  const Workers workers(threads > 0 ? threads : threads_for(prepared.scene.blocks.count));
+  const SafetyResult result = seek_safety(prepared, workers, [](const SafetyTrial& t) {
+    fmt::print("{}", safety_line(t));
+    std::fflush(stdout);
+  });
+  write_file(out / "safety.csv", safety_csv(result));
+  write_file(out / "safety.json", safety_json(prepared.scene.model, result));
+  fmt::print("{}written to {}: safety.csv, safety.json\n", safety_text(result), folder);
+  return kExitOk;
+}
+
+}  // namespace talus::app

@@ -1,0 +1,53 @@
+#pragma once
+// Factor of safety by reduction of joint strength: which factor F leaves a model just standing when
+// tan(friction), cohesion and tensile strength of its joints are divided by it. Theory: docs/theory.md
+// section 4.18.
+
+#include <functional>
+
+#include "talus/run/run.h"
+
+namespace talus {
+
+/// One run at reduced strength.
+struct SafetyTrial {
+  double factor = 1;
+  bool stands = false;
+  std::string outcome;  // "at rest", "displacement limit", "no rest"
+  std::string stage;    // in which it ended
+  double time = 0;      // [s] at its end
+  int64_t steps = 0;
+  double displacement = 0;  // largest of a block since the start of its stage [m]
+  std::string block;        // that moved so far
+  double unbalanced = 0;    // at the end
+  double closure = 0;       // of the energy ledger
+};
+
+enum class SafetyStatus { kFound, kBelow, kAbove };
+
+struct SafetyResult {
+  std::vector<SafetyTrial> trials;  // as they were run
+  SafetyStatus status = SafetyStatus::kFound;
+  double stands = 0, fails = 0;  // last factor that stands, first that fails; 0: none
+  double factor() const { return 0.5 * (stands + fails); }
+};
+
+/// The joint with its strength divided by `factor`, residual strength too; dilation is not reduced, but
+/// lowered to the reduced residual friction angle where it would exceed it.
+JointProperty reduced(const JointProperty& joint, double factor);
+
+/// Seeks the factor between model.safety.lowest and .highest. Throws NumericalError naming the factor when a
+/// trial ends for another reason than failure of the model, InputError when the model has no leading static
+/// stage.
+/// @param prepared  the model as read and cut once: all trials have the same blocks
+/// @param told      shown each trial when it ends
+SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
+                         const std::function<void(const SafetyTrial&)>& told = nullptr);
+
+/// Table of the trials for people, and the files safety.csv and safety.json.
+std::string safety_line(const SafetyTrial& trial);
+std::string safety_text(const SafetyResult& result);
+std::string safety_csv(const SafetyResult& result);
+std::string safety_json(const Model& model, const SafetyResult& result);
+
+}  // namespace talus

@@ -1,0 +1,71 @@
+// What `talus safety` tells of its trials: a table, safety.csv and safety.json.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/version.h"
+#include "talus/run/safety.h"
+
+namespace talus {
+
+std::string safety_line(const SafetyTrial& t) {
+  return fmt::format("  {:>9.5f}  {:<6}  {:<18}  {:>9.4g}  {:>8}  {:>10.3e}  {:>10.3e}  {}\n", t.factor,
+                     t.stands ? "stands" : "fails", t.outcome, t.time, t.steps, t.unbalanced, t.displacement,
+                     t.block);
+}
+
+std::string safety_text(const SafetyResult& r) {
+  switch (r.status) {
+    case SafetyStatus::kBelow:
+      return fmt::format("factor of safety: below {:g}, the lowest tried; give a smaller safety.lowest\n",
+                         r.fails);
+    case SafetyStatus::kAbove:
+      return fmt::format("factor of safety: above {:g}, the highest tried; give a larger safety.highest\n",
+                         r.stands);
+    default:
+      return fmt::format("factor of safety: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n",
+                         r.factor(), r.stands, r.fails, r.trials.size());
+  }
+}
+
+std::string safety_csv(const SafetyResult& r) {
+  std::string out =
+      "factor,stands,outcome,stage,time [s],steps,unbalanced,displacement [m],block,energy_closure\n";
+  for (const SafetyTrial& t : r.trials)
+    out += fmt::format("{:.17g},{},{},{},{:.17g},{},{:.17g},{:.17g},{},{:.17g}\n", t.factor, t.stands ? 1 : 0,
+                       t.outcome, t.stage, t.time, t.steps, t.unbalanced, t.displacement, t.block, t.closure);
+  return out;
+}
+
+std::string safety_json(const Model& model, const SafetyResult& r) {
+  using nlohmann::ordered_json;
+  constexpr const char* kStatus[] = {"found", "below", "above"};
+  ordered_json j = {{"program", fmt::format("talus {}", kVersion)},
+                    {"model_file", std::filesystem::path(model.file).filename().string()},
+                    {"model_hash", model.hash},
+                    {"status", kStatus[static_cast<int>(r.status)]}};
+  if (r.status == SafetyStatus::kFound) j["factor_of_safety"] = r.factor();
+  if (r.status != SafetyStatus::kBelow) j["stands_at"] = r.stands;
+  if (r.status != SafetyStatus::kAbove) j["fails_at"] = r.fails;
+  j["tolerance"] = model.safety.tolerance;
+  ordered_json names = ordered_json::array();
+  for (const int i : model.safety.joints) names.push_back(model.joints[static_cast<size_t>(i)].name);
+  j["joints"] = model.safety.joints.empty() ? ordered_json("all") : names;
+  j["trials"] = ordered_json::array();
+  for (const SafetyTrial& t : r.trials)
+    j["trials"].push_back({{"factor", t.factor},
+                           {"stands", t.stands},
+                           {"outcome", t.outcome},
+                           {"stage", t.stage},
+                           {"time [s]", t.time},
+                           {"steps", t.steps},
+                           {"unbalanced", t.unbalanced},
+                           {"displacement [m]", t.displacement},
+                           {"block", t.block},
+                           {"energy_closure", t.closure}});
+  return j.dump(2) + "\n";
+}
+
+}  // namespace talus

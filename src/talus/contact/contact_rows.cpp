@@ -71,9 +71,9 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
                                 turn_right(edge) / norm(edge));
     }
     // only what was never disturbed sticks with the stress of the ground
-    const double off = state.step == 0 ? closure.y : 0;
+    const double elastic = state.step == 0 ? closure.y : 0;
     const double rise = dilation_rise(property, c.slip), gap = over.gap - rise;
-    place[i] = {over.gap, slip, off, rise, c.slip, c.slip_signed};
+    place[i] = {over.gap, slip, elastic, rise, c.slip, c.slip_signed};
 
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;

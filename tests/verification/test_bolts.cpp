@@ -329,3 +329,27 @@ time_step = 1e-3
               std::abs(r.column("p.displacement_x [m]").back() - before), 1e-8, 1e-9);
   check_below("pretension: energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }
+
+TEST_CASE("grouted bar drawn until it ruptures at the joint") {
+  // yields at 100 kN and ruptures when the 0.15 m of bar around the joint are longer by 1 %
+  std::string text = pull_text(20, 2e-3);
+  text.replace(text.find("kind = \"grouted\"\n"), 17,
+               "kind = \"grouted\"\nyield_force = \"100 kN\"\nrupture_strain = 0.01\n");
+  int drops = 0;
+  double largest = 0, last = 0;
+  const CaseResult r = run_case(text, {}, [&](const Instant& i) {
+    for (const BoltPart& p : bolt_parts(i.scene.blocks, i.state)) {
+      if (!p.crossing) continue;
+      drops += last > 0 && p.axial == 0;
+      largest = std::max(largest, p.axial), last = p.axial;
+    }
+  });
+  CHECK(drops == 1);
+  CHECK(last == 0);
+  check_close("ruptured bar: largest force [N]", largest, 1e5, 1e-9, 1e-12);
+  check_close("ruptured bar: nothing holds the block [N]", 1 + r.column("hold.reaction_x [N]").back(), 1,
+              1e-6, 1e-9);
+  // both halves stay stretched where their grout has slipped
+  CHECK(r.column("m.ruptured").back() == 1);
+  check_below("ruptured bar: energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
+}

@@ -12,7 +12,8 @@ namespace talus {
 
 namespace {
 
-// What is left of the stiffness of a spring at its limit: keeps the bar determined when all of it slips.
+// What is left of the stiffness of a spring at its limit, as share of the softest piece of bar: keeps the bar
+// determined when all of it slips.
 constexpr double kHardening = 1e-9;
 
 constexpr int kMostIterations = 100;
@@ -30,12 +31,11 @@ struct Law {
   double force, tangent;
 };
 
-Law law(double stiffness, double low, double high, double x) {
+Law law(double stiffness, double soft, double limit, double x) {
   const double f = stiffness * x;
-  if (f >= low && f <= high) return {f, stiffness};
-  const double limit = f > high ? high : low, x0 = limit / stiffness, more = x - x0;
-  const double soft = kHardening * stiffness;
-  return {limit + soft * more, soft};
+  if (std::abs(f) <= limit) return {f, stiffness};
+  const double at = std::copysign(limit, f);
+  return {at + soft * (x - at / stiffness), soft};
 }
 
 // The bar as a chain of unknown slips, with its residual and tridiagonal tangent.
@@ -44,6 +44,9 @@ class Chain {
   Chain(const std::vector<double>& rock, const Bolt& bolt) : rock_(rock), bolt_(bolt) {
     const size_t n = bolt.nodes.size();
     residual_.resize(n), held_.resize(n), linked_.resize(n);
+    soft_ = bolt.segments[0].stiffness;
+    for (const BoltSegment& s : bolt.segments) soft_ = std::min(soft_, s.stiffness);
+    soft_ *= kHardening;
   }
 
   // Fills residual (force out of balance, the slope of the energy) and tangents.
@@ -54,7 +57,7 @@ class Chain {
     for (size_t i = 0; i < slip.size(); ++i) {
       const BoltNode& n = bolt_.nodes[i];
       const double limit = yields ? n.limit : kInfinity;
-      const Law l = law(n.stiffness, -limit, limit, slip[i] - n.plastic);
+      const Law l = law(n.stiffness, soft_, limit, slip[i] - n.plastic);
       residual_[i] = l.force, held_[i] = l.tangent;
       scale_ = std::max(scale_, std::abs(l.force));
     }
@@ -63,7 +66,7 @@ class Chain {
       linked_[j] = 0;
       if (s.ruptured) continue;
       const double limit = yields ? s.yield : kInfinity;
-      const Law l = law(s.stiffness, -limit, limit, slip[j + 1] - slip[j] + rock_[j] - s.plastic);
+      const Law l = law(s.stiffness, soft_, limit, slip[j + 1] - slip[j] + rock_[j] - s.plastic);
       residual_[j] -= l.force, residual_[j + 1] += l.force, linked_[j] = l.tangent;
       scale_ = std::max(scale_, std::abs(l.force));
     }
@@ -102,7 +105,7 @@ class Chain {
   const std::vector<double>& rock_;
   const Bolt& bolt_;
   std::vector<double> residual_, held_, linked_;  // [n_nodes]; springs of nodes; segments, the last unused
-  double scale_ = 0;
+  double scale_ = 0, soft_ = 0;
 };
 
 std::vector<double> plus(const std::vector<double>& a, double part, const std::vector<double>& b) {

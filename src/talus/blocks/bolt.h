@@ -1,6 +1,6 @@
 #pragma once
 // Rock bolts as they lie in the blocks, and what they keep from step to step. All forces and stiffnesses are
-// those of the model's thickness (of one bolt times thickness / spacing). Theory: docs/theory.md 4.16.
+// those of the model's thickness (of one bolt times thickness / spacing). Theory: docs/theory.md 4.21.
 
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 // What has become of a joint at a point: how far it slipped, rose over its roughness and opened. Theory:
-// docs/theory.md sections 3.5 and 4.17.
+// docs/theory.md sections 3.5 and 4.19.
 
 #include <algorithm>
 #include <cmath>

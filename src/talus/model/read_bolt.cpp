@@ -13,7 +13,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 // Force across a joint per displacement along it, of a bar on an elastic foundation of the grout's stiffness
-// on both sides (theory 4.16) [N/m].
+// on both sides (theory 4.21) [N/m].
 double dowel_of_beam(const BoltType& t) {
   const double bending = t.young * kPi * std::pow(t.diameter, 4) / 64;
   return t.grout_stiffness / (4 * std::pow(t.grout_stiffness / (4 * bending), 0.25));

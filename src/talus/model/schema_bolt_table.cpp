@@ -58,7 +58,7 @@ SectionSpec type_section() {
         .dimension = D::kStress,
         .range = kPositive,
         .default_text = "\"1 GPa\"",
-        .doc = "Grouted: force per length and slip between bar and rock (theory 4.16 has a formula)."},
+        .doc = "Grouted: force per length and slip between bar and rock (theory 4.21 has a formula)."},
        {.name = "bond_strength",
         .dimension = D::kLineForce,
         .range = kPositive,
@@ -68,7 +68,7 @@ SectionSpec type_section() {
         .dimension = D::kLineForce,
         .range = kNonNegative,
         .doc = "Grouted: force across the bar per displacement of a joint along itself; default (theory "
-               "4.16): bar as a beam in the grout. 0: none."},
+               "4.21): bar as a beam in the grout. 0: none."},
        {.name = "dowel_yield",
         .dimension = D::kForce,
         .range = kPositive,

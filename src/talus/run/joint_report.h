@@ -1,6 +1,6 @@
 #pragma once
 // The condition of joints, point by point: for joints.csv, for the contact frames and for the summary of a
-// run. Theory: docs/theory.md section 4.17.
+// run. Theory: docs/theory.md section 4.19.
 
 #include <optional>
 #include <string>

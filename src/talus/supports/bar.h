@@ -1,6 +1,6 @@
 #pragma once
 // Statics of one massless bar in springs that slip: where its nodes lie for given motions of the rock, what
-// it carries, what yields and what ruptures. Theory: docs/theory.md 4.16.
+// it carries, what yields and what ruptures. Theory: docs/theory.md 4.21.
 
 #include "talus/blocks/bolt.h"
 

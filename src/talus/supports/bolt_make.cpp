@@ -23,7 +23,7 @@ constexpr double kClosed = 1e-6;
 constexpr double kMostOutside = 0.05;
 
 // Of the stiffness of the rows over that of the bar: room for what the blocks' own strains do to it
-// (theory 4.16).
+// (theory 4.21).
 constexpr double kRowMargin = 1.25;
 
 class BoltMaker {

@@ -13,7 +13,7 @@ namespace talus {
 namespace {
 
 // The bar inside a block acts on it as an explicit force: below this share of the rock's own stiffness that
-// does not touch the stable step (theory 4.16).
+// does not touch the stable step (theory 4.21).
 constexpr double kMostStiffening = 0.05;
 
 // Direction of a material line of a block as it lies now, unit.

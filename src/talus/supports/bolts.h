@@ -1,6 +1,6 @@
 #pragma once
 // Rock bolts: installed along a line through the blocks as they lie, then springs between the blocks as
-// rows, and forces inside the blocks. Theory: docs/theory.md 4.16.
+// rows, and forces inside the blocks. Theory: docs/theory.md 4.21.
 
 #include "talus/blocks/state.h"
 #include "talus/rows/rows.h"

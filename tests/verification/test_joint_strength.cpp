@@ -93,7 +93,8 @@ TEST_CASE("a face with cohesion alone is lost when it opens") {
                                            "time = [0, 0.5, 1]\nvalue = [0, 0, 1e-3]",
                                            "time = [0, 0.2, 0.5, 1]\nvalue = [0, 1e-4, 1e-4, 1e-4]"));
   CHECK(r.run.broken_faces == 1);
-  CHECK(r.column("face.force_x").back() == 0);
+  // open before it was sheared: with cohesion left it would bear 1 MN
+  check_below("shear of a face that opened first [N]", largest(r.column("face.force_x")), 1e-3, 1e-6);
   check_energy(r);
 }
 

@@ -14,8 +14,8 @@ struct ContactFrame {
   Vec2 point;  // [m]
   Vec2 force;  // on the first block [N]
   double normal_force = 0, shear_force = 0, gap = 0;
-  double slip = 0, opening = 0;  // of joints [m]
   int kind = 0;                  // 0 contact, 1 bond, 2 support, 3 boundary, 4 bolt
+  double slip = 0, opening = 0;  // of joints [m]
   int state = -1;                // of joints: 0 intact, 1 slipped, 2 open, 3 never in touch; -1: no joint
 };
 

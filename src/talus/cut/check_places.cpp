@@ -29,10 +29,11 @@ void check_contradictions(const Model& model, const Layout& layout, Findings& fi
       for (size_t j = i + 1; j < list.size(); ++j) {
         const SupportInput &first = *list[i], &other = *list[j];
         if ((!differ(first.x, other.x) && !differ(first.y, other.y)) || !first.meets(other)) continue;
-        findings.error(other.where, "support." + other.name,
-                       fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
-                                   layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
-                       "make one of them \"free\" along that axis, shorten it, or let them act in different stages");
+        findings.error(
+            other.where, "support." + other.name,
+            fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
+                        layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
+            "make one of them \"free\" along that axis, shorten it, or let them act in different stages");
         return;
       }
     }

@@ -31,8 +31,7 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
     material.push_back(blocks.material[k]), group.push_back(blocks.group[k]);
   }
   std::string out = file_begin("UnstructuredGrid") + time_field(state.time);
-  out +=
-      fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", connectivity.size(), id.size());
+  out += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", connectivity.size(), id.size());
   out += "<Points>\n" + doubles("Points", 3, points) + "</Points>\n<Cells>\n" +
          integers("connectivity", connectivity) + integers("offsets", offsets) +
          data_array("UInt8", "types", 1, types) + "</Cells>\n";

@@ -157,7 +157,8 @@ class Runner {
     const bool relaxed =
         stage.relaxation.empty() ||
         plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
-    return n >= 1 && relaxed && report.unbalanced <= stage.unbalanced && report.speed_left <= stage.unbalanced;
+    return n >= 1 && relaxed && report.unbalanced <= stage.unbalanced &&
+           report.speed_left <= stage.unbalanced;
   }
 
   // The last instant has its forces too, found on a copy so that the state stays between two steps.

@@ -126,6 +126,11 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
     }
   }
 
+  // one end of a face may have strength left when the other has none: records of ties hold both kinds
+  const auto has_tie = [&](const Rows& c) {
+    return at(c.row[0]).tie() || (c.row[1] >= 0 && at(c.row[1]).tie());
+  };
+
   // the lowest colour that neither block has
   std::vector<uint64_t> used(mobility.size(), 0);
   std::vector<int> colour_of(couples.size());
@@ -137,7 +142,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
     if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
     const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
     colour_of[c] = colour;
-    ++(p.tie() ? ties : contacts)[static_cast<size_t>(colour)];
+    ++(has_tie(couples[c]) ? ties : contacts)[static_cast<size_t>(colour)];
     if (colour == kMostColours) continue;
     if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
     if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
@@ -160,7 +165,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
   tie_rows_.assign(tie_at * kLanes, {{-1, -1}});
   for (size_t c = 0; c < couples.size(); ++c) {
     const auto k = static_cast<size_t>(colour_of[c]);
-    const bool tie = at(couples[c].row[0]).tie();
+    const bool tie = has_tie(couples[c]);
     size_t& next = (tie ? tie_next : contact_next)[k];
     (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
     next += k == kMostColours ? kLanes : 1;

@@ -472,6 +472,23 @@ TEST_CASE("points that change get a new layout") {
   }
 }
 
+TEST_CASE("one end of a face may have strength left when the other has none") {
+  for (const int weak : {0, 1}) {
+    CAPTURE(weak);
+    Problem problem = tower(3, 1);
+    for (size_t i = 0; i < problem.set.size(); ++i) {
+      PointRows& p = problem.set.points[i];
+      p.partner = static_cast<int>(i ^ 1U);
+      p.row[0].compliance = 1e-4, p.row[1].compliance = 2e-4;
+      if (static_cast<int>(i % 2) != weak) p.lower = -50, p.cohesion = 1000;
+    }
+    // pushed sideways and up: the weak ends slide or open, the others hold
+    for (BlockRate& v : problem.rate) v.a = {0.3, 0.05};
+    const Solution s = solve(problem.mobility, problem.set, problem.rate, 100000, 1e-12);
+    CHECK(contact_error(problem.mobility, s.set, s.rate, 1).worst <= 1e-12);
+  }
+}
+
 TEST_CASE("no rows: nothing to do") {
   const BlockSet blocks = mixed_blocks(4);
   Dice dice(5);

@@ -20,8 +20,8 @@ Vec2 in_situ_closure(const JointProperty& joint, const Mat2& stress, Vec2 normal
 }
 
 std::vector<Mat2> initial_stresses(const Model& model, const BlockSet& blocks) {
+  if (!model.in_situ.given) return {};
   std::vector<Mat2> stress(static_cast<size_t>(blocks.count));
-  if (!model.in_situ.given) return stress;
   for (size_t i = 0; i < stress.size(); ++i)
     if (blocks.kind[i] == BlockKind::kDeformable)
       stress[i] = in_situ_stress(model.in_situ, model.gravity, blocks.centroid[i].y);

@@ -14,7 +14,7 @@ Mat2 in_situ_stress(const InSituInput& input, Vec2 gravity, double height);
 /// @param normal  of the joint, unit
 Vec2 in_situ_closure(const JointProperty& joint, const Mat2& stress, Vec2 normal);
 
-/// T0 of all deformable blocks, each that of its centroid [count] [Pa].
+/// T0 of all deformable blocks, each that of its centroid [count] [Pa]; empty when the model gives none.
 std::vector<Mat2> initial_stresses(const Model& model, const BlockSet& blocks);
 
 /// The first deformable block above the level from which depth counts, -1: none.

@@ -31,7 +31,6 @@ State initial_state(const BlockSet& blocks, const Layout& layout) {
   s.angle.resize(n);
   s.rate.resize(n);
   s.contact_force.resize(n);
-  s.initial_stress.resize(n);
   for (size_t i = 0; i < n; ++i) {
     if (!blocks.moves_freely(static_cast<int>(i))) continue;
     s.rate[i] = {layout.blocks[i].velocity, spin_matrix(layout.blocks[i].spin)};
@@ -70,7 +69,7 @@ Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return {};
   const Mat2& H = state.strain_part[k];
-  const Mat2 T0 = state.initial_stress.empty() ? Mat2{} : state.initial_stress[k], F = kIdentity + H;
+  const Mat2 T0 = initial_stress_of(state, k), F = kIdentity + H;
   return (1 / det(F)) * (elastic_state(blocks.moduli[k], H, T0).stress * transpose(F));
 }
 

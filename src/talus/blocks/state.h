@@ -56,13 +56,13 @@ struct Contact {
   int joint = -1;        // -1: hard and frictionless
   int16_t partner = -1;  // the other end of its face: its place in the list of the pair, -1: none
   Memory memory = kNone;
+  bool touched = false;           // the two have been in touch here
   double length = 0;              // [m] half that face
   std::array<double, 2> force{};  // normal, tangential [N]
   double stretch = 0;             // elastic slip [m]
   double anchor = 0;              // slip coordinate at which it sticks [m]; NaN: it slid
   double slip = 0;                // [m] beyond the elastic one, both ways added up
   double slip_signed = 0;         // [m] the same with its sign: > 0 along the tangent
-  bool touched = false;           // the two have been in touch here
 };
 
 /// Two blocks near each other. Their contact points are sought anew when they have moved against each other
@@ -139,7 +139,8 @@ struct State {
   std::vector<ContactPair> pairs;  // sorted by (a, b)
   std::vector<Contact> contacts;   // pair by pair
 
-  std::vector<Mat2> initial_stress;      // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7)
+  std::vector<Mat2>
+      initial_stress;  // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7); empty: none
   std::vector<BlockForce> kept_force;    // [count] of excavated blocks on the others; empty: none
   double relaxed = 1;                    // share of it that is gone
   std::vector<Vec2> support_hold;        // [n_supported_points] displacement at which a support began [m]
@@ -150,6 +151,11 @@ struct State {
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
   double largest_kinetic = 0;  // since the start of the stage [J]
 };
+
+/// T0 of block i [Pa].
+inline Mat2 initial_stress_of(const State& s, size_t i) {
+  return s.initial_stress.empty() ? Mat2{} : s.initial_stress[i];
+}
 
 /// State at rest position with the initial velocities of the layout.
 State initial_state(const BlockSet& blocks, const Layout& layout);

@@ -73,7 +73,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     // only what was never disturbed sticks with the stress of the ground
     const double elastic = state.step == 0 ? closure.y : 0;
     const double rise = dilation_rise(property, c.slip), gap = over.gap - rise;
-    place[i] = {over.gap, slip, elastic, rise, c.slip, c.slip_signed};
+    place[i] = {over.gap, c.memory == Contact::kNone ? slip - elastic : slip};
 
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
@@ -94,7 +94,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
 
     Impulse guess{};
     if (c.memory == Contact::kNone) {
-      p.row[1].bias = place[i].off / timing.dt;
+      p.row[1].bias = elastic / timing.dt;
     } else {
       guess = {c.force[0] * timing.dt_kick, c.force[1] * timing.dt_kick};
       const double off = off_anchor(c, slip);
@@ -146,7 +146,7 @@ void remember_contacts(const RowSet& rows, size_t first, const std::vector<Conta
       if (slides(p, impulse))
         c.anchor = std::nan("");
       else if (!anchored)
-        c.anchor = place[i].slip - (c.memory == Contact::kNone ? place[i].off : c.stretch);
+        c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
       c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
       c.stretch = -elastic * factor;
       c.memory = Contact::kWhole;

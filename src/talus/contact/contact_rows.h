@@ -11,10 +11,8 @@ namespace talus {
 /// Where a contact is now.
 struct ContactPlace {
   double gap = 0;   // [m] > 0 apart
-  double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge
-  double off = 0;   // [m] elastic slip of a new contact, by the stress of the ground
-  double rise = 0;  // [m] gap at which it is in touch: dilation
-  double slipped = 0, slipped_signed = 0;  // [m] Contact::slip, ::slip_signed before this kick
+  double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge; of a new
+                    // contact less the elastic slip by the stress of the ground
 };
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has

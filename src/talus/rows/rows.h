@@ -43,7 +43,7 @@ using Impulse = std::array<double, 2>;  // normal, tangential [N s]
 /// memory of a run.
 template <class T>
 void resize_sparingly(std::vector<T>& v, size_t n) {
-  if (v.capacity() < n) v.reserve(n + n / 32);
+  if (v.capacity() < n) v.reserve(n + n / 64);
   v.resize(n);
 }
 

@@ -25,14 +25,13 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
 JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
   const size_t k = row - i.work.first_contact;
   const Contact& c = i.state.contacts[k];
-  const ContactPlace& place = i.work.places[k];
   JointPoint out;
   out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
   out.joint = c.joint;
   out.length = c.length;
-  out.slip = place.slipped, out.slip_signed = place.slipped_signed;
-  out.rise = place.rise;
-  out.opening = std::max(0.0, place.gap - place.rise);
+  out.slip = c.slip, out.slip_signed = c.slip_signed;
+  if (c.joint >= 0) out.rise = dilation_rise(scene.model.joints[static_cast<size_t>(c.joint)], c.slip);
+  out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
   out.state = joint_state(
       c.touched, c.force[0], out.slip, out.opening,
       noticeable(scene.blocks, static_cast<size_t>(c.key.block_a), static_cast<size_t>(c.key.block_b)));

@@ -106,9 +106,12 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
   for (int i = 0; i < now.count; ++i) {
     const auto k = static_cast<size_t>(i);
     if (before.moves_freely(i) && !now.moves_freely(i)) state.rate[k] = {}, state.contact_force[k] = {};
-    if (scene.layout.blocks[k].kind == BlockKind::kDeformable)
-      state.initial_stress[k] =
-          initial_stress_for(before.moduli[k], now.moduli[k], state.strain_part[k], state.initial_stress[k]);
+    if (scene.layout.blocks[k].kind != BlockKind::kDeformable) continue;
+    const Mat2 stress = initial_stress_for(before.moduli[k], now.moduli[k], state.strain_part[k],
+                                           initial_stress_of(state, k));
+    if (state.initial_stress.empty() && contract(stress, stress) > 0)
+      state.initial_stress.resize(static_cast<size_t>(now.count));
+    if (!state.initial_stress.empty()) state.initial_stress[k] = stress;
   }
   for (size_t f = 0; f < scene.bonds.faces.size(); ++f) {
     if (now.interact(scene.bonds.faces[f].block_a, scene.bonds.faces[f].block_b)) continue;
@@ -138,7 +141,7 @@ double ledger_energy(const Scene& scene, const State& state) {
     const BlockRate& v = state.rate[k];
     const ElasticState elastic =
         blocks.kind[k] == BlockKind::kDeformable
-            ? elastic_state(blocks.moduli[k], state.strain_part[k], state.initial_stress[k])
+            ? elastic_state(blocks.moduli[k], state.strain_part[k], initial_stress_of(state, k))
             : ElasticState{};
     // velocities are half a step behind: what weight and elasticity do until now counts too
     const BlockForce own = own_force(scene, k, elastic.stress);

@@ -205,7 +205,7 @@ class Kick {
     BlockForce& force = forces_[k];
     force = BlockForce{blocks_.mass[k] * scene_.model.gravity, {}} + load_[k];
     if (blocks_.kind[k] == BlockKind::kDeformable) {
-      elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k], state_.initial_stress[k]);
+      elastic_[k] = elastic_state(blocks_.moduli[k], state_.strain_part[k], initial_stress_of(state_, k));
       force.Q += (-blocks_.volume[k]) * elastic_[k].stress;
     }
     if (!work_.bolt_forces.empty()) force += work_.bolt_forces[k];

@@ -6,8 +6,9 @@ Mat2 in_situ_stress(const InSituInput& input, Vec2 gravity, double height) {
   if (!input.with_depth) return input.stress;
   const double depth = input.level - height;
   const double vertical = input.pressure + input.density * norm(gravity) * depth;
-  const double horizontal = std::isnan(input.k0) ? input.horizontal_pressure + input.horizontal_gradient * depth
-                                                 : input.k0 * vertical;
+  const double horizontal = std::isnan(input.k0)
+                                ? input.horizontal_pressure + input.horizontal_gradient * depth
+                                : input.k0 * vertical;
   return {-horizontal, 0, 0, -vertical};
 }
 

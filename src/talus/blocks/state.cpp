@@ -45,13 +45,12 @@ ElasticState elastic_state(const PlaneModuli& k, const Mat2& H, const Mat2& T0) 
                exy = 2 * k.c33 * p.exy;
   // C : (U - I) is coaxial with U, T0 need not be: without the skew part q J / tr U the stress would be no
   // derivative of an energy and P F^T no symmetric one, a torque out of nothing
-  const double skew =
-      (T0.xy * (p.exx - p.eyy) - (T0.xx - T0.yy) * p.exy) / (2 + p.exx + p.eyy);
+  const double skew = (T0.xy * (p.exx - p.eyy) - (T0.xx - T0.yy) * p.exy) / (2 + p.exx + p.eyy);
   const double txx = T0.xx + exx, tyy = T0.yy + eyy, txy = T0.xy + exy + skew, tyx = T0.xy + exy - skew;
   ElasticState e;
   e.stress = {p.c * txx - p.s * tyx, p.c * txy - p.s * tyy, p.s * txx + p.c * tyx, p.s * txy + p.c * tyy};
-  e.density = 0.5 * (p.exx * exx + p.eyy * eyy) + p.exy * exy + T0.xx * p.exx + T0.yy * p.eyy +
-              2 * T0.xy * p.exy;
+  e.density =
+      0.5 * (p.exx * exx + p.eyy * eyy) + p.exy * exy + T0.xx * p.exx + T0.yy * p.eyy + 2 * T0.xy * p.exy;
   e.rotation = {p.c, p.s};
   return e;
 }
@@ -72,7 +71,8 @@ Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   if (blocks.kind[k] != BlockKind::kDeformable) return {};
   const Mat2 F = kIdentity + state.strain_part[k];
   return (1 / det(F)) *
-         (elastic_state(blocks.moduli[k], state.strain_part[k], state.initial_stress[k]).stress * transpose(F));
+         (elastic_state(blocks.moduli[k], state.strain_part[k], state.initial_stress[k]).stress *
+          transpose(F));
 }
 
 Mat2 rotation_minus_identity(double angle) {

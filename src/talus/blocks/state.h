@@ -139,12 +139,12 @@ struct State {
   std::vector<ContactPair> pairs;  // sorted by (a, b)
   std::vector<Contact> contacts;   // pair by pair
 
-  std::vector<Mat2> initial_stress;  // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7)
-  std::vector<BlockForce> kept_force;      // [count] of excavated blocks on the others; empty: none
-  double relaxed = 1;                      // share of it that is gone
-  std::vector<Vec2> support_hold;          // [n_supported_points] displacement at which a support began [m]
-  std::vector<Vec2> displacement_start;    // [count] from which displacements are counted; empty: 0 [m]
-  std::vector<Mat2> strain_part_start;     // [count] the same of F - I
+  std::vector<Mat2> initial_stress;      // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7)
+  std::vector<BlockForce> kept_force;    // [count] of excavated blocks on the others; empty: none
+  double relaxed = 1;                    // share of it that is gone
+  std::vector<Vec2> support_hold;        // [n_supported_points] displacement at which a support began [m]
+  std::vector<Vec2> displacement_start;  // [count] from which displacements are counted; empty: 0 [m]
+  std::vector<Mat2> strain_part_start;   // [count] the same of F - I
 
   WorkDone work;               // through the middle of the step before
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]

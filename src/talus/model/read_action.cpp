@@ -167,8 +167,8 @@ class ActionReader : private SectionReader {
     read_line_name(f, "to", b.opposite);
     read_segment(f, "to_edge", b.opposite);
     b.opposite.block = b.block, b.opposite.where_block = b.where_block;
-    refuse_keys(f, {"material", "static", "stages"}, "has no meaning for tied sides, which are tied in every stage",
-                "leave it out");
+    refuse_keys(f, {"material", "static", "stages"},
+                "has no meaning for tied sides, which are tied in every stage", "leave it out");
     if (!b.along.empty() && b.along == b.opposite.along)
       error(f, "to", "names the side itself", "name the side at the other end of the model");
   }

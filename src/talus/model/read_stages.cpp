@@ -129,10 +129,10 @@ class StageReader : private SectionReader {
 
   void warn_left() {
     if (!pending_ || model_.stages.empty()) return;
-    findings_.warning(model_.stages.back().where, "stage." + model_.stages.back().name,
-                      fmt::format("ends the run while {:g} of the tractions of the excavated rock still stand",
-                                  1 - share_),
-                      "let relaxation reach 1 if the opening shall carry itself");
+    findings_.warning(
+        model_.stages.back().where, "stage." + model_.stages.back().name,
+        fmt::format("ends the run while {:g} of the tractions of the excavated rock still stand", 1 - share_),
+        "let relaxation reach 1 if the opening shall carry itself");
   }
 
   // --- changes ---
@@ -212,7 +212,8 @@ class StageReader : private SectionReader {
     }
     if (constant) {
       for (const char* key : {"pressure", "density", "k0", "horizontal_pressure", "horizontal_gradient"})
-        if (f.given(key)) error(f, key, "belongs to a stress that grows with depth", "give level, or leave it out");
+        if (f.given(key))
+          error(f, key, "belongs to a stress that grows with depth", "give level, or leave it out");
       return;
     }
     if (!f.given("density"))
@@ -222,7 +223,8 @@ class StageReader : private SectionReader {
       error(f, "k0", gradient ? "and a horizontal pressure are given: one too many" : "is missing",
             "give k0, or horizontal_pressure and horizontal_gradient");
     if (model_.gravity.x != 0 || model_.gravity.y > 0)
-      error(f, "level", fmt::format("needs gravity along -y; it is [{:g}, {:g}]", model_.gravity.x, model_.gravity.y),
+      error(f, "level",
+            fmt::format("needs gravity along -y; it is [{:g}, {:g}]", model_.gravity.x, model_.gravity.y),
             "give stress_xx, stress_yy, stress_xy, or model.gravity = [0, -9.81]");
   }
 

@@ -7,149 +7,158 @@ namespace talus {
 namespace {
 
 SectionSpec in_situ_section() {
-  return {"in_situ",
-          SectionShape::kTable,
-          "Stress of the ground at the start, in every deformable block as at its centroid. Either with depth (`level`, `density`, `k0` or a horizontal gradient) or the same everywhere (`stress_xx` ...).",
-          {{.name = "level",
-            .dimension = D::kLength,
-            .doc = "Height y at which depth begins; no deformable block may have its centroid above."},
-           {.name = "pressure",
-            .dimension = D::kStress,
-            .range = kNonNegative,
-            .default_text = "\"0 Pa\"",
-            .doc = "Vertical pressure at that level, of the ground above the model."},
-           {.name = "density",
-            .dimension = D::kDensity,
-            .range = kPositive,
-            .doc = "Of the ground below the level: the vertical pressure is `pressure` + density x gravity x depth."},
-           {.name = "k0", .range = kNonNegative, .doc = "Horizontal / vertical pressure."},
-           {.name = "horizontal_pressure",
-            .dimension = D::kStress,
-            .range = kNonNegative,
-            .doc = "Instead of `k0`: horizontal pressure at the level."},
-           {.name = "horizontal_gradient",
-            .dimension = D::kStiffness,
-            .range = kNonNegative,
-            .doc = "Instead of `k0`: growth of the horizontal pressure with depth."},
-           {.name = "stress_xx",
-            .dimension = D::kStress,
-            .doc = "Stress everywhere, tension > 0."},
-           {.name = "stress_yy", .dimension = D::kStress, .doc = "The same."},
-           {.name = "stress_xy", .dimension = D::kStress, .doc = "The same."}}};
+  return {
+      "in_situ",
+      SectionShape::kTable,
+      "Stress of the ground at the start, in every deformable block as at its centroid. Either with depth "
+      "(`level`, `density`, `k0` or a horizontal gradient) or the same everywhere (`stress_xx` ...).",
+      {{.name = "level",
+        .dimension = D::kLength,
+        .doc = "Height y at which depth begins; no deformable block may have its centroid above."},
+       {.name = "pressure",
+        .dimension = D::kStress,
+        .range = kNonNegative,
+        .default_text = "\"0 Pa\"",
+        .doc = "Vertical pressure at that level, of the ground above the model."},
+       {.name = "density",
+        .dimension = D::kDensity,
+        .range = kPositive,
+        .doc = "Of the ground below the level: the vertical pressure is `pressure` + density x gravity x "
+               "depth."},
+       {.name = "k0", .range = kNonNegative, .doc = "Horizontal / vertical pressure."},
+       {.name = "horizontal_pressure",
+        .dimension = D::kStress,
+        .range = kNonNegative,
+        .doc = "Instead of `k0`: horizontal pressure at the level."},
+       {.name = "horizontal_gradient",
+        .dimension = D::kStiffness,
+        .range = kNonNegative,
+        .doc = "Instead of `k0`: growth of the horizontal pressure with depth."},
+       {.name = "stress_xx", .dimension = D::kStress, .doc = "Stress everywhere, tension > 0."},
+       {.name = "stress_yy", .dimension = D::kStress, .doc = "The same."},
+       {.name = "stress_xy", .dimension = D::kStress, .doc = "The same."}}};
 }
 
 SectionSpec stage_section() {
-  return {"stage",
-       SectionShape::kList,
-       "Stages in the order they run.",
-       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-        {.name = "kind",
-         .type = K::kChoice,
-         .required = true,
-         .choices = {"static", "dynamic"},
-         .doc = "`dynamic`: in true time for `duration`. `static`: damped until at rest, at most for "
-                "`duration`."},
-        {.name = "duration",
-         .dimension = D::kTime,
-         .range = kPositive,
-         .required = true,
-         .doc = "Length; for a static stage the limit after which the run stops with an error."},
-        {.name = "time_step",
-         .type = K::kQuantityAuto,
-         .dimension = D::kTime,
-         .range = kPositive,
-         .default_text = "\"auto\"",
-         .doc = "Time step, rounded down so that the stage ends on a step. \"auto\": `safety` times the "
-                "stable limit "
-                "of the stiffest block."},
-        {.name = "safety",
-         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
-         .default_text = "0.8",
-         .doc = "With \"auto\": share of the stable limit."},
-        {.name = "elasticity",
-         .type = K::kChoice,
-         .default_text = "\"explicit\"",
-         .choices = {"explicit", "implicit"},
-         .doc =
-             "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "
-             "is part of its mass matrix (theory 4.9), so that no block limits the time step; \"auto\" is "
-             "then the time in which a wave crosses two blocks of median size."},
-        {.name = "moment_clamp",
-         .type = K::kBool,
-         .default_text = "false",
-         .doc =
-             "With a given `time_step`: raise the moment of inertia of blocks too thin for it (counted and "
-             "reported; refused where a block of median size would need it, and on masonry, whose bricks "
-             "rock)."},
-        {.name = "damping_mass",
-         .dimension = D::kRate,
-         .range = kNonNegative,
-         .default_text = "\"0 1/s\"",
-         .doc =
-             "Mass-proportional damping: force = -damping_mass x mass x velocity. An oscillation of angular "
-             "frequency w gets the damping ratio damping_mass / (2 w)."},
-        {.name = "damping_stiffness",
-         .dimension = D::kTime,
-         .range = kNonNegative,
-         .default_text = "\"0 s\"",
-         .doc = "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
-                "rate, in "
-                "blocks, not in joints. An oscillation of angular frequency w gets the damping ratio "
-                "damping_stiffness x w / 2. It shortens the stable time step (`talus check` says by how "
-                "much) unless "
-                "`elasticity` is implicit."},
-        {.name = "damping_local",
-         .range = {.min = 0, .max = 1, .max_open = true},
-         .doc = "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "
-                "static, "
-                "0 in dynamic stages."},
-        {.name = "unbalanced",
-         .range = {.min = 0, .max = 0.1, .min_open = true},
-         .default_text = "1e-5",
-         .doc = "Static stages: at rest when the largest unbalanced force of a block, as share of the mean "
-                "force on "
-                "blocks, and the share of its peak velocity left are below this."},
-        {.name = "excavate",
-         .type = K::kTexts,
-         .refers_to = "block, grid, region or kept opening",
-         .doc = "Blocks taken out at the start of the stage: names of groups or of single blocks. They leave no mass and no contact."},
-        {.name = "relaxation",
-         .type = K::kCurve,
-         .range = {.min = 0, .max = 1},
-         .doc = "List of [time since the start of the stage, share]: what the excavated blocks pushed on the others stays as forces, of which this share is gone. Linear between points and held; begins at 0 with the excavation (none: all gone at once) and where the stage before ended in a later stage."},
-        {.name = "reset_displacements",
-         .type = K::kBool,
-         .default_text = "false",
-         .doc = "Displacements in histories and frames count from the start of this stage on."}}};
+  return {
+      "stage",
+      SectionShape::kList,
+      "Stages in the order they run.",
+      {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+       {.name = "kind",
+        .type = K::kChoice,
+        .required = true,
+        .choices = {"static", "dynamic"},
+        .doc = "`dynamic`: in true time for `duration`. `static`: damped until at rest, at most for "
+               "`duration`."},
+       {.name = "duration",
+        .dimension = D::kTime,
+        .range = kPositive,
+        .required = true,
+        .doc = "Length; for a static stage the limit after which the run stops with an error."},
+       {.name = "time_step",
+        .type = K::kQuantityAuto,
+        .dimension = D::kTime,
+        .range = kPositive,
+        .default_text = "\"auto\"",
+        .doc = "Time step, rounded down so that the stage ends on a step. \"auto\": `safety` times the "
+               "stable limit "
+               "of the stiffest block."},
+       {.name = "safety",
+        .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
+        .default_text = "0.8",
+        .doc = "With \"auto\": share of the stable limit."},
+       {.name = "elasticity",
+        .type = K::kChoice,
+        .default_text = "\"explicit\"",
+        .choices = {"explicit", "implicit"},
+        .doc =
+            "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "
+            "is part of its mass matrix (theory 4.9), so that no block limits the time step; \"auto\" is "
+            "then the time in which a wave crosses two blocks of median size."},
+       {.name = "moment_clamp",
+        .type = K::kBool,
+        .default_text = "false",
+        .doc = "With a given `time_step`: raise the moment of inertia of blocks too thin for it (counted and "
+               "reported; refused where a block of median size would need it, and on masonry, whose bricks "
+               "rock)."},
+       {.name = "damping_mass",
+        .dimension = D::kRate,
+        .range = kNonNegative,
+        .default_text = "\"0 1/s\"",
+        .doc =
+            "Mass-proportional damping: force = -damping_mass x mass x velocity. An oscillation of angular "
+            "frequency w gets the damping ratio damping_mass / (2 w)."},
+       {.name = "damping_stiffness",
+        .dimension = D::kTime,
+        .range = kNonNegative,
+        .default_text = "\"0 s\"",
+        .doc = "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
+               "rate, in "
+               "blocks, not in joints. An oscillation of angular frequency w gets the damping ratio "
+               "damping_stiffness x w / 2. It shortens the stable time step (`talus check` says by how "
+               "much) unless "
+               "`elasticity` is implicit."},
+       {.name = "damping_local",
+        .range = {.min = 0, .max = 1, .max_open = true},
+        .doc = "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "
+               "static, "
+               "0 in dynamic stages."},
+       {.name = "unbalanced",
+        .range = {.min = 0, .max = 0.1, .min_open = true},
+        .default_text = "1e-5",
+        .doc = "Static stages: at rest when the largest unbalanced force of a block, as share of the mean "
+               "force on "
+               "blocks, and the share of its peak velocity left are below this."},
+       {.name = "excavate",
+        .type = K::kTexts,
+        .refers_to = "block, grid, region or kept opening",
+        .doc = "Blocks taken out at the start of the stage: names of groups or of single blocks. They leave "
+               "no mass and no contact."},
+       {.name = "relaxation",
+        .type = K::kCurve,
+        .range = {.min = 0, .max = 1},
+        .doc = "List of [time since the start of the stage, share]: what the excavated blocks pushed on the "
+               "others stays as forces, of which this share is gone. Linear between points and held; begins "
+               "at 0 with the excavation (none: all gone at once) and where the stage before ended in a "
+               "later stage."},
+       {.name = "reset_displacements",
+        .type = K::kBool,
+        .default_text = "false",
+        .doc = "Displacements in histories and frames count from the start of this stage on."}}};
 }
 
 SectionSpec change_section() {
   const auto value = [](std::string_view name, Dimension dimension, Range range, std::string_view doc) {
     return KeySpec{.name = name, .dimension = dimension, .range = range, .doc = doc};
   };
-  return {"change",
-          SectionShape::kList,
-          "What changes at the start of a stage, for good: values of a `joint` or a `material`, or material and kind of blocks (`block`).",
-          {{.name = "stage", .type = K::kName, .required = true, .refers_to = "stage", .doc = "At its start."},
-           {.name = "joint", .type = K::kName, .refers_to = "joint", .doc = "Joint whose strength changes."},
-           {.name = "material",
-            .type = K::kName,
-            .refers_to = "material",
-            .doc = "Material whose values change; with `block`: what those blocks are made of from now on. The stress stays as it was; boundaries keep the medium behind them."},
-           {.name = "block",
-            .type = K::kText,
-            .refers_to = "block, grid, region or kept opening",
-            .doc = "Blocks that change."},
-           {.name = "kind",
-            .type = K::kChoice,
-            .choices = {"fixed", "free"},
-            .doc = "With `block`: `fixed`: they stay where they are; `free`: they move again."},
-           value("friction_angle", D::kAngle, {.min = 0, .max = 1.5707, .max_open = true}, "Of the joint."),
-           value("cohesion", D::kStress, kNonNegative, "Of the joint; more than 0 only where it had strength at the start."),
-           value("tensile_strength", D::kStress, kNonNegative, "The same."),
-           value("density", D::kDensity, kPositive, "Of the material."),
-           value("young", D::kStress, kPositive, "The same."),
-           value("poisson", D::kNone, {.min = -1, .max = 0.5, .min_open = true, .max_open = true}, "The same.")}};
+  return {
+      "change",
+      SectionShape::kList,
+      "What changes at the start of a stage, for good: values of a `joint` or a `material`, or material and "
+      "kind of blocks (`block`).",
+      {{.name = "stage", .type = K::kName, .required = true, .refers_to = "stage", .doc = "At its start."},
+       {.name = "joint", .type = K::kName, .refers_to = "joint", .doc = "Joint whose strength changes."},
+       {.name = "material",
+        .type = K::kName,
+        .refers_to = "material",
+        .doc = "Material whose values change; with `block`: what those blocks are made of from now on. The "
+               "stress stays as it was; boundaries keep the medium behind them."},
+       {.name = "block",
+        .type = K::kText,
+        .refers_to = "block, grid, region or kept opening",
+        .doc = "Blocks that change."},
+       {.name = "kind",
+        .type = K::kChoice,
+        .choices = {"fixed", "free"},
+        .doc = "With `block`: `fixed`: they stay where they are; `free`: they move again."},
+       value("friction_angle", D::kAngle, {.min = 0, .max = 1.5707, .max_open = true}, "Of the joint."),
+       value("cohesion", D::kStress, kNonNegative,
+             "Of the joint; more than 0 only where it had strength at the start."),
+       value("tensile_strength", D::kStress, kNonNegative, "The same."),
+       value("density", D::kDensity, kPositive, "Of the material."),
+       value("young", D::kStress, kPositive, "The same."),
+       value("poisson", D::kNone, {.min = -1, .max = 0.5, .min_open = true, .max_open = true}, "The same.")}};
 }
 
 }  // namespace

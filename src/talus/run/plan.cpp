@@ -99,8 +99,8 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
         stage.kind == StageKind::kDynamic
             ? stable_step(scene.boundaries.free_field, scene.model.inertia == Inertia::kLumped)
             : ColumnStep{};
-    double wanted = std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt,
-                             stage.safety * column.dt);
+    double wanted =
+        std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;
     } else if (bound.block < 0) {

@@ -122,8 +122,8 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
     const auto prescribed = [&](const Motion& m) {
       return m.displacement_at(state.history_time, scene.model.histories);
     };
-    state.support_hold[i] = displacement_at(state, static_cast<size_t>(p.block), p.arm) -
-                            Vec2{prescribed(s.x), prescribed(s.y)};
+    state.support_hold[i] =
+        displacement_at(state, static_cast<size_t>(p.block), p.arm) - Vec2{prescribed(s.x), prescribed(s.y)};
   }
   // pairs with blocks that have gone leave the list, others may have come to matter
   if (before.kind != now.kind) state.candidates.margin = -1;

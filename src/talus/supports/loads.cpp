@@ -25,9 +25,8 @@ void add_points(const LoadInput& load, int index, const Layout& layout, const Bl
     // a traction that is the same along an edge has its resultant in the middle
     for (const SelectedEdge& e : outer_edges(layout, load).edges)
       if (blocks.moves_freely(e.block))
-        points.push_back(
-            {index, e.block, arm(e.block, 0.5 * (e.from + e.to)), e.normal(), e.length() * blocks.thickness,
-             true});
+        points.push_back({index, e.block, arm(e.block, 0.5 * (e.from + e.to)), e.normal(),
+                          e.length() * blocks.thickness, true});
     return;
   }
   const size_t first = points.size();

@@ -12,9 +12,9 @@ namespace talus {
 struct LoadedPoint {
   int load = -1;  // of the model
   int block = -1;
-  Vec2 arm;         // reference arm [m]
-  Vec2 normal;      // of the edge, outward, in the reference shape
-  double area = 0;  // of the edge [m2]; of a point: its share of the force [-]
+  Vec2 arm;            // reference arm [m]
+  Vec2 normal;         // of the edge, outward, in the reference shape
+  double area = 0;     // of the edge [m2]; of a point: its share of the force [-]
   bool active = true;  // in this stage
 };
 

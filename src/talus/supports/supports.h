@@ -11,7 +11,7 @@ namespace talus {
 struct SupportedPoint {
   int support = -1;  // index in the model
   int block = -1;
-  Vec2 arm;  // reference arm [m]
+  Vec2 arm;            // reference arm [m]
   bool active = true;  // in this stage; rows are made of active points only
 };
 

@@ -15,7 +15,7 @@ namespace talus {
 struct TiePoint {
   int boundary = -1;  // of the model
   int block_a = -1, block_b = -1;
-  Vec2 arm_a, arm_b;  // reference arms [m]
+  Vec2 arm_a, arm_b;   // reference arms [m]
   bool active = true;  // in this stage
 };
 

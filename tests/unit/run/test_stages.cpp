@@ -114,7 +114,8 @@ reset_displacements = true
   const double fallen = 10 * 0.4 * 0.4 / 6;
   check_close("excavate: fall of the load [m]", -r.column("load.displacement_y").back(), fallen, 1e-3, 1e-4);
   const auto& y = r.column("load.displacement_y");
-  check_below("excavate: displacement just before, counted anew [m]", std::abs(y[first_row(r, 1)]), 1e-15, 0.0);
+  check_below("excavate: displacement just before, counted anew [m]", std::abs(y[first_row(r, 1)]), 1e-15,
+              0.0);
   check_below("excavate: energy left over / largest term", r.run.closure(), 1e-2, 1e-10);
 }
 
@@ -131,7 +132,8 @@ reset_displacements = true
                                 {}, [&](const Instant& i) {
                                   if (i.stage == 0) return;
                                   contacts = std::max(contacts, i.state.contacts.size());
-                                  const std::string vtu = blocks_vtu(i.scene.blocks, i.state, i.work.rate_before);
+                                  const std::string vtu =
+                                      blocks_vtu(i.scene.blocks, i.state, i.work.rate_before);
                                   if (i.last) drawn = vtu.find("NumberOfCells=\"2\"");
                                 });
   check_close("excavate at once: fall [m]", -r.column("load.displacement_y").back(), 0.2, 1e-3, 1e-4);
@@ -151,16 +153,19 @@ support = "anchor"
 [[stage]]
 name = "half"
 kind = "static"
+time_step = 1e-4
 duration = 1
 excavate = ["prop"]
 relaxation = [[0, 0], ["20 ms", 0.5]]
 [[stage]]
 name = "wait"
 kind = "dynamic"
+time_step = 1e-4
 duration = "5 ms"
 [[stage]]
 name = "all"
 kind = "static"
+time_step = 1e-4
 duration = 1
 relaxation = [[0, 0.5], ["20 ms", 1]]
 )");
@@ -170,7 +175,8 @@ relaxation = [[0, 0.5], ["20 ms", 1]]
   check_close("anchor at half relaxation [N]", force[wait], 10000, 1e-3, 1e-4);
   check_close("anchor in a stage without relaxation [N]", force[first_row(r, 3) - 1], 10000, 1e-3, 1e-4);
   check_close("anchor in the end [N]", force.back(), 20000, 1e-3, 1e-4);
-  // the prop had been pressed together by 20 kPa x 0.5 m / 5.3 GPa: that place is held, not the undeformed one
+  // the prop had been pressed together by 20 kPa x 0.5 m / 5.3 GPa: that place is held, not the undeformed
+  // one
   const double place = y[first_row(r, 1)];
   CHECK(place < -1e-6);
   check_close("anchored block stays [m]", y.back(), place, 1e-3, 1e-4);
@@ -180,7 +186,8 @@ relaxation = [[0, 0.5], ["20 ms", 1]]
 }
 
 TEST_CASE("change: a joint gets weaker, and the block slides from then on") {
-  const CaseResult r = run_case(kIncline + "[[change]]\nstage = \"slide\"\njoint = \"face\"\nfriction_angle = \"20 deg\"\n");
+  const CaseResult r =
+      run_case(kIncline + "[[change]]\nstage = \"slide\"\njoint = \"face\"\nfriction_angle = \"20 deg\"\n");
   const auto& x = r.column("block.displacement_x");
   check_below("change: slip before [m]", std::abs(x[1000]), 1e-9, 1e-12);
   const double a = 5 - std::tan(20 * M_PI / 180) * 8.660254037844386;
@@ -280,10 +287,12 @@ young = "2.5 GPa"
 
 TEST_CASE("a static stage that finds no rest says where") {
   Findings findings("model.toml", kIncline);
-  PreparedRun run = prepare_run(
-      "model.toml",
-      kIncline + "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 0.1\ntime_step = 1e-3\n[[change]]\nstage = \"rest\"\njoint = \"face\"\nfriction_angle = 0\n",
-      {}, findings);
+  PreparedRun run =
+      prepare_run("model.toml",
+                  kIncline +
+                      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 0.1\ntime_step = "
+                      "1e-3\n[[change]]\nstage = \"rest\"\njoint = \"face\"\nfriction_angle = 0\n",
+                  {}, findings);
   State state = start_state(run.scene);
   MemoryObserver observer(run.scene, nullptr);
   const RunResult r = run_stages(run.scene, run.plans, state, observer);
@@ -307,7 +316,8 @@ TEST_CASE("wrong stages are found before the first step") {
        {"stage.dig.relaxation", "falls from 0.6 to 0.5"}},
       {dig + "excavate = [\"prop\"]\nrelaxation = [[0, 0], [0.2, 0.6], [0.2, 1]]\n",
        {"stage.dig.relaxation", "0.2 s is followed by 0.2 s"}},
-      {dig + "excavate = [\"prop\"]\nrelaxation = [[0, 0], [0.2, 1.5]]\n", {"stage.dig.relaxation", "1.5", "<= 1"}},
+      {dig + "excavate = [\"prop\"]\nrelaxation = [[0, 0], [0.2, 1.5]]\n",
+       {"stage.dig.relaxation", "1.5", "<= 1"}},
       {dig + "excavate = [\"prop\"]\nrelaxation = [[0, 0.2], [0.2, 1]]\n",
        {"stage.dig.relaxation", "begins with [0 s, 0.2]"}},
       {dig + "excavate = [\"prop\"]\nrelaxation = [[0, 0], [2, 1]]\n",
@@ -318,7 +328,8 @@ TEST_CASE("wrong stages are found before the first step") {
       {dig + "excavate = [\"prop\"]\nrelaxation = [[0, 0], [0.2, 0.5]]\n",
        {"warning", "stage.dig", "0.5 of the tractions"}},
       {kProp.substr(0, kProp.find("[[stage]]")) +
-           "[[stage]]\nname = \"dig\"\nkind = \"static\"\nduration = 1\nexcavate = [\"prop\"]\nrelaxation = [[0, 0], [0.2, 1]]\n",
+           "[[stage]]\nname = \"dig\"\nkind = \"static\"\nduration = 1\nexcavate = [\"prop\"]\nrelaxation = "
+           "[[0, 0], [0.2, 1]]\n",
        {"stage.dig.relaxation", "no stage comes before"}},
       {dig + "excavate = [\"prop\", \"load\", \"ground\"]\n", {"no block is left"}},
       {dig + "[[support]]\nname = \"s\"\npoint = [0, 1]\nstages = [\"digg\"]\n",
@@ -328,12 +339,14 @@ TEST_CASE("wrong stages are found before the first step") {
       {dig + "[[change]]\nstage = \"dig\"\njoint = \"face\"\nyoung = 1e9\n", {"change.0", "a joint changes"}},
       {dig + "[[change]]\nstage = \"dig\"\njoint = \"face\"\ncohesion = 1e5\n",
        {"change.0.cohesion", "no strength at the start"}},
-      {dig + "[[change]]\nstage = \"dog\"\njoint = \"face\"\nfriction_angle = 0\n", {"change.0.stage", "\"dig\""}},
+      {dig + "[[change]]\nstage = \"dog\"\njoint = \"face\"\nfriction_angle = 0\n",
+       {"change.0.stage", "\"dig\""}},
       {dig + "[[change]]\nstage = \"dig\"\nblock = \"ground\"\nkind = \"free\"\n",
        {"change.kind", "fixed or driven from the start"}},
       {dig + "excavate = [\"prop\"]\n[[change]]\nstage = \"dig\"\nblock = \"prop\"\nkind = \"fixed\"\n",
        {"change.block", "excavated by then"}},
-      {dig + "[in_situ]\nlevel = 0.2\ndensity = 2000\nk0 = 1\n", {"in_situ.level", "below the centroid of \"prop\""}},
+      {dig + "[in_situ]\nlevel = 0.2\ndensity = 2000\nk0 = 1\n",
+       {"in_situ.level", "below the centroid of \"prop\""}},
       {dig + "[in_situ]\nlevel = 2\nk0 = 1\n", {"in_situ.density", "is missing"}},
       {dig + "[in_situ]\nlevel = 2\ndensity = 2000\n", {"in_situ.k0", "is missing"}},
       {dig + "[in_situ]\nstress_xx = 0\nlevel = 2\n", {"in_situ", "two ways"}},

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Bricks that slide, open and break on a shaking floor, after a static stage and an excavation.
-const std::string kModel = R"(talus = 1
+const std::string kModel = R"model(talus = 1
 [model]
 gravity = [0, -9.81]
 [material.rock]
@@ -87,7 +87,7 @@ history_interval = "1 ms"
 steps_interval = "1 ms"
 field_interval = "20 ms"
 save_interval = "20 ms"
-)";
+)model";
 
 void write_model(const Folder& folder, const std::string& text = kModel) {
   std::ofstream(folder / "model.toml") << text;

@@ -236,7 +236,7 @@ TEST_CASE("command run --from: what cannot go on is refused") {
       "cp r/saved/stage_02.h5 r/saved/bad.h5; s=$(stat -c %s r/saved/bad.h5); printf '\\125\\252' | dd "
       "of=r/saved/bad.h5 bs=1 "
       "seek=$((s/2)) conv=notrunc 2>/dev/null; $talus run model.toml --from r/saved/bad.h5",
-      4, "cannot be used");
+      4, "no saved state that can be used");
   refused("head -c 100 r/steps.csv > s; cp s r/steps.csv; $talus run model.toml" + from, 4,
           "cannot be continued");
 }

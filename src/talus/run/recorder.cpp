@@ -137,7 +137,7 @@ bool Recorder::wants_state() {
          wall_now() - last_saved_ >= interval;
 }
 
-void Recorder::keep(const Standing& standing, const State& state) {
+void Recorder::keep_state(const Standing& standing, const State& state) {
   history_file_.flush();
   steps_file_.flush();
   Archive archive = run_archive(scene_, standing, state);

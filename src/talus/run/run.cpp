@@ -101,7 +101,7 @@ class Runner {
 
     for (int64_t n = out.steps; n < plan.steps; ++n) {
       const bool stop = observer_.stop();
-      if (stop || observer_.wants_state()) observer_.keep({result_, false}, state_);
+      if (stop || observer_.wants_state()) observer_.keep_state({result_, false}, state_);
       if (stop) {
         result_.interrupted = true;
         break;
@@ -127,7 +127,7 @@ class Runner {
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
       throw NumericalError(no_rest(stage, out));
     }
-    if (!result_.interrupted) observer_.keep({result_, true}, state_);
+    if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
 
   // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not

@@ -69,10 +69,9 @@ double strain_energy_density(const PlaneModuli& k, const Mat2& H) { return elast
 Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return {};
-  const Mat2 F = kIdentity + state.strain_part[k];
-  return (1 / det(F)) *
-         (elastic_state(blocks.moduli[k], state.strain_part[k], state.initial_stress[k]).stress *
-          transpose(F));
+  const Mat2& H = state.strain_part[k];
+  const Mat2 T0 = state.initial_stress.empty() ? Mat2{} : state.initial_stress[k], F = kIdentity + H;
+  return (1 / det(F)) * (elastic_state(blocks.moduli[k], H, T0).stress * transpose(F));
 }
 
 Mat2 rotation_minus_identity(double angle) {

@@ -19,6 +19,8 @@ namespace {
 const std::string kFlight = R"(talus = 1
 [material.rock]
 density = 2000
+[joint.glue]
+kind = "bonded"
 [[block]]
 name = "left"
 polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
@@ -45,6 +47,7 @@ min = [0, 10]
 max = [2, 11]
 cells = [2, 1]
 material = "rock"
+joint = "glue"
 kind = "rigid"
 velocity = [0, 3]
 [[stage]]

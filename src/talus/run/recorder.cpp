@@ -8,6 +8,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
 #include "talus/run/problem_file.h"
@@ -64,6 +65,7 @@ std::vector<BoltLine> bolt_lines(const Scene& scene, const State& state, int sta
 }
 
 constexpr const char *kHistorySize = "recorder.histories_csv", *kStepsSize = "recorder.steps_csv";
+constexpr const char *kJointsSize = "recorder.joints_csv", *kBoltsSize = "recorder.bolts_csv";
 constexpr size_t kSavedStates = 2;  // between stages
 
 int64_t size_in(const Archive& saved, const std::string& name) {
@@ -71,6 +73,23 @@ int64_t size_in(const Archive& saved, const std::string& name) {
   if (it == saved.numbers.end() || it->second.size() != 1)
     throw FileError(fmt::format("the saved state has no \"{}\"", name));
   return static_cast<int64_t>(it->second[0]);
+}
+
+// A table that is written whole at the end of every stage, as it was when the state was saved.
+std::string table_then(const std::filesystem::path& path, int64_t size) {
+  std::error_code ec;
+  if (size == 0) {
+    std::filesystem::remove(path, ec);  // written after the state was
+    return {};
+  }
+  std::string text = read_text_file(path.string());
+  if (static_cast<int64_t>(text.size()) < size)
+    throw FileError(
+        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
+                    path.string(), text.size(), size));
+  text.resize(static_cast<size_t>(size));
+  write_file(path, text);
+  return text;
 }
 
 std::filesystem::path make_folder(const std::filesystem::path& p) {
@@ -109,6 +128,8 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder, Archive& sa
       block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
       contact_frames_(folder_ / "fields", "contacts", "vtp"),
       bolt_frames_(folder_ / "fields", "bolts", "vtp"),
+      bolt_table_(table_then(folder_ / "bolts.csv", size_in(saved, kBoltsSize))),
+      joints_(table_then(folder_ / "joints.csv", size_in(saved, kJointsSize))),
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
   Exchange loading(saved, false);
@@ -121,12 +142,14 @@ void Recorder::exchange(Exchange& x) {
   x("recorder.next_history", next_history_), x("recorder.next_steps", next_steps_);
   x("recorder.next_frame", next_frame_), x("recorder.worst", worst_);
   x("recorder.dumped_failure", dumped_failure_);
+  joint_summary_.exchange(x, "recorder.joints");
   histories_.exchange(x);
   std::vector<double> times = block_frames_.times();
   x("recorder.frames", times);
   if (x.saving()) return;
   block_frames_.go_on(times);
   contact_frames_.go_on(times);
+  if (!scene_.model.bolts.empty()) bolt_frames_.go_on(times);
 }
 
 bool Recorder::wants_state() {
@@ -145,6 +168,8 @@ void Recorder::keep_state(const Standing& standing, const State& state) {
   exchange(saving);
   archive.numbers[kHistorySize] = {static_cast<double>(history_file_.size())};
   archive.numbers[kStepsSize] = {static_cast<double>(steps_file_.size())};
+  archive.numbers[kJointsSize] = {static_cast<double>(joints_.size())};
+  archive.numbers[kBoltsSize] = {static_cast<double>(bolt_table_.size())};
   make_folder(folder_ / "saved");
   if (standing.between) {
     write_archive(folder_ / "saved" / fmt::format("stage_{:02}.h5", standing.result.stages.size()), archive);

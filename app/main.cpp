@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 
 #include "cut_command.h"
 #include "plot_command.h"
@@ -89,33 +90,46 @@ int check(const ModelArguments& args) {
 }
 
 struct RunArguments {
-  std::string folder;
+  std::string folder, from;
   bool force = false, quiet = false, profile = false;
   int64_t dump_step = -1;
   int threads = 0;  // 0: as many as pay
 };
 
 int run(const ModelArguments& args, const RunArguments& how) {
-  const auto& [folder, force, quiet, profile, dump_step, threads] = how;
+  const auto& [output, from, force, quiet, profile, dump_step, threads] = how;
   const std::string text = talus::read_text_file(args.file);
   talus::Findings findings(args.file, text);
   talus::PreparedRun prepared = prepare(args, findings, text);
-  talus::open_result_folder(folder, force);
+  talus::SavedRun saved;
+  const std::string folder = from.empty() ? output : talus::folder_of_saved(from, output);
+  if (!from.empty())
+    saved = talus::read_saved_run(from, prepared.scene);
+  else
+    talus::open_result_folder(folder, force);
 
-  talus::Recorder recorder(prepared.scene, folder);
-  recorder.dump_step(dump_step);
-  talus::State state = talus::start_state(prepared.scene);
+  std::optional<talus::Recorder> recorder;
+  if (from.empty())
+    recorder.emplace(prepared.scene, folder);
+  else
+    recorder.emplace(prepared.scene, folder, saved.archive);
+  recorder->dump_step(dump_step);
+  talus::State state = from.empty() ? talus::start_state(prepared.scene) : std::move(saved.state);
   std::FILE* out = quiet ? std::fopen("/dev/null", "w") : stdout;
-  talus::Progress progress(recorder, out, isatty(fileno(out)) != 0);
+  talus::Progress progress(*recorder, out, isatty(fileno(out)) != 0);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   progress.stop_when(&stop_requested);
   fmt::print(out, "{}{}", talus::base_report(prepared.scene), talus::resolution_report(prepared.scene));
-  const talus::RunResult result = talus::run_stages(
-      prepared.scene, prepared.plans, state, progress,
-      talus::Workers(threads > 0 ? threads : talus::threads_for(prepared.scene.blocks.count)));
+  const talus::Workers workers(threads > 0 ? threads : talus::threads_for(prepared.scene.blocks.count));
+  if (!from.empty())
+    fmt::print(out, "goes on from {}: t = {:.6g} s, step {}\n", from, state.time, state.step);
+  const talus::RunResult result =
+      from.empty()
+          ? talus::run_stages(prepared.scene, prepared.plans, state, progress, workers)
+          : talus::continue_stages(prepared.scene, prepared.plans, saved.standing, state, progress, workers);
   progress.finish();
-  recorder.finish(result, args.overrides, findings);
+  recorder->finish(result, args.overrides, findings);
   fmt::print(out, "{}", talus::closing_text(prepared.scene, result, folder));
   if (profile) fmt::print(out, "{}", talus::profile_text(result.profile, result.threads, result.steps));
   if (!result.failure.empty())
@@ -153,7 +167,9 @@ int run_command(int argc, char** argv) {
   bool force = false, json = false;
   CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
   add_model_arguments(*run_verb, model);
-  run_verb->add_option("-o,--output", how.folder, "folder for the results")->required();
+  CLI::Option* output = run_verb->add_option("-o,--output", how.folder, "folder for the results");
+  CLI::Option* from = run_verb->add_option(
+      "--from", how.from, "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in");
   run_verb->add_flag("--force", how.force, "replace the results of an earlier run in that folder");
   run_verb->add_flag("-q,--quiet", how.quiet, "say nothing but errors");
   run_verb
@@ -229,6 +245,10 @@ int run_command(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? talus::kExitOk : talus::kExitUsage;
+  }
+  if (*run_verb && output->count() + from->count() == 0) {
+    fmt::print(stderr, "talus: run needs -o FOLDER for the results, or --from STATE to go on\n");
+    return talus::kExitUsage;
   }
   if (*run_verb) return run(model, how);
   if (*check_verb) return check(model);

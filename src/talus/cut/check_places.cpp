@@ -40,22 +40,47 @@ void check_contradictions(const Model& model, const Layout& layout, Findings& fi
   }
 }
 
+void check_point(const Layout& layout, Vec2 point, const Where& where, const std::string& path,
+                 Findings& findings) {
+  if (block_of_point(layout, point) >= 0) return;
+  double nearest = std::numeric_limits<double>::infinity();
+  std::string name;
+  for (const BlockShape& b : layout.blocks) {
+    for (size_t i = 0; i < b.polygon.size(); ++i) {
+      const double d = distance_to_segment(point, b.polygon[i], b.polygon[(i + 1) % b.polygon.size()]);
+      if (d < nearest) nearest = d, name = b.name;
+    }
+  }
+  findings.error(where, path, fmt::format("({:g}, {:g}) lies outside every block", point.x, point.y),
+                 fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
+}
+
+// What a monitor is relative to: a support, a free field, or blocks.
+void check_reference(const Model& model, const Layout& layout, const MonitorInput& m, Findings& findings) {
+  for (const SupportInput& s : model.supports)
+    if (s.name == m.relative_to) return;
+  for (const BoundaryInput& b : model.boundaries)
+    if (b.name == m.relative_to && b.kind == BoundaryKind::kFreeField) return;
+  if (!layout.blocks_called(m.relative_to).empty()) return;
+  std::vector<std::string> names = layout.groups;
+  for (const SupportInput& s : model.supports) names.push_back(s.name);
+  for (const BoundaryInput& b : model.boundaries)
+    if (b.kind == BoundaryKind::kFreeField) names.push_back(b.name);
+  const std::string near = closest_name(m.relative_to, names);
+  findings.error(
+      m.where_relative, "monitor." + m.name + ".relative_to",
+      fmt::format("there is no support, free-field boundary or block called \"{}\"", m.relative_to),
+      near.empty() ? fmt::format("there is {}", join_or(names)) : fmt::format("did you mean \"{}\"?", near));
+}
+
 void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
   for (const MonitorInput& m : model.monitors) {
     const std::string path = "monitor." + m.name;
-    if (m.kind == MonitorKind::kPoint && block_of_point(layout, m.point) < 0) {
-      double nearest = std::numeric_limits<double>::infinity();
-      std::string name;
-      for (const BlockShape& b : layout.blocks) {
-        for (size_t i = 0; i < b.polygon.size(); ++i) {
-          const double d = distance_to_segment(m.point, b.polygon[i], b.polygon[(i + 1) % b.polygon.size()]);
-          if (d < nearest) nearest = d, name = b.name;
-        }
-      }
-      findings.error(m.where, path,
-                     fmt::format("({:g}, {:g}) lies outside every block", m.point.x, m.point.y),
-                     fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
-    }
+    if (m.kind == MonitorKind::kPoint || m.kind == MonitorKind::kConvergence)
+      check_point(layout, m.point, m.where, path, findings);
+    if (m.kind == MonitorKind::kConvergence) check_point(layout, m.other, m.where, path, findings);
+    if (m.relative_to_point) check_point(layout, m.other, m.where_relative, path, findings);
+    if (!m.relative_to.empty()) check_reference(model, layout, m, findings);
     if (m.kind == MonitorKind::kBlock) {
       const std::vector<int> called = layout.blocks_called(m.target_a);
       if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);

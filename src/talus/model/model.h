@@ -241,7 +241,7 @@ struct InSituInput {
   Where where, where_level;
 };
 
-enum class MonitorKind { kPoint, kBlock, kSupport, kContact, kBolt };
+enum class MonitorKind { kPoint, kBlock, kSupport, kContact, kBolt, kConvergence };
 
 struct MonitorInput {
   std::string name;
@@ -249,12 +249,16 @@ struct MonitorInput {
   Vec2 point;
   std::string target_a, target_b;  // names of block, support, bolt, or the two contact partners
   double window = 0;               // [s]
-  Where where;
+  Vec2 other;                      // convergence: the second point; points: `other` when relative_to_point
+  std::string relative_to;         // support, free-field boundary, block or group; "": none
+  bool relative_to_point = false;
+  Where where, where_relative;
 };
 
 struct OutputInput {
   double history_interval = 0, steps_interval = 0,
          field_interval = 0;  // [s] 0 = every step; fields: stage ends
+  double save_interval = 60;  // [s] of wall time; 0: only at the ends of stages
 };
 
 /// Search for the factor of safety by strength reduction (`talus safety`).

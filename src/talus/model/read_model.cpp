@@ -398,17 +398,27 @@ class ModelReader : private SectionReader {
       m.name = f.get<std::string>("name");
       m.window = f.get("window", 0.0);
       m.where = f.where();
-      const int kinds =
-          f.given("point") + f.given("block") + f.given("support") + f.given("contact") + f.given("bolt");
+      const int kinds = f.given("point") + f.given("block") + f.given("support") + f.given("contact") +
+                        f.given("bolt") + f.given("convergence");
       if (kinds != 1) {
         findings_.error(f.where(), f.path(),
                         kinds == 0 ? "does not say what to record" : "records more than one thing",
-                        "give one of point, block, support, contact, bolt");
+                        "give one of point, block, support, contact, bolt, convergence");
         return;
       }
       if (f.given("window") && !f.given("contact"))
         findings_.error(f.where("window"), f.path_of("window"), "is only for contact monitors");
-      if (f.given("point")) {
+      read_reference(f, m);
+      if (f.given("convergence")) {
+        m.kind = MonitorKind::kConvergence;
+        m.where = f.where("convergence");
+        const auto points = f.get<std::vector<Vec2>>("convergence");
+        if (f.has("convergence") && (points.size() != 2 || points[0] == points[1]))
+          findings_.error(m.where, f.path_of("convergence"), "must be two different points",
+                          "write convergence = [[x0, y0], [x1, y1]]");
+        else if (f.has("convergence"))
+          m.point = points[0], m.other = points[1];
+      } else if (f.given("point")) {
         m.point = f.get<Vec2>("point");
         m.where = f.where("point");
       } else if (f.given("block")) {
@@ -440,11 +450,25 @@ class ModelReader : private SectionReader {
     refer(f, "bolt", model_.bolts, "bolt");
   }
 
+  void read_reference(const Fields& f, MonitorInput& m) {
+    m.relative_to = f.get<std::string>("relative_to");
+    m.relative_to_point = f.given("relative_to_point");
+    m.other = f.get<Vec2>("relative_to_point");
+    m.where_relative = m.relative_to_point ? f.where("relative_to_point") : f.where("relative_to");
+    if (m.relative_to_point && f.given("relative_to"))
+      findings_.error(m.where_relative, f.path(), "is relative to two things",
+                      "give relative_to or relative_to_point");
+    if ((m.relative_to_point || f.given("relative_to")) && !f.given("point"))
+      findings_.error(m.where_relative, f.path(), "is relative to something, but no point",
+                      "relative_to and relative_to_point belong to point");
+  }
+
   void read_output() {
     const Fields f = read_table("output");
     model_.output.history_interval = f.get("history_interval", 0.0);
     model_.output.steps_interval = f.get("steps_interval", 0.0);
     model_.output.field_interval = f.get("field_interval", 0.0);
+    model_.output.save_interval = f.get("save_interval", model_.output.save_interval);
   }
 
   void read_safety() {

@@ -49,7 +49,7 @@ std::vector<SectionSpec> run_sections() {
 
       {"monitor",
        SectionShape::kList,
-       "Columns of histories.csv. Give one of `point`, `block`, `support`, `contact`, `bolt`.",
+       "Columns of histories.csv. Give one of `point`, `block`, `support`, `contact`, `bolt`, `convergence`.",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -57,7 +57,22 @@ std::vector<SectionSpec> run_sections() {
         {.name = "point",
          .type = K::kVector,
          .dimension = D::kLength,
-         .doc = "Displacement and velocity of the material point that is here at the start."},
+         .doc = "Displacement and velocity of the material point that is here at the start. summary.json "
+                "holds its peak velocity in dynamic stages (`monitors`)."},
+        {.name = "relative_to",
+         .type = K::kText,
+         .refers_to = "support, free-field boundary, block, grid or region",
+         .doc = "With `point`: displacement and velocity less the mean ones of the points of a support or of "
+                "the blocks of that name, or less those of a free field at the height of the point."},
+        {.name = "relative_to_point",
+         .type = K::kVector,
+         .dimension = D::kLength,
+         .doc = "With `point`: less those of the material point that is here at the start."},
+        {.name = "convergence",
+         .type = K::kPoints,
+         .dimension = D::kLength,
+         .doc =
+             "Two points [[x0, y0], [x1, y1]]: by how much they have come nearer to each other, > 0 nearer."},
         {.name = "block", .type = K::kText, .doc = "Cauchy stress of the block of this name."},
         {.name = "support",
          .type = K::kName,
@@ -97,7 +112,13 @@ std::vector<SectionSpec> run_sections() {
          .dimension = D::kTime,
          .range = kNonNegative,
          .default_text = "\"0 s\"",
-         .doc = "Spacing of the ParaView frames; 0: only the start and the end of each stage."}}},
+         .doc = "Spacing of the ParaView frames; 0: only the start and the end of each stage."},
+        {.name = "save_interval",
+         .dimension = D::kTime,
+         .range = kNonNegative,
+         .default_text = "\"60 s\"",
+         .doc = "Wall time between saved states, from which `talus run --from` goes on; the last two stay. "
+                "0: only at the ends of stages."}}},
 
       {"safety",
        SectionShape::kTable,

@@ -80,7 +80,7 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
       for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv",
                                "run.log", "blocks_start.svg", "blocks_end.svg", "bolts.csv"})
         fs::remove(folder / name, ec);
-      for (const char* name : {"fields", "plots"}) fs::remove_all(folder / name, ec);
+      for (const char* name : {"fields", "plots", "saved"}) fs::remove_all(folder / name, ec);
       for (const auto& entry : fs::directory_iterator(folder, ec))
         if (entry.path().filename().string().rfind("step_", 0) == 0) fs::remove(entry.path(), ec);
     }
@@ -97,6 +97,23 @@ CsvWriter::CsvWriter(fs::path path, const std::vector<std::string>& columns) : p
   check(std::fwrite(line_.data(), 1, line_.size(), file_) == line_.size());
   flush();
 }
+
+CsvWriter::CsvWriter(fs::path path, int64_t size) : path_(std::move(path)) {
+  std::error_code ec;
+  const auto there = fs::file_size(path_, ec);
+  if (ec) fail(path_, "continued", ec.value());
+  if (static_cast<int64_t>(there) < size)
+    throw FileError(
+        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
+                    path_.string(), there, size));
+  fs::resize_file(path_, static_cast<uintmax_t>(size), ec);
+  if (ec) fail(path_, "cut back", ec.value());
+  file_ = std::fopen(path_.c_str(), "ab");
+  if (!file_) fail(path_, "continued", errno);
+  std::fseek(file_, 0, SEEK_END);
+}
+
+int64_t CsvWriter::size() const { return std::ftell(file_); }
 
 CsvWriter::~CsvWriter() {
   if (file_) std::fclose(file_);

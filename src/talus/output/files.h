@@ -1,6 +1,7 @@
 #pragma once
 // Writing result files so that a reader never meets half a file, and every failure is reported.
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -22,6 +23,9 @@ class CsvWriter {
  public:
   /// Writes the header: columns joined by commas.
   CsvWriter(std::filesystem::path path, const std::vector<std::string>& columns);
+  /// Goes on behind the first `size` bytes of a table; what follows them is cut off. Throws FileError when
+  /// there are fewer.
+  CsvWriter(std::filesystem::path path, int64_t size);
   ~CsvWriter();
   CsvWriter(const CsvWriter&) = delete;
   CsvWriter& operator=(const CsvWriter&) = delete;
@@ -29,6 +33,8 @@ class CsvWriter {
   /// One row, numbers with 17 significant digits. Throws FileError.
   void append(const std::vector<double>& row);
   void flush();
+  /// Bytes written so far, the waiting ones included.
+  int64_t size() const;
 
  private:
   void check(bool ok) const;

@@ -32,9 +32,15 @@ class FrameSeries {
   /// Frames are folder/NAME_000000.EXT; the collection is folder/NAME.pvd.
   FrameSeries(std::filesystem::path folder, std::string name, std::string extension);
   void add(double time, const std::string& content);
+  /// Goes on behind frames written before; later ones are removed.
+  void go_on(const std::vector<double>& times);
+  const std::vector<double>& times() const { return times_; }
   int count() const { return static_cast<int>(times_.size()); }
 
  private:
+  std::string file(size_t i) const;
+  void write_collection() const;
+
   std::filesystem::path folder_;
   std::string name_, extension_;
   std::vector<double> times_;

@@ -94,9 +94,17 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
     switch (m.kind) {
       case MonitorKind::kPoint: {
         const int block = block_of_point(scene.layout, m.point);
-        points_.emplace_back(block, m.point - blocks.centroid[static_cast<size_t>(block)]);
+        points_.push_back(
+            {block, m.point - blocks.centroid[static_cast<size_t>(block)], Reference(scene, m), 0});
         add_columns(m.name,
                     {"displacement_x [m]", "displacement_y [m]", "velocity_x [m/s]", "velocity_y [m/s]"});
+        break;
+      }
+      case MonitorKind::kConvergence: {
+        const int a = block_of_point(scene.layout, m.point), b = block_of_point(scene.layout, m.other);
+        pairs_.push_back({a, b, m.point - blocks.centroid[static_cast<size_t>(a)],
+                          m.other - blocks.centroid[static_cast<size_t>(b)], m.other - m.point});
+        add_columns(m.name, {"convergence [m]"});
         break;
       }
       case MonitorKind::kBlock:
@@ -176,17 +184,21 @@ void Histories::sample_bolt(const Instant& instant, const std::string& name, std
 void Histories::at(const Instant& instant, bool keep) {
   const State& s = instant.state;
   std::vector<double> row{s.time};
-  size_t point = 0, block = 0, support = 0, contact = 0;
+  size_t point = 0, pair = 0, block = 0, support = 0, contact = 0;
   for (const MonitorInput& m : scene_.model.monitors) {
     switch (m.kind) {
       case MonitorKind::kPoint: {
-        const auto& [b, arm] = points_[point++];
-        const auto k = static_cast<size_t>(b);
-        const Vec2 u = displacement_shown(s, k, arm);
-        const Vec2 v = velocity_at(rate_now(instant.work, s, k), acting_arm(scene_.blocks, s, k, arm));
+        Point& p = points_[point++];
+        const PointMotion motion = motion_of(instant, p.block, p.arm), from = p.reference.at(instant);
+        const Vec2 u = motion.displacement - from.displacement, v = motion.velocity - from.velocity;
+        if (scene_.model.stages[static_cast<size_t>(instant.stage)].kind == StageKind::kDynamic)
+          p.peak = std::max(p.peak, norm(v));
         row.insert(row.end(), {u.x, u.y, v.x, v.y});
         break;
       }
+      case MonitorKind::kConvergence:
+        row.push_back(nearer(pairs_[pair++], s));
+        break;
       case MonitorKind::kBlock: {
         const Mat2 t = cauchy_stress(scene_.blocks, s, blocks_[block++]);
         row.insert(row.end(), {t.xx, t.yy, 0.5 * (t.xy + t.yx)});
@@ -234,6 +246,36 @@ void Histories::release(double known_until, bool all) {
     for (Impulses& c : contacts_)
       while (c.knots.size() > 2 && c.knots[1].time < known_until - c.window) c.knots.pop_front();
   }
+}
+
+double Histories::nearer(const Pair& p, const State& s) {
+  const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+  const Vec2 u = displacement_at(s, b, p.arm_b) - displacement_at(s, a, p.arm_a);
+  const Vec2 shown = displacement_shown(s, b, p.arm_b) - displacement_shown(s, a, p.arm_a);
+  const Vec2 before = p.apart + (u - shown), now = p.apart + u;  // before: when displacements were last reset
+  return -dot(before + now, shown) / (norm(before) + norm(now));
+}
+
+std::vector<Histories::Peak> Histories::peaks() const {
+  std::vector<Peak> list;
+  for (const MonitorInput& m : scene_.model.monitors)
+    if (m.kind == MonitorKind::kPoint) list.push_back({m.name, points_[list.size()].peak});
+  return list;
+}
+
+void Histories::exchange(Exchange& x) {
+  x.each("histories.points", points_, [](auto& field, Point& p) { field("peak", p.peak); });
+  x("histories.known_until", known_until_);
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    const std::string name = fmt::format("histories.contact.{}", i);
+    Impulses& c = contacts_[i];
+    x.each(name, c.knots, [](auto& field, auto& k) { field("time", k.time), field("value", k.value); });
+    std::vector<double> sum(c.sum, c.sum + 3);
+    x(name + ".sum", sum);
+    std::copy(sum.begin(), sum.end(), c.sum);
+  }
+  x.each("histories.waiting", waiting_, [](auto& field, Waiting& w) { field("ready_at", w.ready_at); });
+  for (size_t i = 0; i < waiting_.size(); ++i) x(fmt::format("histories.waiting.row.{}", i), waiting_[i].row);
 }
 
 void Histories::finish() { release(known_until_, true); }

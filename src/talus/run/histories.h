@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "talus/run/instant.h"
+#include "talus/output/archive.h"
+#include "talus/run/reference.h"
 
 namespace talus {
 
@@ -28,6 +29,15 @@ class Histories {
   /// To be called at every instant: impulses add up whether a row is kept or not.
   /// @param keep  whether this instant becomes a row
   void at(const Instant& instant, bool keep);
+
+  struct Peak {
+    std::string name;     // of the monitor
+    double velocity = 0;  // largest in dynamic stages, relative where the monitor is [m/s]
+  };
+  std::vector<Peak> peaks() const;
+
+  /// Saves or loads sums, impulses and rows that wait.
+  void exchange(Exchange& exchange);
 
   /// Writes the rows still waiting; their windows end with the run.
   void finish();
@@ -58,11 +68,26 @@ class Histories {
   const Scene& scene_;
   Sink sink_;
   std::vector<std::string> columns_;
-  std::vector<std::pair<int, Vec2>> points_;  // block and arm, one per point monitor
-  std::vector<int> blocks_;                   // one per block monitor
-  std::vector<int> supports_;                 // one per support monitor
-  std::vector<Impulses> contacts_;            // one per contact monitor
-  double widest_ = 0;                         // largest window [s]
+  struct Point {
+    int block;
+    Vec2 arm;
+    Reference reference;
+    double peak = 0;  // largest velocity in dynamic stages [m/s]
+  };
+  // change of the distance of two points, written so that small changes keep their digits
+  struct Pair {
+    int block_a, block_b;
+    Vec2 arm_a, arm_b;
+    Vec2 apart;  // at the start, from a to b [m]
+  };
+  static double nearer(const Pair& pair, const State& state);
+
+  std::vector<Point> points_;       // one per point monitor
+  std::vector<Pair> pairs_;         // one per convergence monitor
+  std::vector<int> blocks_;         // one per block monitor
+  std::vector<int> supports_;       // one per support monitor
+  std::vector<Impulses> contacts_;  // one per contact monitor
+  double widest_ = 0;               // largest window [s]
   double known_until_ = 0;
   std::deque<Waiting> waiting_;
 };

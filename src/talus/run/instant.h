@@ -6,6 +6,8 @@
 
 namespace talus {
 
+struct Standing;
+
 struct Instant {
   const Scene& scene;
   const State& state;    // positions at state.time, rates half a step later
@@ -25,6 +27,11 @@ class Observer {
   virtual void at(const Instant& instant) = 0;
   /// Asked before every step; true ends the run after the present instant.
   virtual bool stop() { return false; }
+  /// Asked before every step; true: keep_state() follows.
+  virtual bool wants_state() { return false; }
+  /// Shown where the run could go on from: when wanted, after every stage, and before a run that is stopped
+  /// ends.
+  virtual void keep_state(const Standing& /*standing*/, const State& /*state*/) {}
 };
 
 }  // namespace talus

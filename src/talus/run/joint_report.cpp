@@ -70,6 +70,19 @@ void JointSummary::add(const JointPoint& p) {
   if (p.state == JointState::kOpen) widest = std::max(widest, p.opening);
 }
 
+void JointSummary::exchange(Exchange& x, const std::string& name) {
+  x(name + ".time", time), x(name + ".points", points), x(name + ".intact", intact);
+  x(name + ".slipped", slipped), x(name + ".open", open), x(name + ".widest", widest);
+  x(name + ".largest.face", largest.face), x(name + ".largest.id", largest.id);
+  x(name + ".largest.block_a", largest.block_a), x(name + ".largest.block_b", largest.block_b);
+  x(name + ".largest.joint", largest.joint), x(name + ".largest.point", largest.point);
+  x(name + ".largest.length", largest.length), x(name + ".largest.state", largest.state);
+  x(name + ".largest.normal_force", largest.normal_force);
+  x(name + ".largest.shear_force", largest.shear_force);
+  x(name + ".largest.slip", largest.slip), x(name + ".largest.slip_signed", largest.slip_signed);
+  x(name + ".largest.opening", largest.opening), x(name + ".largest.rise", largest.rise);
+}
+
 std::string joint_header() {
   return "stage,time [s],id,block_a,block_b,joint,x [m],y [m],length [m],normal_force [N],shear_force "
          "[N],slip "

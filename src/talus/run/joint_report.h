@@ -6,6 +6,7 @@
 #include <string>
 
 #include "talus/contact/joint_state.h"
+#include "talus/output/archive.h"
 #include "talus/run/instant.h"
 
 namespace talus {
@@ -35,6 +36,8 @@ struct JointSummary {
   double widest = 0;   // [m]
 
   void add(const JointPoint& p);
+  /// Saves or loads it, under names that begin with `name`.
+  void exchange(Exchange& exchange, const std::string& name);
 };
 
 std::string joint_header();

@@ -19,6 +19,10 @@ class Progress : public Observer {
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override;
   void at(const Instant& instant) override;
   bool stop() override { return next_.stop() || (stop_ && *stop_ != 0); }
+  bool wants_state() override { return next_.wants_state(); }
+  void keep_state(const Standing& standing, const State& state) override {
+    next_.keep_state(standing, state);
+  }
   /// Ends the run at the next step once `*flag` is not 0 (set by a signal handler).
   void stop_when(const volatile std::sig_atomic_t* flag) { stop_ = flag; }
   /// Ends a rewritten line.

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/clock.h"
+#include "talus/base/error.h"
+#include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
 #include "talus/run/problem_file.h"
@@ -62,6 +64,34 @@ std::vector<BoltLine> bolt_lines(const Scene& scene, const State& state, int sta
   return lines;
 }
 
+constexpr const char *kHistorySize = "recorder.histories_csv", *kStepsSize = "recorder.steps_csv";
+constexpr const char *kJointsSize = "recorder.joints_csv", *kBoltsSize = "recorder.bolts_csv";
+constexpr size_t kSavedStates = 2;  // between stages
+
+int64_t size_in(const Archive& saved, const std::string& name) {
+  const auto it = saved.numbers.find(name);
+  if (it == saved.numbers.end() || it->second.size() != 1)
+    throw FileError(fmt::format("the saved state has no \"{}\"", name));
+  return static_cast<int64_t>(it->second[0]);
+}
+
+// A table that is written whole at the end of every stage, as it was when the state was saved.
+std::string table_then(const std::filesystem::path& path, int64_t size) {
+  std::error_code ec;
+  if (size == 0) {
+    std::filesystem::remove(path, ec);  // written after the state was
+    return {};
+  }
+  std::string text = read_text_file(path.string());
+  if (static_cast<int64_t>(text.size()) < size)
+    throw FileError(
+        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
+                    path.string(), text.size(), size));
+  text.resize(static_cast<size_t>(size));
+  write_file(path, text);
+  return text;
+}
+
 std::filesystem::path make_folder(const std::filesystem::path& p) {
   std::error_code ec;
   std::filesystem::create_directories(p, ec);  // a failure shows, with its cause, at the first file
@@ -79,13 +109,88 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
       block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
       contact_frames_(folder_ / "fields", "contacts", "vtp"),
       bolt_frames_(folder_ / "fields", "bolts", "vtp"),
-      last_flush_(wall_now()) {
+      last_flush_(wall_now()),
+      last_saved_(wall_now()) {
   write_file(folder_ / "model.toml", scene.model.text);
   // replaced at the end: a run that was killed shows as one
   nlohmann::ordered_json running = {{"program", fmt::format("talus {}", kVersion)},
                                     {"model_hash", scene.model.hash},
                                     {"status", "running"}};
   write_file(folder_ / "summary.json", running.dump(2) + "\n");
+}
+
+Recorder::Recorder(const Scene& scene, std::filesystem::path folder, Archive& saved)
+    : scene_(scene),
+      folder_(std::move(folder)),
+      history_file_(folder_ / "histories.csv", size_in(saved, kHistorySize)),
+      steps_file_(folder_ / "steps.csv", size_in(saved, kStepsSize)),
+      histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
+      block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
+      contact_frames_(folder_ / "fields", "contacts", "vtp"),
+      bolt_frames_(folder_ / "fields", "bolts", "vtp"),
+      bolt_table_(table_then(folder_ / "bolts.csv", size_in(saved, kBoltsSize))),
+      joints_(table_then(folder_ / "joints.csv", size_in(saved, kJointsSize))),
+      last_flush_(wall_now()),
+      last_saved_(wall_now()) {
+  Exchange loading(saved, false);
+  exchange(loading);
+  find_saved();
+}
+
+// Clocks and sums of the results. The sizes of the tables are read where these are opened.
+void Recorder::exchange(Exchange& x) {
+  x("recorder.next_history", next_history_), x("recorder.next_steps", next_steps_);
+  x("recorder.next_frame", next_frame_), x("recorder.worst", worst_);
+  x("recorder.dumped_failure", dumped_failure_);
+  joint_summary_.exchange(x, "recorder.joints");
+  histories_.exchange(x);
+  std::vector<double> times = block_frames_.times();
+  x("recorder.frames", times);
+  if (x.saving()) return;
+  block_frames_.go_on(times);
+  contact_frames_.go_on(times);
+  if (!scene_.model.bolts.empty()) bolt_frames_.go_on(times);
+}
+
+bool Recorder::wants_state() {
+  // the clock is not asked at every step
+  constexpr int kStepsBetween = 16;
+  const double interval = scene_.model.output.save_interval;
+  return interval > 0 && (interval < 1 || ++steps_since_look_ % kStepsBetween == 0) &&
+         wall_now() - last_saved_ >= interval;
+}
+
+void Recorder::keep_state(const Standing& standing, const State& state) {
+  history_file_.flush();
+  steps_file_.flush();
+  Archive archive = run_archive(scene_, standing, state);
+  Exchange saving(archive, true);
+  exchange(saving);
+  archive.numbers[kHistorySize] = {static_cast<double>(history_file_.size())};
+  archive.numbers[kStepsSize] = {static_cast<double>(steps_file_.size())};
+  archive.numbers[kJointsSize] = {static_cast<double>(joints_.size())};
+  archive.numbers[kBoltsSize] = {static_cast<double>(bolt_table_.size())};
+  make_folder(folder_ / "saved");
+  if (standing.between) {
+    write_archive(folder_ / "saved" / fmt::format("stage_{:02}.h5", standing.result.stages.size()), archive);
+  } else {
+    const auto path = folder_ / "saved" / fmt::format("step_{:09}.h5", state.step);
+    write_archive(path, archive);
+    std::erase(saved_, path);
+    saved_.push_back(path);
+    std::error_code ec;
+    for (; saved_.size() > kSavedStates; saved_.erase(saved_.begin())) std::filesystem::remove(saved_[0], ec);
+  }
+  last_saved_ = wall_now();
+}
+
+// States between stages that an interrupted run has left.
+void Recorder::find_saved() {
+  std::error_code ec;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "saved", ec))
+    if (entry.path().filename().string().rfind("step_", 0) == 0 && entry.path().extension() == ".h5")
+      saved_.push_back(entry.path());
+  std::sort(saved_.begin(), saved_.end());
 }
 
 void Recorder::at(const Instant& i) {
@@ -180,11 +285,13 @@ void Recorder::finish(const RunResult& result, const std::vector<std::string>& o
   history_file_.flush();
   steps_file_.flush();
   write_file(folder_ / "summary.json",
-             summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_));
+             summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_,
+                          histories_.peaks()));
 }
 
 std::string summary_text(const Scene& scene, const RunResult& r, const std::vector<std::string>& overrides,
-                         const Findings& findings, int frames, const JointSummary& joints) {
+                         const Findings& findings, int frames, const JointSummary& joints,
+                         const std::vector<Histories::Peak>& peaks) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -273,6 +380,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                      {"left_over_largest", r.largest_left_over},
                      {"term_largest", r.largest_energy}};
   j["energy_closure"] = r.closure();
+  for (const Histories::Peak& p : peaks) j["monitors"][p.name]["peak_velocity [m/s]"] = p.velocity;
   j["frames"] = frames;
   j["wall_time [s]"] = r.wall_seconds;
   j["cpu_time [s]"] = r.cpu_seconds;

@@ -8,7 +8,7 @@
 #include "talus/output/vtk.h"
 #include "talus/run/histories.h"
 #include "talus/run/joint_report.h"
-#include "talus/run/run.h"
+#include "talus/run/saved_state.h"
 
 namespace talus {
 
@@ -18,6 +18,13 @@ class Recorder : public Observer {
  public:
   /// @param folder  ready for results (open_result_folder)
   Recorder(const Scene& scene, std::filesystem::path folder);
+  /// Goes on in the folder of a saved run: what was written after the state was saved is cut off.
+  Recorder(const Scene& scene, std::filesystem::path folder, Archive& saved);
+
+  /// Saves the state in saved/: stage_NN.h5 at the end of each stage; in between at intervals of wall time
+  /// step_N.h5, of which the last two stay.
+  bool wants_state() override;
+  void keep_state(const Standing& standing, const State& state) override;
 
   void at(const Instant& instant) override;
 
@@ -28,6 +35,8 @@ class Recorder : public Observer {
   void finish(const RunResult& result, const std::vector<std::string>& overrides, const Findings& findings);
 
  private:
+  void exchange(Exchange& exchange);
+  void find_saved();
   void record_step(const Instant& instant);
   void write_dump(const Instant& instant);
   void write_frame(const Instant& instant);
@@ -44,7 +53,9 @@ class Recorder : public Observer {
   std::string joints_;  // joints.csv so far
   JointSummary joint_summary_;
   std::vector<double> worst_;  // of steps.csv columns since its last row
-  double last_flush_ = 0;
+  double last_flush_ = 0, last_saved_ = 0;
+  std::vector<std::filesystem::path> saved_;  // between stages
+  int steps_since_look_ = 0;
   int64_t dump_step_ = -1;
   bool dumped_failure_ = false;
 };
@@ -52,6 +63,6 @@ class Recorder : public Observer {
 /// Text of summary.json.
 std::string summary_text(const Scene& scene, const RunResult& result,
                          const std::vector<std::string>& overrides, const Findings& findings, int frames,
-                         const JointSummary& joints = {});
+                         const JointSummary& joints = {}, const std::vector<Histories::Peak>& peaks = {});
 
 }  // namespace talus

@@ -24,11 +24,16 @@ class Runner {
     work_.workers = workers;
   }
 
-  RunResult run() {
+  RunResult run(const Standing* from) {
     const double wall = wall_now();
     const std::clock_t cpu = std::clock();
+    size_t first = 0;
     try {
-      for (size_t i = 0; i < plans_.size() && !result_.interrupted; ++i) run_stage(static_cast<int>(i));
+      if (from) {
+        go_on(*from);
+        first = result_.stages.size();
+      }
+      for (size_t i = first; i < plans_.size() && !result_.interrupted; ++i) run_stage(static_cast<int>(i));
       show_end();
     } catch (const NumericalError& e) {
       result_.failure = e.what();
@@ -37,8 +42,8 @@ class Runner {
     result_.threads = work_.workers.threads();
     result_.profile = work_.profile;
     for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
-    result_.wall_seconds = wall_now() - wall;
-    result_.cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+    result_.wall_seconds += wall_now() - wall;
+    result_.cpu_seconds += static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
     return result_;
   }
 
@@ -48,14 +53,7 @@ class Runner {
     const StageInput& stage = scene_.model.stages[k];
     const StagePlan& plan = plans_[k];
     change(index);
-    settings_ = {stage.damping_mass,
-                 stage.damping_stiffness,
-                 stage.damping_local,
-                 scene_.model.solver.tolerance * smallest_size(scene_.blocks),
-                 stage.kind == StageKind::kDynamic,
-                 stage.implicit,
-                 true};
-    work_.mobility.clear();  // of other inertias
+    settle_in(stage);
     const auto is_static = [&](size_t i) { return scene_.model.stages[i].kind == StageKind::kStatic; };
     enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
     install_bolts(scene_.model, scene_.blocks, index, state_);
@@ -66,11 +64,45 @@ class Runner {
       state_.strain_part_start = state_.strain_part;
     }
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
+    take_steps(index);
+  }
+
+  void settle_in(const StageInput& stage) {
+    settings_ = {stage.damping_mass,
+                 stage.damping_stiffness,
+                 stage.damping_local,
+                 scene_.model.solver.tolerance * smallest_size(scene_.blocks),
+                 stage.kind == StageKind::kDynamic,
+                 stage.implicit,
+                 true};
+    work_.mobility.clear();  // of other inertias
+  }
+
+  // From a saved run: the scene of its stage, and the rest of that stage.
+  void go_on(const Standing& from) {
+    result_ = from.result;
+    result_.interrupted = false;
+    const int index = static_cast<int>(result_.stages.size()) - 1;
+    for (int i = 0; i <= index; ++i) change_scene(i, scene_);
+    unclamped_ = scene_.blocks;
+    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
+    settle_in(scene_.model.stages[static_cast<size_t>(index)]);
+    if (!from.between) take_steps(index);
+  }
+
+  // The steps that are left of the stage.
+  void take_steps(int index) {
+    const auto k = static_cast<size_t>(index);
+    const StageInput& stage = scene_.model.stages[k];
+    const StagePlan& plan = plans_[k];
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
 
-    for (int64_t n = 0; n < plan.steps; ++n) {
-      if (observer_.stop()) {
+    for (int64_t n = out.steps; n < plan.steps; ++n) {
+      const bool stop = observer_.stop();
+      if (stop || observer_.wants_state()) observer_.keep_state({result_, false}, state_);
+      if (stop) {
         result_.interrupted = true;
         break;
       }
@@ -95,6 +127,7 @@ class Runner {
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
       throw NumericalError(no_rest(stage, out));
     }
+    if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
 
   // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not
@@ -216,7 +249,12 @@ class Runner {
 
 RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
                      const Workers& workers) {
-  return Runner(scene, plans, state, observer, workers).run();
+  return Runner(scene, plans, state, observer, workers).run(nullptr);
+}
+
+RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, const Standing& from,
+                          State& state, Observer& observer, const Workers& workers) {
+  return Runner(scene, plans, state, observer, workers).run(&from);
 }
 
 int threads_for(int blocks) {

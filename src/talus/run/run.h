@@ -39,12 +39,22 @@ struct RunResult {
   double closure() const { return largest_energy > 0 ? largest_left_over / largest_energy : 0; }
 };
 
+/// Where a run stands between two steps, or between two stages.
+struct Standing {
+  RunResult result;      // so far; its last stage is the present one
+  bool between = false;  // that stage has ended
+};
+
 /// Runs all stages from `state` on, showing every instant to the observer. Numerical trouble ends the run and
 /// is told in `failure`; errors of the observer (files) pass through.
 /// @param plans  one per stage, from plan_stages() without errors
 /// @note  the results have the same bits for any number of threads
 RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
                      const Workers& workers = Workers());
+
+/// Goes on from where a run stood, with the state it had then; the scene is that of build_scene.
+RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, const Standing& from,
+                          State& state, Observer& observer, const Workers& workers = Workers());
 
 /// Threads that pay for a model of so many blocks, at most as many as the machine has processors.
 int threads_for(int blocks);

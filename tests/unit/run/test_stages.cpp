@@ -153,16 +153,19 @@ support = "anchor"
 [[stage]]
 name = "half"
 kind = "static"
+time_step = 1e-4
 duration = 1
 excavate = ["prop"]
 relaxation = [[0, 0], ["20 ms", 0.5]]
 [[stage]]
 name = "wait"
 kind = "dynamic"
+time_step = 1e-4
 duration = "5 ms"
 [[stage]]
 name = "all"
 kind = "static"
+time_step = 1e-4
 duration = 1
 relaxation = [[0, 0.5], ["20 ms", 1]]
 )");

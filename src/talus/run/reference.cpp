@@ -1,0 +1,49 @@
+#include "talus/run/reference.h"
+
+namespace talus {
+
+PointMotion motion_of(const Instant& i, int block, Vec2 arm) {
+  const auto k = static_cast<size_t>(block);
+  return {displacement_shown(i.state, k, arm),
+          velocity_at(rate_now(i.work, i.state, k), acting_arm(i.scene.blocks, i.state, k, arm))};
+}
+
+Reference::Reference(const Scene& scene, const MonitorInput& m) : height_(m.point.y) {
+  const BlockSet& blocks = scene.blocks;
+  if (m.relative_to_point) {
+    const int block = block_of_point(scene.layout, m.other);
+    parts_.push_back({block, m.other - blocks.centroid[static_cast<size_t>(block)], 1});
+  }
+  if (m.relative_to.empty()) return;
+  for (const SupportedPoint& p : scene.supported)
+    if (scene.model.supports[static_cast<size_t>(p.support)].name == m.relative_to)
+      parts_.push_back({p.block, p.arm, 1});
+  const std::vector<GroundColumn>& columns = scene.boundaries.free_field.columns;
+  for (size_t c = 0; c < columns.size() && parts_.empty(); ++c)
+    if (scene.model.boundaries[static_cast<size_t>(columns[c].boundary)].name == m.relative_to)
+      column_ = static_cast<int>(c);
+  if (parts_.empty() && column_ < 0)
+    for (const int b : scene.layout.blocks_called(m.relative_to))
+      parts_.push_back({b, {}, blocks.mass[static_cast<size_t>(b)]});
+  double sum = 0;
+  for (const Part& p : parts_) sum += p.weight;
+  for (Part& p : parts_) p.weight /= sum;
+}
+
+PointMotion Reference::at(const Instant& i) const {
+  if (column_ >= 0) {
+    const FreeField& field = i.scene.boundaries.free_field;
+    const GroundColumn& column = field.columns[static_cast<size_t>(column_)];
+    return {at_height(field, column, height_, i.state.column_displacement),
+            at_height(field, column, height_, i.state.column_rate)};
+  }
+  PointMotion mean;
+  for (const Part& p : parts_) {
+    const PointMotion motion = motion_of(i, p.block, p.arm);
+    mean.displacement += p.weight * motion.displacement;
+    mean.velocity += p.weight * motion.velocity;
+  }
+  return mean;
+}
+
+}  // namespace talus

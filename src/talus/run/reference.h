@@ -1,0 +1,38 @@
+#pragma once
+// What the motion of a point is measured against: another point, the mean of a support or of blocks, a free
+// field at its height.
+
+#include <string>
+#include <vector>
+
+#include "talus/run/instant.h"
+
+namespace talus {
+
+struct PointMotion {
+  Vec2 displacement, velocity;  // [m], [m/s]
+};
+
+/// Motion of the material point at `arm` of a block, displacements since they were last reset.
+PointMotion motion_of(const Instant& instant, int block, Vec2 arm);
+
+class Reference {
+ public:
+  Reference() = default;  // absolute
+  /// @pre  the places that the monitor names have been checked
+  Reference(const Scene& scene, const MonitorInput& monitor);
+  /// Its motion now; zero where the monitor is absolute. The velocity of a free field is half a step late.
+  PointMotion at(const Instant& instant) const;
+
+ private:
+  struct Part {
+    int block;
+    Vec2 arm;
+    double weight;
+  };
+  std::vector<Part> parts_;
+  int column_ = -1;  // of the free field
+  double height_ = 0;
+};
+
+}  // namespace talus

@@ -1,0 +1,41 @@
+#pragma once
+// A run that can go on: its state, where it stands and what its observers keep, in one file. A run continued
+// from it has the same bits as one that was never stopped.
+
+#include <filesystem>
+
+#include "talus/output/archive.h"
+#include "talus/run/run.h"
+
+namespace talus {
+
+/// Number of the layout of these files; another one is refused.
+inline constexpr int kStateFormat = 1;
+
+/// All of a State. @param prefix  of the names, "state"
+void exchange_state(Exchange& exchange, State& state);
+
+/// What run_stages() needs to go on.
+void exchange_standing(Exchange& exchange, Standing& standing);
+
+/// Archive of a run: who wrote it, of which model, the state and where the run stands.
+Archive run_archive(const Scene& scene, const Standing& standing, const State& state);
+
+/// The result folder in which a saved state lies. Throws FileError when it is no result folder, or not
+/// `expected` ("": any).
+std::string folder_of_saved(const std::filesystem::path& saved, const std::string& expected);
+
+struct SavedRun {
+  Archive archive;
+  Standing standing;
+  State state;
+};
+
+/// Reads a saved run of this model. Throws FileError when the file cannot be used, InputError when it is of
+/// another model (with the keys that differ) or of another format.
+SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene);
+
+/// Lines that say which keys of two model texts differ: "stage.rest.duration: 1 s, was 2 s"; "" when none.
+std::string model_difference(const std::string& now, const std::string& before);
+
+}  // namespace talus

@@ -1,0 +1,325 @@
+// Runs that are stopped or killed go on from a saved state, and come to the same bits.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+#include "support/command.h"
+#include "talus/base/random.h"
+#include "talus/output/files.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Bricks that slide, open and break on a shaking floor, after a static stage and an excavation.
+const std::string kModel = R"model(talus = 1
+[model]
+gravity = [0, -9.81]
+[material.rock]
+density = 2500
+young = "1 GPa"
+poisson = 0.2
+[joint.face]
+friction_angle = "30 deg"
+cohesion = "20 kPa"
+normal_stiffness = "5 GPa/m"
+shear_stiffness = "5 GPa/m"
+[contact]
+joint = "face"
+[history.shake]
+expression = "0.4*sin(40*t)*(t<0.1?t/0.1:1)"
+duration = "1 s"
+[[block]]
+name = "floor"
+polygon = [[-2, -1], [6, -1], [6, 0], [-2, 0]]
+material = "rock"
+kind = "driven"
+motion_x = { velocity = "shake" }
+[[grid]]
+name = "wall"
+min = [0, 0]
+max = [4, 3]
+cells = [4, 6]
+material = "rock"
+joint = "face"
+[[block]]
+name = "prop"
+polygon = [[4, 0], [4.5, 0], [4.5, 1], [4, 1]]
+material = "rock"
+[[monitor]]
+name = "top"
+point = [2, 2.9]
+relative_to = "floor"
+[[monitor]]
+name = "width"
+convergence = [[0.1, 2.9], [3.9, 2.9]]
+[[monitor]]
+name = "foot"
+contact = ["wall", "floor"]
+window = "5 ms"
+[[stage]]
+name = "rest"
+kind = "static"
+duration = "1 s"
+unbalanced = 1e-3
+[[stage]]
+name = "dig"
+kind = "static"
+duration = "1 s"
+unbalanced = 1e-3
+excavate = ["prop"]
+relaxation = [[0, 0], ["10 ms", 1]]
+reset_displacements = true
+[[stage]]
+name = "shake"
+kind = "dynamic"
+duration = "0.2 s"
+time_step = "0.1 ms"
+[output]
+history_interval = "1 ms"
+steps_interval = "1 ms"
+field_interval = "20 ms"
+save_interval = "20 ms"
+)model";
+
+// The same wall in joints that weaken and ride up, with a tensioned bar from the start and, when it is
+// shaken, a grouted one that is too thin for what is asked of it.
+std::string bolted_model() {
+  std::string text = kModel;
+  const std::string at = "cohesion = \"20 kPa\"\n";
+  text.insert(text.find(at) + at.size(), R"model(tensile_strength = "10 kPa"
+residual_friction_angle = "20 deg"
+residual_cohesion = "1 kPa"
+residual_tensile_strength = "0 kPa"
+dilation_angle = "5 deg"
+dilation_slip = "1 mm"
+)model");
+  return text + R"model([bolt_type.anchor]
+kind = "anchored"
+diameter = "25 mm"
+young = "200 GPa"
+yield_stress = "500 MPa"
+rupture_strain = 0.05
+spacing = "1 m"
+pretension = "20 kN"
+[bolt_type.bar]
+kind = "grouted"
+diameter = "8 mm"
+yield_force = "5 kN"
+rupture_strain = 0.02
+spacing = "1 m"
+grout_stiffness = "1 GPa"
+bond_strength = "200 kN/m"
+dowel_stiffness = "15 MN/m"
+dowel_yield = "5 kN"
+segment_length = "0.2 m"
+[[bolt]]
+name = "post"
+from = [1.4, 3]
+to = [1.6, -0.5]
+type = "anchor"
+stage = "rest"
+[[bolt]]
+name = "pin"
+from = [2.3, 3]
+to = [2.7, -0.5]
+type = "bar"
+stage = "shake"
+[[monitor]]
+name = "post"
+bolt = "post"
+[[monitor]]
+name = "pin"
+bolt = "pin"
+)model";
+}
+
+void write_model(const Folder& folder, const std::string& text = kModel) {
+  std::ofstream(folder / "model.toml") << text;
+}
+
+// Every result file by its name; of the summary what does not depend on the clock.
+std::map<std::string, std::string> results(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (!entry.is_regular_file() || name.rfind("saved/step_", 0) == 0) continue;
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") continue;
+    std::string text = read_text_file(entry.path().string());
+    if (name == "summary.json")
+      for (const char* key : {"\"wall_time", "\"cpu_time"})
+        if (const size_t at = text.find(key); at != std::string::npos)
+          text.erase(at, text.find('\n', at) - at);
+    all[name] = text;
+  }
+  return all;
+}
+
+void same(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b) {
+  for (const auto& [name, text] : a) {
+    INFO(name);
+    REQUIRE(b.count(name));
+    CHECK((text == b.at(name)));
+  }
+  CHECK(a.size() == b.size());
+}
+
+std::vector<fs::path> saved_in(const fs::path& folder) {
+  std::vector<fs::path> list;
+  std::error_code ec;
+  for (const auto& entry : fs::directory_iterator(folder / "saved", ec))
+    if (entry.path().extension() == ".h5") list.push_back(entry.path());
+  std::sort(list.begin(), list.end(), [](const fs::path& a, const fs::path& b) {
+    return fs::last_write_time(a) < fs::last_write_time(b);
+  });
+  return list;
+}
+
+// Tables and frames up to the last one can be read at any moment.
+void readable(const fs::path& folder) {
+  for (const char* name : {"histories.csv", "steps.csv"}) {
+    std::string text = read_text_file((folder / name).string());
+    text.erase(text.rfind('\n') + 1);  // a row may be on its way
+    std::ofstream(folder / "copy.csv") << text;
+    CHECK_NOTHROW(read_csv(folder / "copy.csv"));
+    fs::remove(folder / "copy.csv");
+  }
+  const fs::path pvd = folder / "fields/blocks.pvd";
+  if (!fs::exists(pvd)) return;
+  const std::string text = read_text_file(pvd.string());
+  has(text, "</VTKFile>");
+  for (size_t at = text.find("file=\""); at != std::string::npos; at = text.find("file=\"", at + 1)) {
+    const size_t end = text.find('"', at + 6);
+    has(read_text_file((folder / "fields" / text.substr(at + 6, end - at - 6)).string()), "</VTKFile>");
+  }
+}
+
+// Runs model.toml, then goes on from every state saved on the way. The results of the whole run.
+std::map<std::string, std::string> goes_on_from_each_state(const Folder& folder) {
+  REQUIRE(shell(folder, "$talus run model.toml -o whole -q").code == 0);
+  const auto whole = results(folder / "whole");
+  const auto states = saved_in(folder / "whole");
+  REQUIRE(states.size() >= 4);  // three ends of stages, and in between
+  for (const fs::path& state : states) {
+    INFO(state.filename().string());
+    fs::remove_all(folder / "again");
+    fs::copy(folder / "whole", folder / "again", fs::copy_options::recursive);
+    const Outcome o = shell(
+        folder, fmt::format("$talus run model.toml --from again/saved/{} -q", state.filename().string()));
+    INFO(o.text);
+    CHECK(o.code == 0);
+    same(whole, results(folder / "again"));
+  }
+  return whole;
+}
+
+}  // namespace
+
+TEST_CASE("command run --from: every saved state leads to the same bits") {
+  Folder folder;
+  write_model(folder);
+  goes_on_from_each_state(folder);
+}
+
+TEST_CASE("command run --from: the same bits with bolts and joints that weaken") {
+  Folder folder;
+  write_model(folder, bolted_model());
+  const auto whole = goes_on_from_each_state(folder);
+  // what the states have to keep does happen
+  has(whole.at("bolts.csv"), "yielded");
+  has(whole.at("bolts.csv"), "ruptured");
+  has(whole.at("joints.csv"), "slipped");
+  has(whole.at("joints.csv"), "open");
+  CHECK(whole.count("fields/bolts.pvd"));
+  CHECK(whole.at("summary.json").find("\"bond_faces_broken\": 0,") == std::string::npos);
+  const std::string from = " --from again/saved/stage_02.h5";
+  const auto refused = [&](const std::string& file) {
+    fs::remove_all(folder / "again");
+    fs::copy(folder / "whole", folder / "again", fs::copy_options::recursive);
+    std::ofstream(folder / "again" / file) << "short\n";
+    const Outcome o = shell(folder, "$talus run model.toml" + from);
+    CHECK(o.code == 4);
+    has(o.text, file);
+    has(o.text, "cannot be continued");
+  };
+  refused("joints.csv");
+  refused("bolts.csv");
+}
+
+TEST_CASE("command run: killed at any moment, results can be read and the run goes on") {
+  Folder folder;
+  write_model(folder);
+  REQUIRE(shell(folder, "$talus run model.toml -o whole -q").code == 0);
+  const auto whole = results(folder / "whole");
+  Random random(7);
+  int gone_on = 0;
+  for (int i = 0; i < 20; ++i) {
+    fs::remove_all(folder / "killed");
+    // killed up to three times on the way
+    std::string from;
+    for (int k = 0; k < 3; ++k) {
+      const double wait = 0.05 + 0.4 * random.uniform();
+      const Outcome o =
+          shell(folder, fmt::format("$talus run model.toml {} -q & p=$!; sleep {:.3f}; kill -9 $p; wait $p",
+                                    from.empty() ? "-o killed --force" : "--from " + from, wait));
+      INFO(o.text);
+      if (!fs::exists(folder / "killed/steps.csv")) break;
+      readable(folder / "killed");
+      const auto states = saved_in(folder / "killed");
+      if (states.empty()) break;
+      from = "killed/saved/" + states.back().filename().string();
+    }
+    if (from.empty()) continue;
+    ++gone_on;
+    const Outcome o = shell(folder, fmt::format("$talus run model.toml --from {} -q", from));
+    INFO(from, o.text);
+    CHECK(o.code == 0);
+    same(whole, results(folder / "killed"));
+  }
+  CHECK(gone_on >= 10);
+}
+
+TEST_CASE("command run --from: what cannot go on is refused") {
+  Folder folder;
+  write_model(folder);
+  REQUIRE(shell(folder, "$talus run model.toml -o r -q").code == 0);
+  const auto refused = [&folder](const std::string& line, int code, const std::string& piece) {
+    const Outcome o = shell(folder, line);
+    INFO(line);
+    CHECK(o.code == code);
+    has(o.text, piece);
+  };
+  const std::string from = " --from r/saved/stage_02.h5";
+  refused("$talus run model.toml", 2, "-o FOLDER");
+  refused("$talus run model.toml --from r/saved/no.h5", 4, "there is no such file");
+  refused("$talus run model.toml -o other" + from, 4, "belongs to the results in");
+  refused("$talus run model.toml --set stage.shake.duration=0.3" + from, 3,
+          "--set stage.shake.duration: 0.3, was not given");
+  std::string text = kModel;
+  text.replace(text.find("2500"), 4, "2600");
+  write_model(folder, text);
+  refused("$talus run model.toml" + from, 3, "material.rock.density: 2600, was 2500");
+  write_model(folder, kModel + "# a word\n");
+  refused("$talus run model.toml" + from, 3, "comments");
+  write_model(folder);
+  refused("cp r/saved/stage_02.h5 . && $talus run model.toml --from stage_02.h5", 4, "does not lie in");
+  refused(
+      "head -c 5000 r/saved/stage_02.h5 > r/saved/short.h5; $talus run model.toml --from r/saved/short.h5", 4,
+      "cut short");
+  refused("echo nothing > r/saved/text.h5; $talus run model.toml --from r/saved/text.h5", 4, "no HDF5 file");
+  // one byte of the numbers: in the middle of the file
+  refused(
+      "cp r/saved/stage_02.h5 r/saved/bad.h5; s=$(stat -c %s r/saved/bad.h5); printf '\\125\\252' | dd "
+      "of=r/saved/bad.h5 bs=1 "
+      "seek=$((s/2)) conv=notrunc 2>/dev/null; $talus run model.toml --from r/saved/bad.h5",
+      4, "no saved state that can be used");
+  refused("head -c 100 r/steps.csv > s; cp s r/steps.csv; $talus run model.toml" + from, 4,
+          "cannot be continued");
+}

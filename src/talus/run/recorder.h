@@ -12,8 +12,8 @@
 
 namespace talus {
 
-/// model.toml, histories.csv, steps.csv, joints.csv, fields/, with bolts also bolts.csv. Rows reach the file
-/// at least once a second, frames at once.
+/// model.toml, histories.csv, steps.csv, joints.csv, fields/, saved/, with bolts also bolts.csv. Rows reach
+/// the file at least once a second, frames at once.
 class Recorder : public Observer {
  public:
   /// @param folder  ready for results (open_result_folder)

@@ -321,6 +321,8 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
     near = std::max(near, speed(i, {4, 0})), far = std::max(far, speed(i, {12, 0}));
   });
   check_below("blast_hole kinetic energy before / largest", before / most, 1e-6, 1e-8);
+  // what opened joints keep moving: below 2 % when two faces had lost their cohesion, 2.7 % with the 211 that
+  // opened
   check_below("blast_hole kinetic energy left / largest", last / most, 4e-2, 3e-2);
   // no formula: what the example's README quotes
   check_close("blast_hole velocity past 4 m [m/s]", near, 0.2378, 1e-2, 1e-3);

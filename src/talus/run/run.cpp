@@ -68,13 +68,13 @@ class Runner {
   }
 
   void settle_in(const StageInput& stage) {
-    settings_ = {stage.damping_mass,
-                 stage.damping_stiffness,
-                 stage.damping_local,
-                 scene_.model.solver.tolerance * smallest_size(scene_.blocks),
-                 stage.kind == StageKind::kDynamic,
-                 stage.implicit,
-                 true};
+    settings_ = {.damping_mass = stage.damping_mass,
+                 .damping_stiffness = stage.damping_stiffness,
+                 .damping_local = stage.damping_local,
+                 .tolerance = scene_.model.solver.tolerance * smallest_size(scene_.blocks),
+                 .histories_run = stage.kind == StageKind::kDynamic,
+                 .implicit = stage.implicit,
+                 .keep_guess = true};
     work_.mobility.clear();  // of other inertias
   }
 

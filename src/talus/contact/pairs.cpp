@@ -113,8 +113,10 @@ Contact contact_of(const ContactPoint& point, const std::vector<ContactPoint>& a
   Contact c;
   c.key = point.key;
   c.partner = static_cast<int16_t>(point.partner), c.length = point.length;
-  c.joint = joints_of.joint_at(point.key.block_a, point.face_edge_a, point.key.block_b,
-                               point.face_edge_b >= 0 ? point.face_edge_b : point.key.edge);
+  const ContactKey& key = point.key;
+  c.joint = point.face_edge_b >= 0
+                ? joints_of.joint_at(key.block_a, point.face_edge_a, key.block_b, point.face_edge_b)
+                : joints_of.joint_at_corner(key.block_a, key.vertex, key.block_b, key.edge);
   const Contact* from = nullptr;
   for (int i = 0; i < n_known && !(from && from->key == c.key); ++i) {
     const ContactKey& k = known[i].key;

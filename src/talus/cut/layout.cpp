@@ -124,6 +124,19 @@ int Layout::joint_at(int block_a, int edge_a, int block_b, int edge_b) const {
   return default_joint;
 }
 
+int Layout::joint_at_corner(int block_a, int vertex, int block_b, int edge_b) const {
+  const int at_edge = joint_at(block_a, -1, block_b, edge_b);
+  const BlockShape& a = blocks[static_cast<size_t>(block_a)];
+  const auto is_glued = [this](int joint) { return joint >= 0 && glued[static_cast<size_t>(joint)]; };
+  if (!is_glued(at_edge) || joint_of_pair(a.group, blocks[static_cast<size_t>(block_b)].group) != kNoPair)
+    return at_edge;
+  const auto v = static_cast<size_t>(vertex);
+  if (!a.edge_joint.empty())
+    for (const size_t edge : {v, v == 0 ? a.edge_joint.size() - 1 : v - 1})
+      if (!is_glued(a.edge_joint[edge])) return a.edge_joint[edge];
+  return is_glued(default_joint) || default_joint < 0 ? at_edge : default_joint;
+}
+
 int Layout::find_group(const std::string& name) const {
   const auto it = std::find(groups.begin(), groups.end(), name);
   return it == groups.end() ? -1 : static_cast<int>(it - groups.begin());
@@ -144,6 +157,7 @@ Layout make_layout(const Model& model, Findings& findings) {
 Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   Layout layout;
   layout.default_joint = model.default_joint;
+  for (const JointProperty& j : model.joints) layout.glued.push_back(j.bonded);
   bool sound = true;
   for (const BlockInput& in : model.blocks) {
     layout.groups.push_back(in.name);

@@ -35,11 +35,15 @@ struct Layout {
   double touching = 0;               // [m] edges of cut blocks lie this near to each other where they touch
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
+  std::vector<char> glued;  // [joints] bonded: never the law of a contact between blocks that meet at a corner
 
   /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and
   /// frictionless. A joint given for the pair goes first; then that of the edge, where two differ that of the
   /// lower block; then the default.
   int joint_at(int block_a, int edge_a, int block_b, int edge_b) const;
+  /// Joint of a corner of block a that touches an edge of block b but ends no face: that of the edge; where
+  /// the edge is glued, to a third block, that of the joint that ends at the corner, or the default.
+  int joint_at_corner(int block_a, int vertex, int block_b, int edge_b) const;
   /// Joint given for two groups, or kNoPair.
   static constexpr int kNoPair = -2;
   int joint_of_pair(int group_a, int group_b) const;

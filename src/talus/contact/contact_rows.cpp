@@ -65,7 +65,8 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     const Vec2 b0 = blocks.corner(c.key.block_b, c.key.edge), edge = blocks.corner(c.key.block_b, next) - b0;
     const double slip = -over.along * norm(edge);
     Vec2 closure;
-    if (pair.from_start && model.in_situ.given && joint != plain) {
+    const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
+    if (carries && model.in_situ.given && joint != plain) {
       const double height = blocks.centroid[b].y + b0.y + std::clamp(over.along, 0.0, 1.0) * edge.y;
       closure = in_situ_closure(property, in_situ_stress(model.in_situ, model.gravity, height),
                                 turn_right(edge) / norm(edge));

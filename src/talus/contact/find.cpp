@@ -147,7 +147,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       if (c.along * c.length < same_) hit.at_corner = e;
       if ((1 - c.along) * c.length < same_) hit.at_corner = b.after(e);
       if (hit.at_corner >= 0) clearance_ = 0;
-      if (hit.at_corner >= 0 && c.gap > same_ && is_flush(blocks, s, a, v, b, e, hit.at_corner)) continue;
+      hit.apart = hit.at_corner >= 0 && c.gap > same_ && is_flush(blocks, s, a, v, b, e, hit.at_corner);
       hits_.push_back(hit);
     }
     // where b is convex the corner obeys one edge, the one it is least behind
@@ -280,6 +280,8 @@ const std::vector<ContactPoint>& ContactSearch::touch(const BlockSet& blocks, co
   corners_over_edges(blocks, state, first_, second_, shift);
   corners_over_edges(blocks, state, second_, first_, -shift);
   merge_corner_pairs(first_, second_);
+  // they kept the two corners apart, whichever edge was to hold them; they hold nothing themselves
+  std::erase_if(hits_, [](const Hit& h) { return h.apart; });
   std::sort(hits_.begin(), hits_.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });
   share_faces(first_, second_, shift);
   found_.clear();

@@ -68,6 +68,7 @@ class ContactSearch {
     ContactPoint point;
     int at_corner = -1;   // corner of b at the foot, -1 inside the edge
     double expected = 0;  // gap after the look-ahead
+    bool apart = false;   // by the side of b, over which a slides flush
   };
   struct Span {
     int side_lo, side_hi;  // straight sides of the lower and the higher block id

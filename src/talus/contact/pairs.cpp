@@ -198,6 +198,9 @@ class Updater {
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
         changed.contact.push_back(contact_of(p, found, joints_of_, known, pair.count));
+      if (pair.from_start && s.step == 0)
+        pair.shares_face =
+            std::any_of(found.begin(), found.end(), [](const ContactPoint& p) { return p.length > 0; });
       hand_over(blocks_, bonds_, s, pair, changed.contact.data() + at, found.size());
       if (static_cast<int>(found.size()) == pair.count) {
         std::copy(changed.contact.begin() + static_cast<std::ptrdiff_t>(at), changed.contact.end(),
@@ -317,6 +320,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, co
       pair.a = a, pair.b = b;
       pair.from_start = state.step == 0;
       pair.face = first_face(bonds, a, b);
+      pair.shares_face = pair.from_start && pair.face >= 0;
     }
     const auto from = state.contacts.begin() + pair.begin;
     pair.begin = static_cast<int>(contacts.size());

@@ -127,7 +127,9 @@ int Layout::joint_at(int block_a, int edge_a, int block_b, int edge_b) const {
 int Layout::joint_at_corner(int block_a, int vertex, int block_b, int edge_b) const {
   const int at_edge = joint_at(block_a, -1, block_b, edge_b);
   const BlockShape& a = blocks[static_cast<size_t>(block_a)];
-  const auto is_glued = [this](int joint) { return joint >= 0 && glued[static_cast<size_t>(joint)]; };
+  const auto is_glued = [this](int joint) {
+    return joint >= 0 && !glued.empty() && glued[static_cast<size_t>(joint)];
+  };
   if (!is_glued(at_edge) || joint_of_pair(a.group, blocks[static_cast<size_t>(block_b)].group) != kNoPair)
     return at_edge;
   const auto v = static_cast<size_t>(vertex);

@@ -35,7 +35,7 @@ struct Layout {
   double touching = 0;               // [m] edges of cut blocks lie this near to each other where they touch
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
-  std::vector<char> glued;  // [joints] bonded: never the law of a contact between blocks that meet at a corner
+  std::vector<char> glued;  // [joints] bonded: no law for blocks that meet at a corner; empty: none
 
   /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and
   /// frictionless. A joint given for the pair goes first; then that of the edge, where two differ that of the

@@ -23,7 +23,8 @@ void exchange_contacts(Exchange& x, State& s) {
   x("state.candidates.rebuilds", s.candidates.rebuilds);
   x.each("state.pairs", s.pairs, [](auto& field, ContactPair& p) {
     field("a", p.a), field("b", p.b), field("begin", p.begin), field("count", p.count);
-    field("face", p.face), field("from_start", p.from_start), field("reuse", p.reuse);
+    field("face", p.face), field("from_start", p.from_start), field("shares_face", p.shares_face),
+        field("reuse", p.reuse);
     field("arm", p.arm), field("turn", p.turn);
   });
   x.each("state.contacts", s.contacts, [](auto& field, Contact& c) {

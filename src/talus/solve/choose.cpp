@@ -10,11 +10,11 @@ constexpr size_t kNewtonFaster = 12, kNewtonFasterTied = 2000;
 
 }  // namespace
 
-SolverKind chosen_solver(const Model& model, size_t points, bool ties) {
+SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties) {
   if (model.solver.method != SolverKind::kAuto) return model.solver.method;
   if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
     return SolverKind::kNewton;
-  return points <= (ties ? kNewtonFasterTied : kNewtonFaster) ? SolverKind::kNewton
+  return points <= (2 * hard_ties > points ? kNewtonFasterTied : kNewtonFaster) ? SolverKind::kNewton
                                                               : SolverKind::kGaussSeidel;
 }
 

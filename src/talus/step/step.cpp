@@ -93,6 +93,7 @@ struct BlockSums {
   double kinetic = 0;              // before the kick, and what weight and elasticity did of it before now
   double jump = 0;                 // of the energy that central differences conserve
   double worst = 0, forces = 0;    // unbalanced force, and force
+  double nudge = 0;                // kinetic energy that the forces would give in half a step
   int worst_block = -1;
   int moving = 0;
 
@@ -100,7 +101,7 @@ struct BlockSums {
     work.before += o.work.before, work.after += o.work.after;
     gravity += o.gravity, strain += o.strain, kinetic += o.kinetic, jump += o.jump;
     if (o.worst > worst) worst = o.worst, worst_block = o.worst_block;
-    forces += o.forces, moving += o.moving;
+    forces += o.forces, nudge += o.nudge, moving += o.moving;
     return *this;
   }
 };
@@ -294,7 +295,7 @@ class Kick {
   // far for as many sweeps as the model allows. The best stays.
   void solve() {
     const SolverInput& options = scene_.model.solver;
-    const SolverKind first = chosen_solver(scene_.model, work_.rows.points.size(), work_.first_contact > 0);
+    const SolverKind first = chosen_solver(scene_.model, work_.rows.points.size(), hard_ties());
     const bool newton_can = work_.rows.points.size() <= kMostNewtonPoints;
     const bool again = options.second_solver && scene_.model.contact.law == ContactLaw::kExact &&
                        (first == SolverKind::kNewton || newton_can);
@@ -325,6 +326,13 @@ class Kick {
     rows_ = std::move(best.rows);
     report_ = best.report;
     report_.second_solver = true;
+  }
+
+  // Points of faces that are tied without any give.
+  size_t hard_ties() const {
+    size_t count = 0;
+    for (size_t r = 0; r < work_.first_contact; ++r) count += work_.rows.points[r].row[0].compliance == 0;
+    return count;
   }
 
   void solve_by(SolverKind kind, int sweeps) {
@@ -432,6 +440,7 @@ class Kick {
     work_.work.before += sums.work.before, work_.work.after += sums.work.after;
     report_.worst_block = sums.worst_block, report_.worst_force = sums.worst;
     report_.unbalanced = sums.forces > 0 ? sums.worst / (sums.forces / sums.moving) : 0;
+    report_.nudge = sums.nudge;
 
     Energy& e = report_.energy;
     e.gravity = sums.gravity, e.strain = sums.strain;
@@ -469,7 +478,9 @@ class Kick {
     state_.contact_force[i] = rows;
     const double unbalanced = force_norm(blocks_, i, force + rows);
     if (unbalanced > s.worst) s.worst = unbalanced, s.worst_block = static_cast<int>(i);
-    s.forces += 0.5 * (force_norm(blocks_, i, force) + force_norm(blocks_, i, rows));
+    const double acting = 0.5 * (force_norm(blocks_, i, force) + force_norm(blocks_, i, rows));
+    s.forces += acting;
+    s.nudge += 0.125 * kick * kick * acting * acting / blocks_.mass[i];
     ++s.moving;
 
     s.gravity += blocks_.mass[i] * dot(scene_.model.gravity, state_.displacement[i]);

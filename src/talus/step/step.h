@@ -46,7 +46,8 @@ struct StepReport {
   double unbalanced = 0;       // largest unbalanced force of a block / mean force on blocks
   int worst_block = -1;        // whose unbalanced force is the largest
   double worst_force = 0;      // that force [N]
-  double speed_left = 0;       // static stages: velocity as share of its peak in the stage (set by run/)
+  double nudge = 0;            // kinetic energy that the forces on blocks would give them in half a step [J]
+  double speed_left = 0;       // static stages: share of the velocity that is left (set by run/)
   Energy energy;
   int broken_faces = 0;  // in the drift that follows
 };

@@ -26,8 +26,8 @@ void each_field(Contact& c, auto& f) {
 }
 
 void each_field(ContactPair& p, auto& f) {
-  auto& [a, b, begin, count, face, from_start, reuse, arm, turn] = p;
-  f(a), f(b), f(begin), f(count), f(face), f(from_start), f(reuse), f(arm), f(turn);
+  auto& [a, b, begin, count, face, from_start, shares_face, reuse, arm, turn] = p;
+  f(a), f(b), f(begin), f(count), f(face), f(from_start), f(shares_face), f(reuse), f(arm), f(turn);
 }
 
 void each_field(CandidateList& c, auto& f) {

@@ -91,6 +91,23 @@ bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outli
   return false;
 }
 
+// Whether a corner of a that seems to lie inside edge e of b lies in truth outside b, or less deep in another
+// edge that it could enter: it is across a thin part of b, or past a corner of b that touches a.
+bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outline& b, const Hit& hit) {
+  const double gap = hit.point.gap;
+  if (gap >= -same_) return false;
+  for (int f = 0; f < b.count; ++f) {
+    if (f == hit.point.key.edge || !b.on_convex_chain(f, hit.point.key.edge)) continue;
+    const auto k = static_cast<size_t>(f);
+    const Vec2 normal = turn_right(b.edge[k]) / b.length[k];
+    const double other = dot(normal, place - b.corner[k]);
+    const double nearer = other - gap - same_, outside = other - same_;
+    clearance_ = std::min({clearance_, std::abs(nearer), std::abs(outside)});
+    if (outside > 0 || (nearer > 0 && a.may_enter(v, normal))) return true;
+  }
+  return false;
+}
+
 // Whether x is the way out rather than y: larger gap, or nearly equal ones by what is coming.
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
   clearance_ = std::min(clearance_, std::abs(std::abs(x.point.gap - y.point.gap) - same_));
@@ -150,6 +167,9 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.apart = hit.at_corner >= 0 && c.gap > same_ && is_flush(blocks, s, a, v, b, e, hit.at_corner);
       hits_.push_back(hit);
     }
+    hits_.erase(std::remove_if(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
+                               [&](const Hit& h) { return is_elsewhere(a, v, place, b, h); }),
+                hits_.end());
     // where b is convex the corner obeys one edge, the one it is least behind
     for (size_t i = first; i < hits_.size(); ++i) {
       for (size_t j = i + 1; j < hits_.size();) {

@@ -77,6 +77,7 @@ class ContactSearch {
 
   bool is_flush(const BlockSet& blocks, const State& state, const Outline& a, int corner, const Outline& b,
                 int edge, int end) const;
+  bool is_elsewhere(const Outline& a, int corner, Vec2 place, const Outline& b, const Hit& hit);
   bool is_better(const Hit& x, const Hit& y);
   void corners_over_edges(const BlockSet& blocks, const State& state, const Outline& a, const Outline& b,
                           Vec2 shift);

@@ -336,3 +336,43 @@ TEST_CASE(
   CHECK(faces > 100);
   CHECK(beside > 0);  // third points do occur
 }
+
+TEST_CASE("a corner at the thin end of a block does not act on the far side of the block") {
+  // b ends in an edge of 4 cm; the upper left corner of a lies in its foot's extension, just past its upper
+  // end
+  const Polygon b{{0, 0}, {1, 0}, {1, 0.04}, {0, 0.5}};
+  for (const double past : {-4e-5, -1e-6, 1e-6, 4e-5}) {
+    CAPTURE(past);
+    const Vec2 corner{1 - 5e-5, 0.04 + past};
+    const Polygon a{corner, {corner.x, -0.5}, {1.5, -0.5}, {1.5, corner.y}};
+    const auto points = touch({a, b});
+    CHECK(points.size() >= 2);
+    for (const ContactPoint& p : points) CHECK(p.gap == doctest::Approx(-5e-5).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("two blocks that a gap keeps apart at a crossing of joints do not touch by their other sides") {
+  // rhombi of 50 deg at a crossing, b beyond the upper right corner of a; moved by about the distance at
+  // which two corners count as one place
+  const double sine = std::sin(50 * M_PI / 180), cosine = std::cos(50 * M_PI / 180);
+  const Polygon rhombus{{0, 0}, {1, 0}, {1 + cosine, sine}, {cosine, sine}};
+  const Scene s = scene_of({rhombus, moved(rhombus, {1 + cosine, sine})});
+  const double same = kSamePlace * s.blocks.size[0];
+  int apart = 0, inside = 0;
+  for (int i = -30; i <= 30; ++i) {
+    for (int j = -30; j <= 30; ++j) {
+      State state = start_state(s);
+      const Vec2 d = (0.1 * same) * Vec2{double(i), double(j)};
+      state.displacement[1] = d;
+      const double gap = std::max(d.y, sine * d.x - cosine * d.y);  // along the normals of the sides
+      if (gap <= 1.001 * same) {
+        inside += gap < 0;
+        continue;
+      }
+      ++apart;
+      for (const ContactPoint& p : touch(s, state)) CHECK(p.gap > 0);
+    }
+  }
+  CHECK(apart > 1000);
+  CHECK(inside > 100);
+}

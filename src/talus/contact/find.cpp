@@ -91,21 +91,22 @@ bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outli
   return false;
 }
 
-// Whether a corner of a that seems to lie inside edge e of b lies in truth outside b, or less deep in another
-// edge that it could enter: it is across a thin part of b, or past a corner of b that touches a.
+// Whether a corner of a that seems to lie inside edge e of b is nearer to another edge that it could enter: it
+// is across a thin part of b, beside a corner of b that touches a.
 bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outline& b, const Hit& hit) {
-  const double gap = hit.point.gap;
-  if (gap >= -same_) return false;
+  const double depth = -hit.point.gap;
+  bool nearer = false;
+  if (depth <= same_) return nearer;
   for (int f = 0; f < b.count; ++f) {
-    if (f == hit.point.key.edge || !b.on_convex_chain(f, hit.point.key.edge)) continue;
     const auto k = static_cast<size_t>(f);
-    const Vec2 normal = turn_right(b.edge[k]) / b.length[k];
-    const double other = dot(normal, place - b.corner[k]);
-    const double nearer = other - gap - same_, outside = other - same_;
-    clearance_ = std::min({clearance_, std::abs(nearer), std::abs(outside)});
-    if (outside > 0 || (nearer > 0 && a.may_enter(v, normal))) return true;
+    if (f == hit.point.key.edge || !a.may_enter(v, turn_right(b.edge[k]) / b.length[k])) continue;
+    const Vec2 r = place - b.corner[k];
+    const double along = std::clamp(dot(r, b.edge[k]) / (b.length[k] * b.length[k]), 0.0, 1.0);
+    const double left = depth - same_ - norm(r - along * b.edge[k]);
+    clearance_ = std::min(clearance_, std::abs(left));
+    nearer = nearer || left > 0;
   }
-  return false;
+  return nearer;
 }
 
 // Whether x is the way out rather than y: larger gap, or nearly equal ones by what is coming.

@@ -91,8 +91,8 @@ bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outli
   return false;
 }
 
-// Whether a corner of a that seems to lie inside edge e of b is nearer to another edge that it could enter: it
-// is across a thin part of b, beside a corner of b that touches a.
+// Whether a corner of a that seems to lie inside edge e of b is nearer to another edge that it could enter:
+// it is across a thin part of b, beside a corner of b that touches a.
 bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outline& b, const Hit& hit) {
   const double depth = -hit.point.gap;
   bool nearer = false;

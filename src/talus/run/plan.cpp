@@ -190,8 +190,8 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {
     return f.unbreakable || scene.model.joints[static_cast<size_t>(f.joint)].normal_stiffness == 0;
   });
-  const bool factors = chosen_solver(scene.model, static_cast<size_t>(points), 2 * static_cast<size_t>(hard)) ==
-                       SolverKind::kNewton;
+  const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
+                                     2 * static_cast<size_t>(hard)) == SolverKind::kNewton;
   p.memory = 1600.0 * p.blocks + 32 * corners + points * (600 + (factors ? 2 * 32 * 16 * 6 : 0));
   return p;
 }

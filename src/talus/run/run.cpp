@@ -179,8 +179,8 @@ class Runner {
     observer_.at(instant);
   }
 
-  // Velocity left, as share of its peak in the stage or, where nothing ever moved that fast, of what the forces
-  // on blocks would give them in half a step.
+  // Velocity left, as share of its peak in the stage or, where nothing ever moved that fast, of what the
+  // forces on blocks would give them in half a step.
   double speed_left(const StepReport& report) const {
     const double peak = std::max({state_.largest_kinetic, report.energy.kinetic, report.nudge});
     return peak > 0 ? std::sqrt(std::max(report.energy.kinetic, 0.0) / peak) : 0;

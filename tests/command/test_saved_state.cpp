@@ -185,7 +185,7 @@ std::vector<fs::path> saved_in(const fs::path& folder) {
 
 // Tables and frames up to the last one can be read at any moment, and are what the whole run has there.
 void readable(const fs::path& folder, const std::map<std::string, std::string>& whole) {
-  for (const char* name : {"histories.csv", "steps.csv", "joints.csv"}) {
+  for (const char* name : {"histories.csv", "steps.csv", "joints.csv", "slips.csv"}) {
     INFO(name);
     if (!fs::exists(folder / name)) continue;  // not written yet
     const std::string text = read_text_file((folder / name).string());
@@ -251,6 +251,7 @@ TEST_CASE("command run --from: the same bits with bolts and joints that weaken")
     has(o.text, "cannot be continued");
   };
   refused("joints.csv");
+  refused("slips.csv");
   refused("bolts.csv");
 }
 

@@ -130,7 +130,7 @@ int run(const ModelArguments& args, const RunArguments& how) {
           : talus::continue_stages(prepared.scene, prepared.plans, saved.standing, state, progress, workers);
   progress.finish();
   recorder->finish(result, args.overrides, findings);
-  fmt::print(out, "{}", talus::closing_text(prepared.scene, result, folder));
+  fmt::print(out, "{}", talus::closing_text(prepared.scene, result, recorder->joints(), folder));
   if (profile) fmt::print(out, "{}", talus::profile_text(result.profile, result.threads, result.steps));
   if (!result.failure.empty())
     throw talus::NumericalError(result.failure + fmt::format("\nresults up to then are in {}", folder));

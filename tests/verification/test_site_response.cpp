@@ -327,3 +327,44 @@ TEST_CASE("level_response is the transfer function of a layer, and of two halves
   CHECK(std::abs(level_response({{kHeight, kDensity, modulus}}, z, 2.5).surface - 5) <
         1e-9);  // 1 / impedance ratio
 }
+
+TEST_CASE(
+    "A5 monitor relative to a free field: of level ground nothing, of a built-up one what the building "
+    "adds") {
+  const std::string at = "point = [12, 30]\n";
+  const std::string relative =
+      "[[monitor]]\nname = \"moved\"\n" + at + "[[monitor]]\nname = \"apart\"\n" + at +
+      "relative_to = \"left\"\n[[monitor]]\nname = \"deep\"\npoint = [12, 12.7]\nrelative_to = \"left\"\n";
+  const std::string ground = kMaterials + grid_of(2, 15) + base_of(kOutcropX);
+  const CaseResult level = run_case(ground + sides_of("free_field") + relative, {"stage.shake.duration=2"});
+  const auto largest = [](const std::vector<double>& v) {
+    double most = 0;
+    for (const double x : v) most = std::max(most, std::abs(x));
+    return most;
+  };
+  // level ground and its column obey the same equations, at a node (the surface) and between two (12.7 m)
+  for (const char* column : {"velocity_x", "displacement_x"}) {
+    const double scale = largest(level.column(fmt::format("moved.{}", column)));
+    for (const char* name : {"apart", "deep"})
+      check_below(fmt::format("A5 level ground, {}.{} / largest", name, column),
+                  largest(level.column(fmt::format("{}.{}", name, column))) / scale, 1e-5, 1e-6);
+  }
+
+  // A tower on the ground shakes it; the free field at the side knows nothing of it. What the monitor takes
+  // off must be the motion of level ground, from a run of its own.
+  const std::string tower =
+      "[[block]]\nname = \"tower\"\npolygon = [[6, 30], [18, 30], [18, 40], [6, 40]]\nmaterial = \"soil\"\n"
+      "[contact]\njoint = \"glue\"\n";
+  const double dt = level.column("t [s]")[1] - level.column("t [s]")[0];
+  const CaseResult built =
+      run_case(ground + tower + sides_of("free_field") + relative,
+               {"stage.shake.duration=2", fmt::format("stage.shake.time_step={:.17g}", dt)});
+  const auto &all = built.column("moved.velocity_x"), &apart = built.column("apart.velocity_x");
+  REQUIRE(all.size() == level.column("moved.velocity_x").size());
+  std::vector<double> taken_off;
+  for (size_t i = 0; i < all.size(); ++i) taken_off.push_back(all[i] - apart[i]);
+  check_below("A5 what the monitor takes off, against level ground",
+              misfit(taken_off, level.column("moved.velocity_x")), 1e-5, 1e-6);
+  check_above("A5 the tower's share, largest relative / largest velocity", largest(apart) / largest(all), 0.1,
+              0.1);
+}

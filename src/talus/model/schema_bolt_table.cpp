@@ -88,7 +88,8 @@ SectionSpec bolt_section() {
   return {
       "bolt",
       SectionShape::kList,
-      "A rock bolt along a straight line. It is tied to the blocks as they lie when its stage begins.",
+      "A rock bolt along a straight line. It is tied to the blocks as they lie when its stage begins; an "
+      "anchored or grouted one must not be tied to a block that a later stage excavates.",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
        {.name = "from", .type = K::kVector, .dimension = D::kLength, .required = true, .doc = "Its head."},
        {.name = "to", .type = K::kVector, .dimension = D::kLength, .required = true, .doc = "Its end."},

@@ -8,6 +8,14 @@ namespace talus {
 
 namespace {
 
+// What an edge of a block was cut along.
+std::string set_of(const Scene& scene, int block, int edge) {
+  const std::vector<int>& origin = scene.layout.blocks[static_cast<size_t>(block)].edge_origin;
+  if (origin.empty() || edge < 0) return {};
+  const int which = origin[static_cast<size_t>(edge)];
+  return which < 0 ? std::string() : scene.layout.origins[static_cast<size_t>(which)];
+}
+
 // An intact end of a face: what parts it is elastic, unless it stands open.
 std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t row) {
   const auto owner = static_cast<size_t>(i.work.bond_owner[row]);
@@ -17,6 +25,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   out.face = true;
   out.id = fmt::format("face {} end {}", owner / 2, owner % 2);
   out.joint = face.joint;
+  out.set = set_of(scene, face.block_b, face.edge_b);
   out.length = 0.5 * face.length;
   out.opening = std::max(0.0, face_offset(scene.blocks, i.state, face).opening[owner % 2]);
   return out;
@@ -28,6 +37,7 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
   JointPoint out;
   out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
   out.joint = c.joint;
+  out.set = set_of(scene, c.key.block_b, c.key.edge);
   out.length = c.length;
   out.slip = c.slip, out.slip_signed = c.slip_signed;
   if (c.joint >= 0) out.rise = dilation_rise(scene.model.joints[static_cast<size_t>(c.joint)], c.slip);
@@ -70,17 +80,23 @@ void JointSummary::add(const JointPoint& p) {
   if (p.state == JointState::kOpen) widest = std::max(widest, p.opening);
 }
 
+void JointPoint::exchange(Exchange& x, const std::string& name) {
+  x(name + ".face", face), x(name + ".id", id);
+  x(name + ".block_a", block_a), x(name + ".block_b", block_b);
+  x(name + ".joint", joint), x(name + ".set", set), x(name + ".point", point);
+  x(name + ".length", length), x(name + ".state", state);
+  x(name + ".normal_force", normal_force);
+  x(name + ".shear_force", shear_force);
+  x(name + ".slip", slip), x(name + ".slip_signed", slip_signed);
+  x(name + ".opening", opening), x(name + ".rise", rise);
+}
+
 void JointSummary::exchange(Exchange& x, const std::string& name) {
   x(name + ".time", time), x(name + ".points", points), x(name + ".intact", intact);
   x(name + ".slipped", slipped), x(name + ".open", open), x(name + ".widest", widest);
-  x(name + ".largest.face", largest.face), x(name + ".largest.id", largest.id);
-  x(name + ".largest.block_a", largest.block_a), x(name + ".largest.block_b", largest.block_b);
-  x(name + ".largest.joint", largest.joint), x(name + ".largest.point", largest.point);
-  x(name + ".largest.length", largest.length), x(name + ".largest.state", largest.state);
-  x(name + ".largest.normal_force", largest.normal_force);
-  x(name + ".largest.shear_force", largest.shear_force);
-  x(name + ".largest.slip", largest.slip), x(name + ".largest.slip_signed", largest.slip_signed);
-  x(name + ".largest.opening", largest.opening), x(name + ".largest.rise", largest.rise);
+  x(name + ".slipped_joints", slipped_joints);
+  largest.exchange(x, name + ".largest");
+  most_residual.exchange(x, name + ".most_residual");
 }
 
 std::string joint_header() {

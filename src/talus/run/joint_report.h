@@ -2,6 +2,7 @@
 // The condition of joints, point by point: for joints.csv, for the contact frames and for the summary of a
 // run. Theory: docs/theory.md section 4.19.
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -16,11 +17,16 @@ struct JointPoint {
   bool face = false;
   std::string id;  // "face 3 end 0", "0:2 on 1:4": corner 2 of block 0 on edge 4 of block 1
   int block_a = -1, block_b = -1, joint = -1;
-  Vec2 point;                                               // [m]
-  double length = 0;                                        // that it stands for, 0: a corner alone [m]
+  std::string set;    // what the edge was cut along (a joint set, a fault ...); "": a block that was not cut
+  Vec2 point;         // [m]
+  double length = 0;  // that it stands for, 0: a corner alone [m]
   double normal_force = 0, shear_force = 0;                 // [N] normal > 0 pressing
   double slip = 0, slip_signed = 0, opening = 0, rise = 0;  // [m]
   JointState state = JointState::kIntact;
+
+  double residual_slip() const { return std::abs(slip_signed); }  // what is left of it [m]
+  /// Saves or loads it, under names that begin with `name`.
+  void exchange(Exchange& exchange, const std::string& name);
 };
 
 /// The point of row `row`; none for supports, boundaries and bonds that never break.
@@ -32,8 +38,10 @@ Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
 struct JointSummary {
   double time = 0;
   int points = 0, intact = 0, slipped = 0, open = 0;
-  JointPoint largest;  // of the largest slip
-  double widest = 0;   // [m]
+  JointPoint largest;        // of the largest slip
+  double widest = 0;         // [m]
+  int slipped_joints = 0;    // between two blocks each, as in slips.csv
+  JointPoint most_residual;  // the point with the largest slip left
 
   void add(const JointPoint& p);
   /// Saves or loads it, under names that begin with `name`.

@@ -6,6 +6,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/text.h"
+#include "talus/run/slip_report.h"
 
 namespace talus {
 
@@ -63,7 +64,8 @@ void Progress::finish() {
   line_open_ = false;
 }
 
-std::string closing_text(const Scene& scene, const RunResult& r, const std::string& folder) {
+std::string closing_text(const Scene& scene, const RunResult& r, const JointSummary& joints,
+                         const std::string& folder) {
   std::string out;
   const char* ending = !r.failure.empty() ? "failed"
                        : r.interrupted    ? "interrupted; the results up to then are valid"
@@ -93,6 +95,10 @@ std::string closing_text(const Scene& scene, const RunResult& r, const std::stri
   }
   if (r.broken_faces > 0)
     out += fmt::format("  broken          {} of {} glued faces\n", r.broken_faces, scene.bonds.faces.size());
+  if (joints.slipped_joints > 0)
+    out += fmt::format("  slipped         {} joint{}, by {:.3g} m at most: {}; all in slips.csv\n",
+                       joints.slipped_joints, joints.slipped_joints == 1 ? "" : "s",
+                       joints.most_residual.residual_slip(), place_text(scene, joints.most_residual));
   out += fmt::format(
       "  results         {}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "
       "(ParaView)\n",

@@ -41,6 +41,7 @@ class Progress : public Observer {
 };
 
 /// Closing lines of a run: what happened and how far to trust it.
-std::string closing_text(const Scene& scene, const RunResult& result, const std::string& folder);
+std::string closing_text(const Scene& scene, const RunResult& result, const JointSummary& joints,
+                         const std::string& folder);
 
 }  // namespace talus

@@ -12,6 +12,7 @@
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
 #include "talus/run/problem_file.h"
+#include "talus/run/slip_report.h"
 
 namespace talus {
 
@@ -66,6 +67,7 @@ std::vector<BoltLine> bolt_lines(const Scene& scene, const State& state, int sta
 
 constexpr const char *kHistorySize = "recorder.histories_csv", *kStepsSize = "recorder.steps_csv";
 constexpr const char *kJointsSize = "recorder.joints_csv", *kBoltsSize = "recorder.bolts_csv";
+constexpr const char* kSlipsSize = "recorder.slips_csv";
 constexpr size_t kSavedStates = 2;  // between stages
 
 int64_t size_in(const Archive& saved, const std::string& name) {
@@ -130,6 +132,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder, Archive& sa
       bolt_frames_(folder_ / "fields", "bolts", "vtp"),
       bolt_table_(table_then(folder_ / "bolts.csv", size_in(saved, kBoltsSize))),
       joints_(table_then(folder_ / "joints.csv", size_in(saved, kJointsSize))),
+      slips_(table_then(folder_ / "slips.csv", size_in(saved, kSlipsSize))),
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
   Exchange loading(saved, false);
@@ -169,6 +172,7 @@ void Recorder::keep_state(const Standing& standing, const State& state) {
   archive.numbers[kHistorySize] = {static_cast<double>(history_file_.size())};
   archive.numbers[kStepsSize] = {static_cast<double>(steps_file_.size())};
   archive.numbers[kJointsSize] = {static_cast<double>(joints_.size())};
+  archive.numbers[kSlipsSize] = {static_cast<double>(slips_.size())};
   archive.numbers[kBoltsSize] = {static_cast<double>(bolt_table_.size())};
   make_folder(folder_ / "saved");
   if (standing.between) {
@@ -267,16 +271,26 @@ void Recorder::write_bolts(const Instant& i) {
 }
 
 void Recorder::write_joints(const Instant& i, int stage) {
+  const std::string& name = scene_.model.stages[static_cast<size_t>(stage)].name;
   joint_summary_ = {};
+  SlipList slipped;
   if (joints_.empty()) joints_ = joint_header();
   for (size_t r = 0; r < i.work.first_support; ++r) {
     const auto point = joint_point(scene_, i, r);
     if (!point || point->state == JointState::kApart) continue;
     joint_summary_.add(*point);
-    joints_ += joint_row(scene_, *point, scene_.model.stages[static_cast<size_t>(stage)].name, i.state.time);
+    slipped.add(scene_, *point);
+    joints_ += joint_row(scene_, *point, name, i.state.time);
   }
   joint_summary_.time = i.state.time;
   write_file(folder_ / "joints.csv", joints_);
+
+  const std::vector<SlippedJoint> list = slipped.sorted();
+  if (slips_.empty()) slips_ = slips_header();
+  for (const SlippedJoint& joint : list) slips_ += slips_row(scene_, joint, name, i.state.time);
+  joint_summary_.slipped_joints = static_cast<int>(list.size());
+  if (!list.empty()) joint_summary_.most_residual = list[0].most;
+  write_file(folder_ / "slips.csv", slips_);
 }
 
 void Recorder::finish(const RunResult& result, const std::vector<std::string>& overrides,
@@ -324,12 +338,20 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                  {"open", joints.open},
                  {"slip_largest [m]", joints.largest.slip},
                  {"opening_largest [m]", joints.widest}};
-  if (joints.largest.slip > 0)
-    j["joints"]["slip_largest_at"] = {{"x [m]", joints.largest.point.x},
-                                      {"y [m]", joints.largest.point.y},
-                                      {"blocks",
-                                       {b.name[static_cast<size_t>(joints.largest.block_a)],
-                                        b.name[static_cast<size_t>(joints.largest.block_b)]}}};
+  const auto where = [&b](const JointPoint& p) {
+    return ordered_json{
+        {"x [m]", p.point.x},
+        {"y [m]", p.point.y},
+        {"blocks", {b.name[static_cast<size_t>(p.block_a)], b.name[static_cast<size_t>(p.block_b)]}}};
+  };
+  if (joints.largest.slip > 0) j["joints"]["slip_largest_at"] = where(joints.largest);
+  j["joints"]["slipped_joints"] = joints.slipped_joints;
+  if (joints.slipped_joints > 0) {
+    j["joints"]["residual_slip_largest [m]"] = joints.most_residual.residual_slip();
+    j["joints"]["residual_slip_largest_at"] = where(joints.most_residual);
+    if (!joints.most_residual.set.empty())
+      j["joints"]["residual_slip_largest_at"]["set"] = joints.most_residual.set;
+  }
   j["stages"] = ordered_json::array();
   for (const StageResult& s : r.stages) {
     ordered_json stage = {{"name", s.name},

@@ -12,8 +12,8 @@
 
 namespace talus {
 
-/// model.toml, histories.csv, steps.csv, joints.csv, fields/, saved/, with bolts also bolts.csv. Rows reach
-/// the file at least once a second, frames at once.
+/// model.toml, histories.csv, steps.csv, joints.csv, slips.csv, fields/, saved/, with bolts also bolts.csv.
+/// Rows reach the file at least once a second, frames at once.
 class Recorder : public Observer {
  public:
   /// @param folder  ready for results (open_result_folder)
@@ -30,6 +30,9 @@ class Recorder : public Observer {
 
   /// Also writes the contact equations of this step as step_N.json. A failed step is always written.
   void dump_step(int64_t step) { dump_step_ = step; }
+
+  /// Joints at the end of the last stage that has ended.
+  const JointSummary& joints() const { return joint_summary_; }
 
   /// Writes waiting rows and summary.json. To be called also when the run failed or was interrupted.
   void finish(const RunResult& result, const std::vector<std::string>& overrides, const Findings& findings);
@@ -50,7 +53,7 @@ class Recorder : public Observer {
   FrameSeries block_frames_, contact_frames_, bolt_frames_;
   std::string bolt_table_;  // bolts.csv so far
   double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
-  std::string joints_;  // joints.csv so far
+  std::string joints_, slips_;  // joints.csv and slips.csv so far
   JointSummary joint_summary_;
   std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0, last_saved_ = 0;

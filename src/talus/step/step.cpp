@@ -188,6 +188,11 @@ class Kick {
     work_.bolt_forces.assign(state_.bolts.empty() ? 0 : load_.size(), {});
     if (!state_.bolts.empty()) add_bolt_forces(blocks_, state_, work_.bolt_forces);
 
+    kick_free_field(time, acceleration);
+    work_.column_velocity = boundary_.column_velocity;
+  }
+
+  void kick_free_field(double time, const std::vector<Vec2>& acceleration) {
     boundary_ = {!settings_.histories_run, dt_, work_.dt_kick, time, state_.column_rate};
     if (boundary_.is_static) return;
     kick_columns(scene_.boundaries.free_field, scene_.model.histories,

@@ -71,7 +71,8 @@ struct StepWork {
   std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
   size_t first_contact = 0, first_support = 0, first_boundary = 0, first_tie = 0, first_bolt = 0;
   std::vector<BlockRate> rate_before;
-  double dt_kick = 0;  // over which the impulses act
+  std::vector<Vec2> column_velocity;  // [n_column_nodes] of the free field at this instant [m/s]
+  double dt_kick = 0;                 // over which the impulses act
   KickWork work;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted

@@ -58,6 +58,7 @@ BoltPath path_through(const BlockSet& blocks, const State& state, Vec2 from, Vec
   const double length = norm(to - from);
   const Vec2 t = (to - from) / length;
   for (size_t k = 0; k < blocks.name.size(); ++k) {
+    if (blocks.removed(static_cast<int>(k))) continue;
     const Vec2 centre = blocks.centroid[k] + state.displacement[k] - from;
     const double along = std::clamp(dot(t, centre), 0.0, length);
     if (norm(centre - along * t) > 2 * blocks.radius[k]) continue;  // strains of 1 are never met

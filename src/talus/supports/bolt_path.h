@@ -19,7 +19,7 @@ struct BoltPath {
   std::string trouble;            // "" when there is none: the line runs along a joint, or meets no block
 };
 
-/// Pieces of the segment from-to, those shorter than `least` [m] left out.
+/// Pieces of the segment from-to in blocks that are there, those shorter than `least` [m] left out.
 BoltPath path_through(const BlockSet& blocks, const State& state, Vec2 from, Vec2 to, double least);
 
 }  // namespace talus

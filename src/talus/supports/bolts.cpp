@@ -72,23 +72,53 @@ void balance(const State& state, Bolt& bolt) {
   balance_bar(rock_elongation(state, bolt), bolt);
 }
 
+// The stage at whose start each block is excavated; past the last one where none does.
+std::vector<int> stage_without(const Model& model, const Layout& layout) {
+  std::vector<int> out(layout.blocks.size(), static_cast<int>(model.stages.size()));
+  for (size_t s = 0; s < model.stages.size(); ++s)
+    for (const std::string& name : model.stages[s].excavate)
+      for (const int k : layout.blocks_called(name)) out[static_cast<size_t>(k)] = static_cast<int>(s);
+  return out;
+}
+
+// A bar that is tied to a block loses its hold when the block is taken out: what becomes of it is not known.
+void check_excavation(const Model& model, const BlockSet& blocks, const BoltInput& input, const Bolt& bolt,
+                      const std::vector<int>& gone, Findings& findings) {
+  for (const BoltNode& n : bolt.nodes) {
+    const auto k = static_cast<size_t>(n.block);
+    const auto stage = static_cast<size_t>(gone[k]);
+    if (stage >= model.stages.size()) continue;
+    findings.error(input.where, "bolt." + input.name,
+                   fmt::format("is tied to block \"{}\", which stage \"{}\" excavates", blocks.name[k],
+                               model.stages[stage].name),
+                   "shorten it so that it begins and ends in rock that stays, or let its `stage` be that one "
+                   "or a later one");
+    return;
+  }
+}
+
 }  // namespace
 
 void check_bolts(const Model& model, const Layout& layout, const BlockSet& blocks, Findings& findings) {
   if (model.bolts.empty()) return;
   const State start = initial_state(blocks, layout);
+  const std::vector<int> gone = stage_without(model, layout);
+  BlockSet there = blocks;                                               // when the bolt is installed
   std::vector<double> stiffening(static_cast<size_t>(blocks.count), 0);  // [Pa m3]
   for (size_t i = 0; i < model.bolts.size(); ++i) {
     const BoltInput& input = model.bolts[i];
     std::string trouble;
-    const std::vector<Bolt> bolts = make_bolt(model, blocks, start, static_cast<int>(i), trouble);
+    for (size_t k = 0; k < gone.size(); ++k)
+      there.kind[k] = gone[k] <= input.stage ? BlockKind::kRemoved : blocks.kind[k];
+    const std::vector<Bolt> bolts = make_bolt(model, there, start, static_cast<int>(i), trouble);
     if (!trouble.empty()) {
       findings.error(input.where, "bolt." + input.name, trouble,
                      "bolts begin and end in blocks, where they lie at the start of their stage");
       continue;
     }
-    if (model.bolt_types[static_cast<size_t>(input.type)].kind == BoltKind::kGrouted &&
-        bolts[0].crossings.empty())
+    const BoltKind kind = model.bolt_types[static_cast<size_t>(input.type)].kind;
+    if (kind != BoltKind::kSuperposed) check_excavation(model, blocks, input, bolts[0], gone, findings);
+    if (kind == BoltKind::kGrouted && bolts[0].crossings.empty())
       findings.warning(input.where, "bolt." + input.name, "crosses no joint: it only stiffens one block",
                        "is it where it should be?");
     for (const Bolt& bolt : bolts)

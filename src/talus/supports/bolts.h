@@ -19,7 +19,8 @@ struct BoltTiming {
 std::vector<Bolt> make_bolt(const Model& model, const BlockSet& blocks, const State& state, int input,
                             std::string& trouble);
 
-/// Bolts that cannot be in the blocks as they lie at the start are told to `findings`.
+/// Bolts that cannot be in the blocks as they lie at the start, without those excavated by then, are told to
+/// `findings`; so are anchored and grouted ones tied to a block that is excavated later.
 void check_bolts(const Model& model, const Layout& layout, const BlockSet& blocks, Findings& findings);
 
 /// Installs the bolts that begin with this stage. Throws NumericalError when the blocks have moved away from

@@ -1,0 +1,165 @@
+// slips.csv: the joints that have slipped at the end of each stage, greatest first.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "talus/base/text_file.h"
+#include "talus/run/progress.h"
+#include "talus/talus.h"
+
+using namespace talus;
+
+namespace {
+
+// Rigid slabs on a floor, each pushed at a corner: "far" by 3 mm in the first stage; "back" by 1 mm in the
+// first stage and back to 0.4 mm in the second; the upper half of "cut" by 2 mm in the second, on its fault.
+// All gently, so that no corner is lifted by a jolt: where nothing presses nothing slips.
+const char* kModel = R"(talus = 1
+[model]
+gravity = [0, -10]
+[material.rock]
+density = 2500
+[joint.face]
+friction_angle = "30 deg"
+[contact]
+joint = "face"
+[[block]]
+name = "floor"
+polygon = [[-1, -1], [20, -1], [20, 0], [-1, 0]]
+material = "rock"
+kind = "fixed"
+[[block]]
+name = "back"
+polygon = [[0, 0], [2, 0], [2, 1], [0, 1]]
+material = "rock"
+kind = "rigid"
+[[block]]
+name = "far"
+polygon = [[4, 0], [6, 0], [6, 1], [4, 1]]
+material = "rock"
+kind = "rigid"
+[[block]]
+name = "still"
+polygon = [[8, 0], [10, 0], [10, 1], [8, 1]]
+material = "rock"
+kind = "rigid"
+[[region]]
+name = "cut"
+polygon = [[12, 0], [16, 0], [16, 2], [12, 2]]
+material = "rock"
+kind = "rigid"
+[[fault]]
+name = "seam"
+points = [[12, 1], [16, 1]]
+[history.back]
+expression = "t < 0.08 ? 0.5e-3*(1-cos(_pi*t/0.08)) : t < 0.11 ? 1e-3 : t < 0.18 ? 1e-3-0.3e-3*(1-cos(_pi*(t-0.11)/0.07)) : 0.4e-3"
+duration = 0.2
+[history.far]
+expression = "t < 0.08 ? 1.5e-3*(1-cos(_pi*t/0.08)) : 3e-3"
+duration = 0.2
+[history.cut]
+expression = "t < 0.11 ? 0 : t < 0.18 ? 1e-3*(1-cos(_pi*(t-0.11)/0.07)) : 2e-3"
+duration = 0.2
+[[support]]
+name = "back"
+point = [0, 1]
+x = { displacement = "back" }
+y = "free"
+[[support]]
+name = "far"
+point = [4, 1]
+x = { displacement = "far" }
+y = "free"
+[[support]]
+name = "cut"
+point = [12, 2]
+x = { displacement = "cut" }
+y = "free"
+[[stage]]
+name = "first"
+kind = "dynamic"
+duration = 0.1
+time_step = 1e-3
+[[stage]]
+name = "second"
+kind = "dynamic"
+duration = 0.1
+time_step = 1e-3
+)";
+
+struct Listed {
+  std::string stage, block_a, block_b, set, joint;
+  double residual, slip;
+  std::string state;
+};
+
+std::vector<Listed> rows_of(const std::string& csv) {
+  std::vector<Listed> out;
+  for (size_t at = csv.find('\n') + 1; at < csv.size(); at = csv.find('\n', at) + 1) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (size_t i = at; csv[i] != '\n'; ++i) {
+      if (csv[i] == '"')
+        quoted = !quoted;
+      else if (csv[i] == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += csv[i];
+    }
+    REQUIRE(cells.size() == 13);
+    out.push_back({cells[0], cells[2], cells[3], cells[4], cells[5], std::stod(cells[8]), std::stod(cells[9]),
+                   cells[12]});
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("slips.csv: joints that have slipped, greatest residual slip first; the closing lines tell it") {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("talus_slips_{}", getpid());
+  Findings findings("m", kModel);
+  PreparedRun p = prepare_run("m", kModel, {}, findings);
+  open_result_folder(folder, true);
+  Recorder recorder(p.scene, folder);
+  State state = start_state(p.scene);
+  const RunResult r = run_stages(p.scene, p.plans, state, recorder);
+  REQUIRE(r.failure.empty());
+  recorder.finish(r, {}, findings);
+
+  struct Expected {
+    const char *stage, *block, *set;
+    double residual, slip;  // [m]
+  };
+  const Expected expected[] = {{"first", "far", "", 3e-3, 3e-3},
+                               {"first", "back", "", 1e-3, 1e-3},
+                               {"second", "far", "", 3e-3, 3e-3},
+                               {"second", "cut[1]", "seam", 2e-3, 2e-3},
+                               {"second", "back", "", 0.4e-3, 1.6e-3}};
+  const std::vector<Listed> rows = rows_of(read_text_file((folder / "slips.csv").string()));
+  REQUIRE(rows.size() == std::size(expected));
+  for (size_t i = 0; i < rows.size(); ++i) {
+    INFO(i, ": ", rows[i].block_a, " ", rows[i].block_b);
+    CHECK(rows[i].stage == expected[i].stage);
+    CHECK((rows[i].block_a == expected[i].block || rows[i].block_b == expected[i].block));
+    CHECK(rows[i].set == expected[i].set);
+    CHECK(rows[i].joint == "face");
+    // rigid blocks in hard joints: slip is the way they were pushed, to the solver's tolerance (1e-8 m)
+    CHECK(rows[i].residual == doctest::Approx(expected[i].residual).epsilon(1e-5));
+    CHECK(rows[i].slip == doctest::Approx(expected[i].slip).epsilon(1e-5));
+    CHECK(rows[i].state == "slipped");
+  }
+
+  const std::string summary = read_text_file((folder / "summary.json").string());
+  INFO(summary);
+  CHECK(summary.find("\"slipped_joints\": 3,") != std::string::npos);
+  CHECK(summary.find("\"residual_slip_largest [m]\": 0.0030") != std::string::npos);
+  const std::string closing = closing_text(p.scene, r, recorder.joints(), "out");
+  INFO(closing);
+  CHECK(closing.find("3 joints, by 0.003 m at most: ") != std::string::npos);
+  CHECK(closing.find("far") != std::string::npos);
+  CHECK(closing.find("slips.csv") != std::string::npos);
+  std::filesystem::remove_all(folder);
+}

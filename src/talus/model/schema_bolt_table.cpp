@@ -107,6 +107,10 @@ SectionSpec pattern_section() {
       "Many bolts of one type, called NAME[0], NAME[1] and so on. Give `opening`, or `center` and `radius` "
       "(radial), or `from` and `to` (a row).",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+       {.name = "use",
+        .type = K::kBool,
+        .default_text = "true",
+        .doc = "`false`: left out, as if it were not in the file."},
        {.name = "kind",
         .type = K::kChoice,
         .required = true,

@@ -50,7 +50,7 @@ class SectionReader {
     }
   }
 
-  // Calls `use(fields)` for every [[section]].
+  // Calls `use(fields)` for every [[section]] but those with `use = false`.
   template <class Use>
   void for_list(const std::string& section, Use use) {
     const toml::node* node = source_.root.get(section);
@@ -65,8 +65,9 @@ class SectionReader {
     for (const toml::node& entry : *list) {
       const toml::table& t = *entry.as_table();
       const std::string name = t["name"].value_or(std::to_string(index++));
-      use(read_section(section_spec(section), t, section + "." + name, where_of(t.source()), source_,
-                       findings_));
+      const Fields fields = read_section(section_spec(section), t, section + "." + name, where_of(t.source()),
+                                         source_, findings_);
+      if (fields.get("use", true)) use(fields);
     }
   }
 

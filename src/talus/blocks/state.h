@@ -71,7 +71,7 @@ struct ContactPair {
   int a = -1, b = -1;        // a < b
   int begin = 0, count = 0;  // contact points, in State::contacts
   int face = -1;             // first of their faces in the bond set, -1: none
-  bool from_start = false;   // near each other since the first step: joints between them carry in-situ stress,
+  bool from_start = false;  // near each other since the first step: joints between them carry in-situ stress,
   bool shares_face = false;  // and they have a face in common since then: not at a crossing of joints only
   double reuse = -1;         // [m]; < 0: not sought yet
   Vec2 arm;                  // reference arm, on the larger block, of the centroid of the smaller one then
@@ -89,9 +89,11 @@ struct CandidateList {
 /// Condition of a face that was intact at the start and may break.
 struct FaceState {
   bool broken = false;
-  int64_t broken_step = -1;            // State::step before which it broke
-  std::array<double, 2> offset{};      // distance of the tied points along the tangent when it broke [m]
+  int64_t broken_step = -1;  // State::step before which it broke
+  std::array<double, 2>
+      offset{};  // distance of the tied points along the tangent when it broke, less slip [m]
   std::array<double, 4> mean_force{};  // running mean of normal, tangential of point 0 and of point 1 [N]
+  std::array<double, 2> slip{};        // along the tangent, of points at the limit of their shear [m]
 };
 
 /// Work done since the start [J], by cause; > 0: energy given to the blocks. `joints`: elastic joints, stored

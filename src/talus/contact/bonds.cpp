@@ -224,7 +224,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
       p.normal = apart.normal;
       p.row[0].bias = apart.opening[end] / timing.dt;
-      p.row[1].bias = apart.tangential[end] / timing.dt;
+      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[static_cast<size_t>(end)]) / timing.dt;
       if (!face.unbreakable) {
         const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
@@ -249,6 +249,24 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
   }
 }
 
+void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
+                    const std::vector<int>& owner, const RowTiming& timing, State& state) {
+  const double factor = timing.dt / position_factor(timing.alpha);
+  for (size_t r = 0; r < owner.size(); ++r) {
+    const PointRows& p = rows.points[r];
+    const Impulse& impulse = rows.impulse[r];
+    const auto point = static_cast<size_t>(owner[r]);
+    state.bond_force[point] = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+    if (p.row[1].compliance == 0 || !slides(p, impulse)) continue;
+    // what is off after the step, but for the elastic slip under its force
+    double elastic = p.row[1].compliance * impulse[1];
+    if (p.partner >= 0) elastic += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
+    state.face[point / 2].slip[point % 2] =
+        face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
+        timing.dt * relative_velocity(p, state.rate)[1] + elastic * factor;
+  }
+}
+
 int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
                  double dt, State& state) {
   int broken = 0;
@@ -267,7 +285,7 @@ int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector
     if (!is_at_limit(blocks, face, joint, now, offset)) continue;
     now.broken = true;
     now.broken_step = state.step;
-    now.offset = {offset.tangential[0], offset.tangential[1]};
+    now.offset = {offset.tangential[0] - now.slip[0], offset.tangential[1] - now.slip[1]};
     state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};
     ++broken;
   }

@@ -42,6 +42,11 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
                    const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
                    RowSet& rows, std::vector<int>& owner);
 
+/// After the solution: forces, and the slip of points that slide at the limit of an elastic shear.
+/// @param owner  of each row, as from add_bond_rows
+void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
+                    const std::vector<int>& owner, const RowTiming& timing, State& state);
+
 /// How far the tied points of a face are apart, material point from material point, counted from the joint
 /// without force (the stress of the ground has closed it).
 struct FaceOffset {

@@ -17,6 +17,7 @@ void take_from_face(const BlockSet& blocks, const BondFace& face, const FaceStat
     // the same number from either block: normal, tangent and motion all change their sign
     if (face.elastic_shear) {
       c.stretch = broken.offset[end];
+      c.slip = std::abs(broken.slip[end]), c.slip_signed = broken.slip[end];
       c.memory = Contact::kPassed;
     } else {
       c.slip = std::abs(broken.offset[end]);

@@ -16,7 +16,7 @@ std::string set_of(const Scene& scene, int block, int edge) {
   return which < 0 ? std::string() : scene.layout.origins[static_cast<size_t>(which)];
 }
 
-// An intact end of a face: what parts it is elastic, unless it stands open.
+// An intact end of a face: what parts it is elastic, unless it stands open or slid at its limit.
 std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t row) {
   const auto owner = static_cast<size_t>(i.work.bond_owner[row]);
   const BondFace& face = scene.bonds.faces[owner / 2];
@@ -28,6 +28,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   out.set = set_of(scene, face.block_b, face.edge_b);
   out.length = 0.5 * face.length;
   out.opening = std::max(0.0, face_offset(scene.blocks, i.state, face).opening[owner % 2]);
+  out.slip_signed = i.state.face[owner / 2].slip[owner % 2], out.slip = std::abs(out.slip_signed);
   return out;
 }
 

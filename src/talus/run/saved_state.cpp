@@ -10,7 +10,7 @@ namespace talus {
 namespace {
 
 // A field that is added to one of these and not saved would be lost: whoever adds one comes by here.
-static_assert(sizeof(Contact) == 80 && sizeof(ContactPair) == 80 && sizeof(FaceState) == 64 &&
+static_assert(sizeof(Contact) == 80 && sizeof(ContactPair) == 80 && sizeof(FaceState) == 80 &&
                   sizeof(WorkDone) == 80 && sizeof(State) == 736 && sizeof(BoltNode) == 56 &&
                   sizeof(BoltSegment) == 72 && sizeof(BoltCrossing) == 120 && sizeof(Bolt) == 96,
               "a field was added: save it in exchange_state(), then correct the size here");
@@ -81,7 +81,7 @@ void exchange_state(Exchange& x, State& s) {
   x("state.bond_force", s.bond_force);
   x.each("state.face", s.face, [](auto& field, FaceState& f) {
     field("broken", f.broken), field("broken_step", f.broken_step);
-    field("offset", f.offset), field("mean_force", f.mean_force);
+    field("offset", f.offset), field("mean_force", f.mean_force), field("slip", f.slip);
   });
   x("state.support_force", s.support_force), x("state.support_hold", s.support_hold);
   x("state.boundary_force", s.boundary_force), x("state.boundary_static", s.boundary_static);

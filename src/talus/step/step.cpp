@@ -505,11 +505,7 @@ class Kick {
   }
 
   void remember() {
-    for (size_t r = 0; r < work_.first_contact; ++r) {
-      const Impulse& p = work_.rows.impulse[r];
-      state_.bond_force[static_cast<size_t>(work_.bond_owner[r])] = {p[0] / work_.dt_kick,
-                                                                     p[1] / work_.dt_kick};
-    }
+    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, timing(), state_);
     remember_contacts(work_.rows, work_.first_contact, work_.places, timing(), work_.workers, state_);
     const auto keep = [this](size_t row, const auto& points, double sign,
                              std::vector<std::array<double, 2>>& force) {

@@ -281,3 +281,46 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     CHECK(rows.points.empty());
   }
 }
+
+TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and unloads along ks") {
+  Scene s = pair_scene(kFrictional);
+  const double stiffness = 2e9;
+  s.model.joints[kFrictional].normal_stiffness = s.model.joints[kFrictional].shear_stiffness = stiffness;
+  s.bonds.faces[0].elastic_shear = true;
+  State state = start_state(s);
+  // the upper block (b) pushed to the right, against the tangent
+  const double off = 3e-3, dt = 1e-4, dt_kick = 1e-4;
+  state.displacement[1] = {off, -1e-4};
+  const RowTiming timing{dt, dt_kick, 0.2};
+  RowSet rows;
+  std::vector<int> owner;
+  const auto make_rows = [&] {
+    rows = {};
+    owner.clear();
+    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, timing, rows, owner);
+  };
+  make_rows();
+  REQUIRE(rows.points.size() == 2);
+
+  // both blocks stand still, end 0 at its limit, end 1 below it; the face has the compliance
+  // 1/(k l t/2) [[2, -1], [-1, 2]]
+  const double normal = stiffness * kEnd * 1e-4, limit = kCohesion * kEnd + std::tan(0.5) * normal;
+  rows.impulse = {{normal * dt_kick, -limit * dt_kick}, {normal * dt_kick, -0.9 * limit * dt_kick}};
+  remember_bonds(s.blocks, s.bonds, rows, owner, timing, state);
+  const double elastic = (2 * limit - 0.9 * limit) / (stiffness * kEnd);
+  CHECK(state.face[0].slip[0] == relative(off - elastic, 1e-12));
+  CHECK(state.face[0].slip[1] == 0);  // below its limit
+  CHECK(state.bond_force[0][1] == relative(-limit, 1e-14));
+
+  // in the next step the same forces hold it where it is: no further slip, and it has forgotten the way there
+  const auto left_over = [&](double share) {
+    make_rows();
+    const PointRows& p = rows.points[0];
+    return p.row[1].bias +
+           dt_kick * (p.row[1].compliance * -limit * share + p.cross(1) * -0.9 * limit * share);
+  };
+  CHECK(left_over(1) == doctest::Approx(0).scale(off / dt).epsilon(1e-12));
+  // moved back by a tenth of the elastic slip it carries a tenth less, not the limit
+  state.displacement[1].x -= 0.1 * elastic;
+  CHECK(left_over(0.9) == doctest::Approx(0).scale(off / dt).epsilon(1e-12));
+}

@@ -36,8 +36,8 @@ void each_field(CandidateList& c, auto& f) {
 }
 
 void each_field(FaceState& s, auto& f) {
-  auto& [broken, broken_step, offset, mean_force] = s;
-  f(broken), f(broken_step), f(offset), f(mean_force);
+  auto& [broken, broken_step, offset, mean_force, slip] = s;
+  f(broken), f(broken_step), f(offset), f(mean_force), f(slip);
 }
 
 void each_field(BoltNode& n, auto& f) {

@@ -113,13 +113,13 @@ pretension = "20 kN"
 [bolt_type.bar]
 kind = "grouted"
 diameter = "8 mm"
-yield_force = "5 kN"
-rupture_strain = 0.02
+yield_force = "1 kN"
+rupture_strain = 0.002
 spacing = "1 m"
 grout_stiffness = "1 GPa"
 bond_strength = "200 kN/m"
 dowel_stiffness = "15 MN/m"
-dowel_yield = "5 kN"
+dowel_yield = "1 kN"
 segment_length = "0.2 m"
 [[bolt]]
 name = "post"

@@ -15,7 +15,7 @@ SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties) {
   if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
     return SolverKind::kNewton;
   return points <= (2 * hard_ties > points ? kNewtonFasterTied : kNewtonFaster) ? SolverKind::kNewton
-                                                              : SolverKind::kGaussSeidel;
+                                                                                : SolverKind::kGaussSeidel;
 }
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 // examples/xianglushan, cut down to the rock around the tunnel and the first seconds of its synthetic motion.
 //
-// Left out under the sanitizers: ten times longer there, and the same code runs in shorter cases.
+// Left out under the address sanitizer: ten times longer there, and the same code runs in shorter cases.
 #ifndef __SANITIZE_ADDRESS__
 
 #include <algorithm>
@@ -56,7 +56,9 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
         }
         if (i.stage == 3 && i.stage_start) begin = i.state.time;
         if (!i.last) return;
-        outcrop = i.scene.model.histories[0], blocks = b.count;
+        blocks = b.count;
+        for (const History& h : i.scene.model.histories)
+          if (h.name == "north") outcrop = h;
         for (size_t f = 0; f < i.state.face.size(); ++f)
           if (i.state.face[f].broken)
             farthest = std::max(
@@ -65,6 +67,8 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
       },
       nullptr, file);
 
+  REQUIRE(outcrop.name == "north");
+  CHECK(stress > 0);
   CHECK(blocks > 380);
   CHECK(blocks < 480);
   for (size_t k = 0; k < 3; ++k) CHECK(r.run.stages[k].at_rest);
@@ -72,19 +76,20 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
   check_below("xianglushan in situ, change of vertical stress", stress, 5e-3, 1e-3);
   check_below("xianglushan energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 
-  // The base against d'Alembert's wave in level ground whose joints make it softer by c = c0 (1 + G/(k
-  // s))^-1/2, G = 1.94 GPa, sets of 3 m at 20 GPa/m: about 799 m/s as the run prints. The hole and what slips
-  // beside it are not in the formula.
+  // The base against d'Alembert's wave in level ground, made softer by its two sets of joints with ks every 3
+  // m. The hole and what slips beside it are not in the formula.
+  const double shear = 5e9 / (2 * 1.29), speed = std::sqrt(shear / 2850 / (1 + 2 * shear / (20e9 * 3)));
   const auto &t = r.column("t [s]"), &base = r.column("base.displacement_x");
   double off = 0, largest = 0;
   for (size_t i = 0; i < t.size(); ++i) {
     if (t[i] < begin) continue;
-    const double exact = base_displacement(outcrop, t[i] - begin, 799.2);
+    const double exact = base_displacement(outcrop, t[i] - begin, speed);
     largest = std::max(largest, std::abs(exact));
     off = std::max(off, std::abs(base[i] - exact));
   }
-  check_below("xianglushan base displacement against the ray formula", off / largest, 3e-2, 1e-2);
+  check_below("xianglushan base displacement against the ray formula", off / largest, 1e-2, 5e-3);
   // slip stays beside the tunnel (radius 4.9 m)
+  CHECK(r.run.broken_faces > 0);
   check_below("xianglushan farthest broken joint from the axis [m]", farthest, 15, 12);
 }
 

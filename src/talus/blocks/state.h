@@ -89,9 +89,8 @@ struct CandidateList {
 /// Condition of a face that was intact at the start and may break.
 struct FaceState {
   bool broken = false;
-  int64_t broken_step = -1;  // State::step before which it broke
-  std::array<double, 2>
-      offset{};  // distance of the tied points along the tangent when it broke, less slip [m]
+  int64_t broken_step = -1;            // State::step before which it broke
+  std::array<double, 2> offset{};      // tangential, of the tied points when it broke, less slip [m]
   std::array<double, 4> mean_force{};  // running mean of normal, tangential of point 0 and of point 1 [N]
   std::array<double, 2> slip{};        // along the tangent, of points at the limit of their shear [m]
 };

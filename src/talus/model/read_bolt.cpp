@@ -173,7 +173,9 @@ class BoltReader : private SectionReader {
 
   std::vector<double> angles_of(const Fields& f) {
     if (f.given("count") == f.given("angle_spacing")) {
-      findings_.error(f.where(), f.path(), "does not say how many bolts", "give one of count, angle_spacing");
+      findings_.error(f.where(), f.path(),
+                      f.given("count") ? "says twice how many bolts" : "does not say how many bolts",
+                      "give one of count, angle_spacing");
       return {};
     }
     const bool around = !f.given("angle_to");

@@ -108,8 +108,9 @@ SectionSpec stage_section() {
         .range = {.min = 0, .max = 0.1, .min_open = true},
         .default_text = "1e-5",
         .doc = "Static stages: at rest when the largest unbalanced force of a block, as share of the mean "
-               "force on "
-               "blocks, and the share of its peak velocity left are below this."},
+               "force on blocks, and the velocity left, as share of its peak or of what the forces give in "
+               "half a "
+               "step, are below this."},
        {.name = "excavate",
         .type = K::kTexts,
         .refers_to = "block, grid, region or kept opening",

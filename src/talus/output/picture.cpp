@@ -58,12 +58,43 @@ std::string colour_of(const BoltLine& line, double largest) {
                      static_cast<int>(120 * (1 - s)));
 }
 
+// Joints of less slip and opening than this share of the largest are not drawn.
+constexpr double kDrawn = 0.02;
+
+// Slipped joints as orange lines, open ones dark and dashed, and the largest of both in words.
+template <class Place>
+std::string joints_group(const std::vector<JointLine>& joints, const Place& place, double x, double y) {
+  double slip = 0, opening = 0;
+  for (const JointLine& j : joints) slip = std::max(slip, j.slip), opening = std::max(opening, j.opening);
+  if (slip == 0 && opening == 0) return "";
+  std::string out = "<g class=\"joints\" stroke-linecap=\"butt\">\n";
+  const auto draw = [&](const JointLine& j, const std::string& style) {
+    const Vec2 p = place(j.from), q = place(j.to);
+    out += fmt::format(
+        "<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\" {}><title>{}: slip {:.3g} mm, opening {:.3g} "
+        "mm</title></path>\n",
+        p.x, p.y, q.x, q.y, style, escaped(j.between), 1e3 * j.slip, 1e3 * j.opening);
+  };
+  for (const JointLine& j : joints)
+    if (j.slip > kDrawn * slip)
+      draw(j, fmt::format("stroke=\"#e6550d\" stroke-width=\"{:.2f}\"", 1 + 3 * j.slip / slip));
+  for (const JointLine& j : joints)
+    if (j.opening > kDrawn * opening)
+      draw(j, "stroke=\"#08306b\" stroke-width=\"2\" stroke-dasharray=\"3 2\"");
+  std::string words;
+  if (slip > 0) words = fmt::format("slipped joints orange, widest {:.3g} mm", 1e3 * slip);
+  if (opening > 0)
+    words += fmt::format("{}open joints dashed, at most {:.3g} mm", words.empty() ? "" : "; ", 1e3 * opening);
+  return out +
+         fmt::format("</g>\n<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n", x, y, words);
+}
+
 // Bolts as lines, and the largest tension in words. @param place  from [m] to [px]
 template <class Place>
 std::string bolts_group(const std::vector<BoltLine>& bolts, const Place& place, double x, double y) {
   if (bolts.empty()) return "";
-  double largest = 0;
-  for (const BoltLine& b : bolts) largest = std::max(largest, b.axial);
+  double largest = 0, pressed = 0;
+  for (const BoltLine& b : bolts) largest = std::max(largest, b.axial), pressed = std::max(pressed, -b.axial);
   std::string out = "<g class=\"bolts\" stroke-width=\"2.2\" stroke-linecap=\"round\">\n";
   for (const BoltLine& b : bolts) {
     const Vec2 p = place(b.from), q = place(b.to);
@@ -72,16 +103,16 @@ std::string bolts_group(const std::vector<BoltLine>& bolts, const Place& place, 
         "<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\" stroke=\"{}\"><title>{}: {:.4g} kN</title></path>\n", p.x,
         p.y, q.x, q.y, colour_of(b, largest), escaped(b.bolt), 1e-3 * b.axial);
   }
-  return out +
-         fmt::format(
-             "</g>\n<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">bolts: dark red {:.4g} kN</text>\n",
-             x, y, 1e-3 * largest);
+  return out + fmt::format(
+                   "</g>\n<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">bolts: tension, dark red "
+                   "{:.4g} kN; grey: compression, at most {:.4g} kN</text>\n",
+                   x, y, 1e-3 * largest, 1e-3 * pressed);
 }
 
 }  // namespace
 
 std::string blocks_svg(const BlockSet& blocks, const State& state, const std::string& title,
-                       const std::vector<BoltLine>& bolts) {
+                       const std::vector<BoltLine>& bolts, const std::vector<JointLine>& joints) {
   // places relative to the first block: no digits are lost far from the origin
   std::vector<Vec2> corner;
   for (int i = 0; i < blocks.count; ++i) {
@@ -119,7 +150,8 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
     const Vec2 q = p - blocks.centroid[0];
     return Vec2{kMargin + scale * (q.x - box.min.x), kHead + scale * (box.max.y - q.y)};
   };
-  out += "</g>\n" + bolts_group(bolts, place, kWidth - kMargin, y + 4);
+  out += "</g>\n" + joints_group(joints, place, kWidth - kMargin, bolts.empty() ? y + 4 : y - 13);
+  out += bolts_group(bolts, place, kWidth - kMargin, y + 4);
   out += fmt::format(
       "<path d=\"M{0} {1:.1f}h{2:.2f}\" stroke=\"black\" stroke-width=\"3\"/>\n<text x=\"{3:.1f}\" "
       "y=\"{4:.1f}\">{5:g} m</text>\n</svg>\n",

@@ -39,6 +39,7 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
   out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
   out.joint = c.joint;
   out.set = set_of(scene, c.key.block_b, c.key.edge);
+  if (out.set.empty()) out.set = set_of(scene, c.key.block_a, c.key.vertex);
   out.length = c.length;
   out.slip = c.slip, out.slip_signed = c.slip_signed;
   if (c.joint >= 0) out.rise = dilation_rise(scene.model.joints[static_cast<size_t>(c.joint)], c.slip);
@@ -72,12 +73,39 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size
   return out;
 }
 
+std::vector<JointLine> joint_lines(const Scene& scene, const Instant& i) {
+  std::vector<JointLine> lines;
+  const auto add = [&](size_t row, size_t other) {
+    const auto p = joint_point(scene, i, row), q = joint_point(scene, i, other);
+    if (!p || !q) return;
+    JointLine line;
+    line.slip = std::max(p->residual_slip(), q->residual_slip());
+    for (const auto& end : {*p, *q})
+      if (end.state == JointState::kOpen) line.opening = std::max(line.opening, end.opening);
+    if (line.slip == 0 && line.opening == 0) return;
+    const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
+    line.between = fmt::format("{} - {}", name(p->block_a), name(p->block_b));
+    line.from = p->point, line.to = q->point;
+    lines.push_back(std::move(line));
+  };
+  for (size_t r = 0; r + 1 < i.work.first_contact; r += 2) add(r, r + 1);  // the two ends of a face
+  for (const ContactPair& pair : i.state.pairs) {
+    for (int k = 0; k < pair.count; ++k) {
+      const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
+      if (partner > k)
+        add(i.work.first_contact + static_cast<size_t>(pair.begin + k),
+            i.work.first_contact + static_cast<size_t>(pair.begin + partner));
+    }
+  }
+  return lines;
+}
+
 void JointSummary::add(const JointPoint& p) {
   ++points;
   intact += p.state == JointState::kIntact;
   slipped += p.state == JointState::kSlipped;
   open += p.state == JointState::kOpen;
-  if (p.slip > largest.slip) largest = p;
+  if (!p.face && p.slip > largest.slip) largest = p;  // faces have not slipped before they break
   if (p.state == JointState::kOpen) widest = std::max(widest, p.opening);
 }
 

@@ -8,6 +8,7 @@
 
 #include "talus/contact/joint_state.h"
 #include "talus/output/archive.h"
+#include "talus/output/joint_lines.h"
 #include "talus/run/instant.h"
 
 namespace talus {
@@ -34,6 +35,9 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant
 
 /// Where a point of rows is now [m].
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
+
+/// The joints of an instant that slipped or stand open, from end to end.
+std::vector<JointLine> joint_lines(const Scene& scene, const Instant& instant);
 
 struct JointSummary {
   double time = 0;

@@ -217,7 +217,8 @@ void Recorder::at(const Instant& i) {
                blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
   if (i.last)
     write_file(folder_ / "blocks_end.svg",
-               blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
+               blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage),
+                          joint_lines(scene_, i)));
   if (i.last || (i.stage_start && i.stage > 0)) write_bolts(i);
   if (wall_now() - last_flush_ > 1) {
     history_file_.flush();

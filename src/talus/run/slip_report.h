@@ -36,7 +36,7 @@ class SlipList {
 std::string slips_header();
 std::string slips_row(const Scene& scene, const SlippedJoint& joint, const std::string& stage, double time);
 
-/// "wall[0,1] - wall[0,0], joint set "bed", at (2, 1.5)" of a point.
+/// "wall[0,1] - wall[0,0], set "bed", at (2, 1.5)" of a point.
 std::string place_text(const Scene& scene, const JointPoint& point);
 
 }  // namespace talus

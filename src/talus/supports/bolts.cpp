@@ -91,8 +91,8 @@ void check_excavation(const Model& model, const BlockSet& blocks, const BoltInpu
     findings.error(input.where, "bolt." + input.name,
                    fmt::format("is tied to block \"{}\", which stage \"{}\" excavates", blocks.name[k],
                                model.stages[stage].name),
-                   "shorten it so that it begins and ends in rock that stays, or let its `stage` be that one "
-                   "or a later one");
+                   "let its `stage` be that one or a later one, or move it so that it is tied to rock that "
+                   "stays: an anchored bolt at both ends, a grouted one all along");
     return;
   }
 }

@@ -165,7 +165,7 @@ TEST_CASE("wrong patterns of bolts") {
       {"no count", pattern(kRadial), {"bolt_pattern.p: does not say how many bolts"}},
       {"two counts",
        pattern(kRadial + "count = 3\nangle_spacing = \"10 deg\"\n"),
-       {"bolt_pattern.p: does not say how many bolts"}},
+       {"bolt_pattern.p: says twice how many bolts"}},
       {"angles backwards",
        pattern(kRadial + "count = 3\nangle_from = \"90 deg\"\nangle_to = \"10 deg\"\n"),
        {"angle_to: must lie above angle_from"}},

@@ -218,3 +218,20 @@ TEST_CASE("wrong loads") {
        {"load.l.edge: must be a segment: two different points"}},
   });
 }
+
+TEST_CASE("use = false leaves a boundary out, an override brings it back; its keys are read all the same") {
+  const auto boundaries = [](const std::string& text, const std::vector<std::string>& overrides) {
+    Findings findings("model.toml", text);
+    return prepare_run("model.toml", text, overrides, findings).scene.model.boundaries.size();
+  };
+  const std::string text = boundary(kBase + "kind = \"viscous\"\nuse = false\n");
+  CHECK(boundaries(boundary(kBase + "kind = \"viscous\"\n"), {}) == 1);
+  CHECK(boundaries(text, {}) == 0);
+  CHECK(boundaries(text, {"boundary.b.use=true"}) == 1);
+  check_cases({
+      {"a wrong key",
+       boundary(kBase + "kind = \"viscos\"\nuse = false\n"),
+       {"boundary.b.kind: \"viscos\" is not known"}},
+      {"no truth", boundary(kBase + "kind = \"viscous\"\nuse = 3\n"), {"boundary.b.use:", "true or false"}},
+  });
+}

@@ -331,6 +331,8 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
   check_below("blast_hole energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
+// Left out under the address sanitizer: two minutes there, and the same code runs in shorter cases.
+#ifndef __SANITIZE_ADDRESS__
 TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedge at the crest farthest") {
   std::vector<Vec2> start;  // displacement of each block as shaking begins
   double base = 0, crest = 0, slip = 0;
@@ -369,6 +371,7 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   check_close("shaken_slope largest slip between neighbours [m]", slip, 0.195, 5e-2, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
+#endif
 
 TEST_CASE("example bolted_slope: the bolts hold what would slide") {
   const CaseResult r = run_example("bolted_slope");

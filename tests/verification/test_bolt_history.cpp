@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "support/drawn_blocks.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -24,27 +25,7 @@ std::string drawn_text(const std::vector<double>& elongations) {
     time += fmt::format(", {:.10g}, {:.10g}", begin + 0.1, begin + 0.2);
     value += fmt::format(", {0:.17g}, {0:.17g}", elongations[i]);
   }
-  return fmt::format(R"(talus = 1
-[material.rock]
-density = 2500
-[history.draw]
-time = [{}]
-value = [{}]
-[[block]]
-name = "left"
-polygon = [[-3, -1], [0, -1], [0, 1], [-3, 1]]
-material = "rock"
-kind = "fixed"
-[[block]]
-name = "right"
-polygon = [[0, -1], [3, -1], [3, 1], [0, 1]]
-material = "rock"
-kind = "rigid"
-[[support]]
-name = "drawn"
-edge = [[3, -1], [3, 1]]
-x = {{ displacement = "draw" }}
-[bolt_type.bar]
+  return drawn_blocks(time, value) + fmt::format(R"([bolt_type.bar]
 kind = "anchored"
 diameter = "25 mm"
 yield_force = {}
@@ -63,7 +44,7 @@ kind = "dynamic"
 duration = {}
 time_step = 1e-3
 )",
-                     time, value, kYield, 0.2 * static_cast<double>(elongations.size()));
+                                                 kYield, 0.2 * static_cast<double>(elongations.size()));
 }
 
 }  // namespace

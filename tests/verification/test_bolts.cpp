@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/drawn_blocks.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/supports/bar.h"
@@ -64,27 +65,7 @@ double continuous(double head) {
 // Two fixed-shape blocks on either side of x = 0; the right one is drawn away by 2 x head. By symmetry the
 // bar slips by `head` at the joint on either side.
 std::string pull_text(int n, double head) {
-  return fmt::format(R"(talus = 1
-[material.rock]
-density = 2500
-[history.draw]
-time = [0, 0.1]
-value = [0, {:.17g}]
-[[block]]
-name = "left"
-polygon = [[-3, -1], [0, -1], [0, 1], [-3, 1]]
-material = "rock"
-kind = "fixed"
-[[block]]
-name = "right"
-polygon = [[0, -1], [3, -1], [3, 1], [0, 1]]
-material = "rock"
-kind = "rigid"
-[[support]]
-name = "drawn"
-edge = [[3, -1], [3, 1]]
-x = {{ displacement = "draw" }}
-[bolt_type.bar]
+  return drawn_blocks("0, 0.1", fmt::format("0, {:.17g}", 2 * head)) + fmt::format(R"([bolt_type.bar]
 kind = "grouted"
 diameter = "25 mm"
 grout_stiffness = "1 GPa"
@@ -109,7 +90,7 @@ kind = "dynamic"
 duration = 0.12
 time_step = 1e-3
 )",
-                     2 * head, kLength / n);
+                                                                                   kLength / n);
 }
 
 double pulled(int n, double head) {

@@ -251,7 +251,6 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
 
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
                     const std::vector<int>& owner, const RowTiming& timing, State& state) {
-  const double factor = timing.dt / position_factor(timing.alpha);
   for (size_t r = 0; r < owner.size(); ++r) {
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
@@ -259,11 +258,9 @@ void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& 
     state.bond_force[point] = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
     if (p.row[1].compliance == 0 || !slides(p, impulse)) continue;
     // what is off after the step, but for the elastic slip under its force
-    double elastic = p.row[1].compliance * impulse[1];
-    if (p.partner >= 0) elastic += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
     state.face[point / 2].slip[point % 2] =
         face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
-        timing.dt * relative_velocity(p, state.rate)[1] + elastic * factor;
+        timing.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, timing);
   }
 }
 

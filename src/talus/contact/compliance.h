@@ -35,4 +35,12 @@ inline void add_compliance(const JointProperty& joint, double half_area, bool in
   }
 }
 
+/// Elastic slip of point r of a compliant joint under the impulses of a step, along the tangent [m].
+inline double elastic_slip(const RowSet& rows, size_t r, const RowTiming& timing) {
+  const PointRows& p = rows.points[r];
+  double rate = p.row[1].compliance * rows.impulse[r][1];
+  if (p.partner >= 0) rate += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
+  return -rate * (timing.dt / position_factor(timing.alpha));
+}
+
 }  // namespace talus

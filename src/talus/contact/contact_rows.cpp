@@ -127,21 +127,19 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
 
 void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
                        const RowTiming& timing, const Workers& workers, State& state) {
-  const double factor = timing.dt / position_factor(timing.alpha);
   workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const PointRows& p = rows.points[first + i];
       const Impulse& impulse = rows.impulse[first + i];
       Contact& c = state.contacts[i];
-      double elastic = p.row[1].compliance * impulse[1];
-      if (p.partner >= 0) elastic += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
+      const double elastic = elastic_slip(rows, first + i, timing);
       const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
       const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0;
       c.touched = c.touched || held;
       if (held && slides(p, impulse)) {
         // the place where it would stick goes along with the slip that is not elastic
         const double gone =
-            off_anchor(c, place[i].slip) + timing.dt * relative_velocity(p, state.rate)[1] + elastic * factor;
+            off_anchor(c, place[i].slip) + timing.dt * relative_velocity(p, state.rate)[1] - elastic;
         c.slip += std::abs(gone), c.slip_signed += gone;
       }
       if (slides(p, impulse))
@@ -149,7 +147,7 @@ void remember_contacts(const RowSet& rows, size_t first, const std::vector<Conta
       else if (!anchored)
         c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
       c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
-      c.stretch = -elastic * factor;
+      c.stretch = elastic;
       c.memory = Contact::kWhole;
     }
   });

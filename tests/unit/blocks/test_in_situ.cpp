@@ -17,15 +17,18 @@ const Mat2 kT0{-3e6, 1.2e6, 1.2e6, -5e6};
 
 double size_of(const Mat2& m) { return std::sqrt(contract(m, m)); }
 
-// Rock of 10 m x 20 m with hard joints, as laid by the ground: k0 on rollers, weight of 1000 m above.
-const std::string kColumn = R"(talus = 1
+// What both grounds are made of.
+const std::string kRock = R"(talus = 1
 [model]
 gravity = [0, -10]
 [material.rock]
 density = 2500
 young = "5 GPa"
 poisson = 0.25
-[joint.glue]
+)";
+
+// Rock of 10 m x 20 m with hard joints, as laid by the ground: k0 on rollers, weight of 1000 m above.
+const std::string kColumn = kRock + R"([joint.glue]
 kind = "bonded"
 [in_situ]
 level = 20
@@ -69,14 +72,7 @@ duration = 1
 )";
 
 // The same ground with two joint sets of rough rock and a tunnel's rock still in place, glued in.
-const std::string kJointed = R"(talus = 1
-[model]
-gravity = [0, -10]
-[material.rock]
-density = 2500
-young = "5 GPa"
-poisson = 0.25
-[joint.natural]
+const std::string kJointed = kRock + R"([joint.natural]
 friction_angle = "45 deg"
 normal_stiffness = "20 GPa/m"
 shear_stiffness = "20 GPa/m"

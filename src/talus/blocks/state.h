@@ -71,11 +71,12 @@ struct ContactPair {
   int a = -1, b = -1;        // a < b
   int begin = 0, count = 0;  // contact points, in State::contacts
   int face = -1;             // first of their faces in the bond set, -1: none
-  bool from_start = false;  // near each other since the first step: joints between them carry in-situ stress,
-  bool shares_face = false;  // and they have a face in common since then: not at a crossing of joints only
-  double reuse = -1;         // [m]; < 0: not sought yet
-  Vec2 arm;                  // reference arm, on the larger block, of the centroid of the smaller one then
-  Mat2 turn;                 // F of the larger block, inverted, times F of the smaller one then
+  // Joints carry the stress of the ground between blocks that share a face since the first step, and where
+  // blocks that were near each other then come to share one.
+  bool from_start = false, shares_face = false;
+  double reuse = -1;  // [m]; < 0: not sought yet
+  Vec2 arm;           // reference arm, on the larger block, of the centroid of the smaller one then
+  Mat2 turn;          // F of the larger block, inverted, times F of the smaller one then
 };
 
 /// Where the blocks were when the list of pairs was made.

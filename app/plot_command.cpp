@@ -37,34 +37,57 @@ std::string full_title(const CsvTable& table, const std::string& column) {
   return table.columns[static_cast<size_t>(values - table.values.data())];
 }
 
-void draw_column(const PlotArguments& args, const std::vector<CsvTable>& tables, const std::string& column,
-                 const fs::path& stem) {
+// The name that the legend gives a curve: the runs where one column is drawn, the monitors where one run is.
+std::string label_of(const PlotArguments& args, size_t run, size_t column, const std::string& monitor) {
+  const size_t given = args.columns.size() > 1 && args.folders.size() == 1 ? column : run;
+  const std::string label = given < args.labels.size()
+                                ? args.labels[given]
+                                : fs::path(args.folders[run]).lexically_normal().filename().string();
+  if (args.columns.size() < 2) return label;
+  if (args.folders.size() > 1) return label + ", " + monitor;
+  return given < args.labels.size() ? label : monitor;
+}
+
+// The reference's column of this title, else its second.
+const std::vector<double>& reference_values(const CsvTable& reference, const std::string& title) {
+  const auto same = std::find(reference.columns.begin(), reference.columns.end(), title);
+  const size_t c = same == reference.columns.end() ? std::min<size_t>(1, reference.columns.size() - 1)
+                                                   : static_cast<size_t>(same - reference.columns.begin());
+  return reference.values[c];
+}
+
+void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables,
+                  const std::vector<std::string>& columns, const fs::path& stem) {
   plot::Figure figure;
-  const std::string title = full_title(tables[0], column);
-  const ColumnName name = split_column(title);
-  figure.title = args.title.empty() ? name.monitor + ": " + name.quantity.substr(0, name.quantity.find(" ["))
-                                    : args.title;
+  std::vector<std::string> titles;
+  for (const std::string& column : columns) titles.push_back(full_title(tables[0], column));
+  const ColumnName name = split_column(titles[0]);
+  const std::string quantity = name.quantity.substr(0, name.quantity.find(" ["));
+  figure.title = !args.title.empty()  ? args.title
+                 : columns.size() > 1 ? quantity
+                                      : name.monitor + ": " + quantity;
   figure.x_label = args.time_unit == "ms" ? "t [ms]" : "t [s]";
   figure.y_label = name.quantity;
   const double scale = args.time_unit == "ms" ? 1e3 : 1;
-  for (size_t i = 0; i < tables.size(); ++i) {
-    const std::string label = i < args.labels.size()
-                                  ? args.labels[i]
-                                  : fs::path(args.folders[i]).lexically_normal().filename().string();
-    const std::vector<double> t = in_unit(tables[i].values[0], scale);
-    if (!args.raw.empty())
-      figure.curves.push_back({label + " (each step)", t, tables[i].column(args.raw), static_cast<int>(i),
-                               plot::Style::kThin, false});
-    figure.curves.push_back(
-        {label, t, tables[i].column(column), static_cast<int>(i), plot::Style::kSolid, true});
-    if (i < args.references.size()) {
+  for (size_t c = 0; c < columns.size(); ++c) {
+    const ColumnName of = split_column(titles[c]);
+    if (of.quantity != name.quantity)
+      throw Error(kExitUsage,
+                  fmt::format("one figure has one axis: \"{}\" and \"{}\" are different quantities",
+                              titles[0], titles[c]));
+    for (size_t i = 0; i < tables.size(); ++i) {
+      const int color = static_cast<int>(c * tables.size() + i);
+      const std::string label = label_of(args, i, c, of.monitor);
+      const std::vector<double> t = in_unit(tables[i].values[0], scale);
+      if (!args.raw.empty())
+        figure.curves.push_back(
+            {label + " (each step)", t, tables[i].column(args.raw), color, plot::Style::kThin, false});
+      figure.curves.push_back({label, t, tables[i].column(columns[c]), color, plot::Style::kSolid, true});
+      if (i >= args.references.size()) continue;
       const CsvTable reference = read_csv(args.references[i]);
-      const auto same = std::find(reference.columns.begin(), reference.columns.end(), title);
-      const size_t c = same == reference.columns.end()
-                           ? std::min<size_t>(1, reference.columns.size() - 1)
-                           : static_cast<size_t>(same - reference.columns.begin());
       figure.curves.push_back({"dashed: " + args.reference_label, in_unit(reference.values[0], scale),
-                               reference.values[c], static_cast<int>(i), plot::Style::kDashed, i == 0});
+                               reference_values(reference, titles[c]), color, plot::Style::kDashed,
+                               i + c == 0});
     }
   }
   if (args.limit_y.size() == 2) figure.y_min = args.limit_y[0], figure.y_max = args.limit_y[1];
@@ -81,10 +104,15 @@ void draw_column(const PlotArguments& args, const std::vector<CsvTable>& tables,
 
 void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
   verb.add_option("DIR", args.folders, "result folders; several are overlaid")->required();
-  verb.add_option("-c,--column", args.column,
-                  "column of histories.csv, or its beginning; without: a figure of every column");
+  verb.add_option(
+          "-c,--column", args.columns,
+          "column of histories.csv, or its beginning; several, of one quantity, are overlaid; without: "
+          "a figure of every column")
+      ->allow_extra_args(false);
   verb.add_option("-o,--output", args.output, "path of the figure without ending; without: DIR/plots/COLUMN");
-  verb.add_option("-l,--label", args.labels, "legend text, one per folder in their order")
+  verb.add_option(
+          "-l,--label", args.labels,
+          "legend text, one per folder in their order; with one folder and several columns, one per column")
       ->allow_extra_args(false);
   verb.add_option("-r,--reference", args.references,
                   "CSV with times and the column to compare with, one per folder, drawn dashed")
@@ -107,12 +135,15 @@ int plot_command(const PlotArguments& args) {
   std::vector<CsvTable> tables;
   for (const std::string& folder : args.folders)
     tables.push_back(read_csv(fs::path(folder) / "histories.csv"));
-  if (!args.column.empty()) {
-    const fs::path stem = args.output.empty() ? fs::path(args.folders[0]) / "plots" /
-                                                    split_column(full_title(tables[0], args.column)).monitor
-                                              : fs::path(args.output);
+  if (!args.columns.empty()) {
+    if (args.columns.size() > 1 && args.output.empty())
+      throw Error(kExitUsage, "several columns in one figure need -o, the path of the figure");
+    const fs::path stem = args.output.empty()
+                              ? fs::path(args.folders[0]) / "plots" /
+                                    split_column(full_title(tables[0], args.columns[0])).monitor
+                              : fs::path(args.output);
     if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
-    draw_column(args, tables, args.column, stem);
+    draw_columns(args, tables, args.columns, stem);
     return kExitOk;
   }
   if (!args.output.empty()) throw Error(kExitUsage, "-o needs -c: without a column there are many figures");
@@ -120,7 +151,7 @@ int plot_command(const PlotArguments& args) {
   fs::create_directories(folder);
   for (size_t c = 1; c < tables[0].columns.size(); ++c) {
     const std::string& column = tables[0].columns[c];
-    draw_column(args, tables, column, folder / column.substr(0, column.find(" [")));
+    draw_columns(args, tables, {column}, folder / column.substr(0, column.find(" [")));
   }
   return kExitOk;
 }

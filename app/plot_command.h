@@ -8,8 +8,8 @@
 namespace talus::app {
 
 struct PlotArguments {
-  std::vector<std::string> folders, labels, references;
-  std::string column, output, title, raw, reference_label, time_unit;
+  std::vector<std::string> folders, columns, labels, references;
+  std::string output, title, raw, reference_label, time_unit;
   std::vector<double> limit_y, limit_t;
 };
 

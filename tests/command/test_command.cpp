@@ -203,6 +203,16 @@ TEST_CASE("command: plot draws a column, several runs, and names what is missing
           .code == 0);
   CHECK(fs::file_size(out + "/two.png") > 5000);
   has(read_text_file(out + "/two.svg"), "<svg");
+  const auto overlay = [&](const std::string& columns) {
+    return shell(f, fmt::format("$talus plot {} {}", out, columns));
+  };
+  const std::string pair = "-c impact.mean_normal_force -c impact.normal_force";
+  const Outcome mixed = overlay(pair + " -o " + out + "/pair");
+  CHECK(mixed.code == 2);
+  has(mixed.text, "different quantities");
+  has(overlay(pair).text, "several columns in one figure need -o");
+  CHECK(overlay("-c impact.force_x -c impact.force_x -o " + out + "/pair").code == 0);
+  has(read_text_file(out + "/pair.svg"), "impact");
   const Outcome all = shell(f, fmt::format("$talus plot {}", out));
   CHECK(all.code == 0);
   CHECK(fs::exists(out + "/plots/impact.normal_force.svg"));

@@ -79,7 +79,8 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
     if (m.kind == MonitorKind::kPoint || m.kind == MonitorKind::kConvergence)
       check_point(layout, m.point, m.where, path, findings);
     if (m.kind == MonitorKind::kConvergence) check_point(layout, m.other, m.where, path, findings);
-    if (m.relative_to_point) check_point(layout, m.other, m.where_relative, path, findings);
+    for (const Vec2 point : m.relative_to_points)
+      check_point(layout, point, m.where_relative, path, findings);
     if (!m.relative_to.empty()) check_reference(model, layout, m, findings);
     if (m.kind == MonitorKind::kBlock) {
       const std::vector<int> called = layout.blocks_called(m.target_a);

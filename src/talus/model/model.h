@@ -247,11 +247,11 @@ struct MonitorInput {
   std::string name;
   MonitorKind kind = MonitorKind::kPoint;
   Vec2 point;
-  std::string target_a, target_b;  // names of block, support, bolt, or the two contact partners
-  double window = 0;               // [s]
-  Vec2 other;                      // convergence: the second point; points: `other` when relative_to_point
-  std::string relative_to;         // support, free-field boundary, block or group; "": none
-  bool relative_to_point = false;
+  std::string target_a, target_b;        // names of block, support, bolt, or the two contact partners
+  double window = 0;                     // [s]
+  Vec2 other;                            // convergence: the second point
+  std::string relative_to;               // support, free-field boundary, block or group; "": none
+  std::vector<Vec2> relative_to_points;  // the mean of these; empty: none
   Where where, where_relative;
 };
 

@@ -432,6 +432,11 @@ class ModelReader : private SectionReader {
       } else if (f.given("bolt")) {
         m.kind = MonitorKind::kBolt;
         m.target_a = f.get<std::string>("bolt");
+        if (is_left_out("bolt", m.target_a) || is_left_out("bolt_pattern", m.target_a)) {
+          findings_.warning(f.where("bolt"), f.path_of("bolt"),
+                            fmt::format("\"{}\" is left out (use = false): nothing is recorded", m.target_a));
+          return;
+        }
         check_bolt_name(f, m.target_a);
       } else {
         m.kind = MonitorKind::kContact;
@@ -451,16 +456,21 @@ class ModelReader : private SectionReader {
   }
 
   void read_reference(const Fields& f, MonitorInput& m) {
+    int given = 0;
+    for (const char* key : {"relative_to", "relative_to_point", "relative_to_points"})
+      if (f.given(key)) m.where_relative = f.where(key), ++given;
     m.relative_to = f.get<std::string>("relative_to");
-    m.relative_to_point = f.given("relative_to_point");
-    m.other = f.get<Vec2>("relative_to_point");
-    m.where_relative = m.relative_to_point ? f.where("relative_to_point") : f.where("relative_to");
-    if (m.relative_to_point && f.given("relative_to"))
+    m.relative_to_points = f.get<std::vector<Vec2>>("relative_to_points");
+    if (f.given("relative_to_point")) m.relative_to_points = {f.get<Vec2>("relative_to_point")};
+    if (given > 1)
       findings_.error(m.where_relative, f.path(), "is relative to two things",
-                      "give relative_to or relative_to_point");
-    if ((m.relative_to_point || f.given("relative_to")) && !f.given("point"))
+                      "give one of relative_to, relative_to_point, relative_to_points");
+    if (f.given("relative_to_points") && m.relative_to_points.size() < 2)
+      findings_.error(m.where_relative, f.path_of("relative_to_points"), "needs two points or more",
+                      "write relative_to_points = [[x0, y0], [x1, y1]]; relative_to_point is for one");
+    if (given > 0 && !f.given("point"))
       findings_.error(m.where_relative, f.path(), "is relative to something, but no point",
-                      "relative_to and relative_to_point belong to point");
+                      "relative_to, relative_to_point and relative_to_points belong to point");
   }
 
   void read_output() {

@@ -91,6 +91,7 @@ SectionSpec bolt_section() {
       "A rock bolt along a straight line. It is tied to the blocks as they lie when its stage begins; an "
       "anchored or grouted one must not be tied to a block that a later stage excavates.",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+       use_key(),
        {.name = "from", .type = K::kVector, .dimension = D::kLength, .required = true, .doc = "Its head."},
        {.name = "to", .type = K::kVector, .dimension = D::kLength, .required = true, .doc = "Its end."},
        {.name = "type", .type = K::kName, .required = true, .refers_to = "bolt_type", .doc = "What it is."},
@@ -107,10 +108,7 @@ SectionSpec pattern_section() {
       "Many bolts of one type, called NAME[0], NAME[1] and so on. Give `opening`, or `center` and `radius` "
       "(radial), or `from` and `to` (a row).",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-       {.name = "use",
-        .type = K::kBool,
-        .default_text = "true",
-        .doc = "`false`: left out, as if it were not in the file."},
+       use_key(),
        {.name = "kind",
         .type = K::kChoice,
         .required = true,

@@ -15,10 +15,7 @@ SectionSpec boundary_section() {
       "with nothing on their other side; each gives half its length to either end corner. Give `edge` or "
       "`along`.",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-       {.name = "use",
-        .type = K::kBool,
-        .default_text = "true",
-        .doc = "`false`: left out, as if it were not in the file."},
+       use_key(),
        {.name = "kind",
         .type = K::kChoice,
         .required = true,

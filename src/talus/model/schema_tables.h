@@ -29,6 +29,14 @@ inline KeySpec stages_key() {
           .doc = "Names of the stages in which it acts; none: all."};
 }
 
+/// The key `use` of what a variant of a model leaves out.
+inline KeySpec use_key() {
+  return {.name = "use",
+          .type = K::kBool,
+          .default_text = "true",
+          .doc = "`false`: left out, as if it were not in the file."};
+}
+
 /// What a block can be, in the order of BlockKind.
 inline const std::vector<std::string>& block_kinds() {
   static const std::vector<std::string> kinds{"deformable", "rigid", "fixed", "driven"};

@@ -71,6 +71,17 @@ class SectionReader {
     }
   }
 
+  // Whether the file has a [[section]] of this name that `use = false` leaves out.
+  bool is_left_out(const std::string& section, const std::string& name) const {
+    const toml::array* list = source_.root.get_as<toml::array>(section);
+    if (!list) return false;
+    for (const toml::node& entry : *list) {
+      const toml::table* t = entry.as_table();
+      if (t && (*t)["name"].value_or(std::string()) == name && !(*t)["use"].value_or(true)) return true;
+    }
+    return false;
+  }
+
   template <class List>
   static int index_of(const List& list, const std::string& name) {
     for (size_t i = 0; i < list.size(); ++i)

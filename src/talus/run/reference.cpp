@@ -10,24 +10,27 @@ PointMotion motion_of(const Instant& i, int block, Vec2 arm) {
 
 Reference::Reference(const Scene& scene, const MonitorInput& m) : height_(m.point.y) {
   const BlockSet& blocks = scene.blocks;
-  if (m.relative_to_point) {
-    const int block = block_of_point(scene.layout, m.other);
-    parts_.push_back({block, m.other - blocks.centroid[static_cast<size_t>(block)], 1});
+  for (const Vec2 point : m.relative_to_points) {
+    const int block = block_of_point(scene.layout, point);
+    parts_.push_back({block, point - blocks.centroid[static_cast<size_t>(block)], 1});
   }
-  if (m.relative_to.empty()) return;
-  for (const SupportedPoint& p : scene.supported)
-    if (scene.model.supports[static_cast<size_t>(p.support)].name == m.relative_to)
-      parts_.push_back({p.block, p.arm, 1});
-  const std::vector<GroundColumn>& columns = scene.boundaries.free_field.columns;
-  for (size_t c = 0; c < columns.size() && parts_.empty(); ++c)
-    if (scene.model.boundaries[static_cast<size_t>(columns[c].boundary)].name == m.relative_to)
-      column_ = static_cast<int>(c);
-  if (parts_.empty() && column_ < 0)
-    for (const int b : scene.layout.blocks_called(m.relative_to))
-      parts_.push_back({b, {}, blocks.mass[static_cast<size_t>(b)]});
+  if (!m.relative_to.empty()) refer_to(scene, m.relative_to);
   double sum = 0;
   for (const Part& p : parts_) sum += p.weight;
   for (Part& p : parts_) p.weight /= sum;
+}
+
+void Reference::refer_to(const Scene& scene, const std::string& name) {
+  for (const SupportedPoint& p : scene.supported)
+    if (scene.model.supports[static_cast<size_t>(p.support)].name == name)
+      parts_.push_back({p.block, p.arm, 1});
+  const std::vector<GroundColumn>& columns = scene.boundaries.free_field.columns;
+  for (size_t c = 0; c < columns.size() && parts_.empty(); ++c)
+    if (scene.model.boundaries[static_cast<size_t>(columns[c].boundary)].name == name)
+      column_ = static_cast<int>(c);
+  if (!parts_.empty() || column_ >= 0) return;
+  for (const int b : scene.layout.blocks_called(name))
+    parts_.push_back({b, {}, scene.blocks.mass[static_cast<size_t>(b)]});
 }
 
 PointMotion Reference::at(const Instant& i) const {

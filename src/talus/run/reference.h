@@ -1,6 +1,6 @@
 #pragma once
-// What the motion of a point is measured against: another point, the mean of a support or of blocks, a free
-// field at its height.
+// What the motion of a point is measured against: another point, the mean of points, of a support or of
+// blocks, a free field at its height.
 
 #include <string>
 #include <vector>
@@ -30,6 +30,9 @@ class Reference {
     Vec2 arm;
     double weight;
   };
+  // A support, a free field, blocks of that name.
+  void refer_to(const Scene& scene, const std::string& name);
+
   std::vector<Part> parts_;
   int column_ = -1;  // of the free field
   double height_ = 0;

@@ -84,6 +84,10 @@ name = "point"
 point = [3.5, 1]
 relative_to_point = [0.5, 0.5]
 [[monitor]]
+name = "points"
+point = [3.5, 1]
+relative_to_points = [[0.5, 0.5], [3.5, 1.5]]
+[[monitor]]
 name = "group"
 point = [3.5, 1]
 relative_to = "pair"
@@ -92,6 +96,8 @@ relative_to = "pair"
   check_close("monitor against a support [m]", last("base.displacement_x"), 0.4, 1e-12, 1e-14);
   check_close("monitor against a point, along x [m]", last("point.displacement_x"), 0.6, 1e-12, 1e-14);
   check_close("monitor against a point [m/s]", last("point.velocity_x"), 3, 1e-12, 1e-14);
+  check_close("monitor against the mean of points, along x [m]", last("points.displacement_x"), 0.3, 1e-12,
+              1e-14);
   check_close("monitor against a group, along y [m]", last("group.displacement_y"), -0.4, 1e-12, 1e-14);
 }
 
@@ -155,6 +161,8 @@ TEST_CASE("wrong monitors are found before the first step") {
   told("point = [3.5, 1]\nrelative_to_point = [9, 9]\n", {"(9, 9) lies outside every block"});
   told("point = [3.5, 1]\nrelative_to = \"base\"\nrelative_to_point = [0.5, 0.5]\n",
        {"relative to two things"});
+  told("point = [3.5, 1]\nrelative_to_points = [[0.5, 0.5], [9, 9]]\n", {"(9, 9) lies outside every block"});
+  told("point = [3.5, 1]\nrelative_to_points = [[0.5, 0.5]]\n", {"needs two points or more"});
   told("block = \"left\"\nrelative_to = \"base\"\n", {"belong to point"});
   told("convergence = [[0.5, 0.5], [0.5, 0.5]]\n", {"two different points"});
   told("convergence = [[0.5, 0.5], [2, 0.5]]\n", {"(2, 0.5) lies outside every block"});

@@ -147,10 +147,10 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const double in_front = c.along * c.length + before, behind = beyond - (c.along - 1) * c.length;
       const bool above = in_front >= 0 && behind >= 0;
       clearance_ = std::min({clearance_, std::abs(in_front), std::abs(behind)});
-      // a corner that comes past the end of an edge and would be inside the block after the look-ahead:
-      // corner runs into corner
+      // a corner that comes past the end of an edge and would be clearly inside the block after the
+      // look-ahead: corner runs into corner
       const double along_then = c.along + look_ahead_ * dot(turn_left(c.normal), u) / c.length;
-      const bool comes_in = c.gap > -same_ && expected < 0 && along_then >= 0 && along_then <= 1;
+      const bool comes_in = c.gap > -same_ && expected < -same_ && along_then >= 0 && along_then <= 1;
       if (!above && !comes_in) continue;
       if (!a.may_enter(v, c.normal)) continue;
       by_velocity_ = by_velocity_ || !above;
@@ -162,6 +162,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.point.gap = c.gap;
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
       hit.expected = expected;
+      hit.coming = !above;
       if (c.along * c.length < same_) hit.at_corner = e;
       if ((1 - c.along) * c.length < same_) hit.at_corner = b.after(e);
       if (hit.at_corner >= 0) clearance_ = 0;
@@ -247,6 +248,8 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
   };
   for (size_t i = 0; i < hits_.size(); ++i) {
     for (size_t j = i + 1; j < hits_.size(); ++j) {
+      // the overlap is that of now: a corner beside it must not take the place of the end that it follows
+      if (hits_[i].coming || hits_[j].coming) continue;
       for (const Span& span : spans_[i]) {
         if (std::find(spans_[j].begin(), spans_[j].end(), span) == spans_[j].end()) continue;
         ContactPoint &x = hits_[i].point, &y = hits_[j].point;

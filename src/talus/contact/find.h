@@ -69,6 +69,7 @@ class ContactSearch {
     int at_corner = -1;   // corner of b at the foot, -1 inside the edge
     double expected = 0;  // gap after the look-ahead
     bool apart = false;   // by the side of b, over which a slides flush
+    bool coming = false;  // beside the edge still; over it after the look-ahead
   };
   struct Span {
     int side_lo, side_hi;  // straight sides of the lower and the higher block id

@@ -106,6 +106,29 @@ TEST_CASE("offset square: a corner of each block ends the common face") {
   }
 }
 
+TEST_CASE("corners that come over an edge within the step take nothing of the face there is now") {
+  // the upper block begins 0.5 mm to the right of the lower one, and moves 1 mm to the left in the step
+  const Scene s = scene_of({kSquare, moved(kSquare, {0.0005, 1})});
+  State state = start_state(s);
+  state.rate[1].a = {-1, -0.1};
+  std::vector<ContactPoint> points;
+  touch_blocks(s.blocks, state, 0, 1, kMargin, points, 1e-3);
+  const auto at = [&](const ContactKey& key) {
+    for (size_t i = 0; i < points.size(); ++i)
+      if (points[i].key == key) return static_cast<int>(i);
+    return -1;
+  };
+  const int ends[] = {at({0, 2, 1, 0}), at({1, 0, 0, 2})}, coming[] = {at({0, 3, 1, 0}), at({1, 1, 0, 2})};
+  REQUIRE(std::min({ends[0], ends[1], coming[0], coming[1]}) >= 0);
+  for (const int k : {0, 1}) {
+    const ContactPoint& end = points[static_cast<size_t>(ends[k])];
+    CHECK(end.partner == ends[1 - k]);
+    CHECK(end.length == doctest::Approx(0.5 * 0.9995).epsilon(1e-9));
+    CHECK(points[static_cast<size_t>(coming[k])].partner == -1);
+    CHECK(points[static_cast<size_t>(coming[k])].length == 0);
+  }
+}
+
 TEST_CASE("a corner over an edge") {
   for (const double gap : {0.01, 0.0, -0.01}) {
     CAPTURE(gap);

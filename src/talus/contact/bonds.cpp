@@ -17,6 +17,9 @@ constexpr double kTouching = 1e-6;
 // are cut off at the limit comes to the limit only in infinite time.
 constexpr double kAtLimit = 0.99999;
 
+// Faces to a chunk.
+constexpr size_t kGrain = 256;
+
 bool has_strength(const std::vector<JointProperty>& joints, int joint) {
   if (joint < 0) return false;
   const JointProperty& j = joints[static_cast<size_t>(joint)];
@@ -118,10 +121,17 @@ bool stands_open(const JointProperty& joint, double opening, double noticed) {
   return joint.tensile_strength == 0 && opening > noticed;
 }
 
+std::vector<double> friction_of(const std::vector<JointProperty>& joints) {
+  std::vector<double> friction;
+  for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_angle));
+  return friction;
+}
+
 // Whether a face has come to its limit at both ends: pulled or open, or at the limit of its shear.
-bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointProperty& joint,
+// @param friction  of the joint, tan of its angle
+bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointProperty& joint, double friction,
                  const FaceState& now, const FaceOffset& offset) {
-  const double half_area = 0.5 * face.length * blocks.thickness, mu = std::tan(joint.friction_angle);
+  const double half_area = 0.5 * face.length * blocks.thickness;
   const double noticed =
       noticeable(blocks, static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
   int pulled = 0;                               // ends at their tensile strength, or open
@@ -134,7 +144,7 @@ bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointProper
       continue;
     }
     shear += along;
-    shear_limit += std::max(0.0, joint.cohesion * half_area + mu * normal);
+    shear_limit += std::max(0.0, joint.cohesion * half_area + friction * normal);
     const double elastic = joint.shear_stiffness > 0 ? -along / (joint.shear_stiffness * half_area) : 0;
     slip = std::max(slip, std::abs(offset.tangential[end] - elastic));
   }
@@ -211,82 +221,112 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
 
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
                    const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
-                   RowSet& rows, std::vector<int>& owner) {
+                   const Workers& workers, RowSet& rows, std::vector<int>& owner) {
+  owner.clear();
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
     if (state.face[f].broken || !blocks.interact(face.block_a, face.block_b)) continue;
+    owner.push_back(static_cast<int>(2 * f));
+    owner.push_back(static_cast<int>(2 * f) + 1);
+  }
+  const size_t first = rows.add_more(owner.size());
+  const std::vector<double> friction = friction_of(joints);
+
+  const auto add = [&](size_t f, size_t at) {
+    const BondFace& face = bonds.faces[f];
     const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
     const FaceOffset apart = face_offset(blocks, state, face);
-    for (int end = 0; end < 2; ++end) {
+    std::array<std::array<double, 2>, 2> u{};
+    for (size_t end = 0; end < 2; ++end) {
       PointRows p;
       p.block_a = face.block_a, p.block_b = face.block_b;
       p.arm_a = acting_arm(blocks, state, a, face.arm_a[end]);
       p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
       p.normal = apart.normal;
       p.row[0].bias = apart.opening[end] / timing.dt;
-      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[static_cast<size_t>(end)]) / timing.dt;
+      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[end]) / timing.dt;
       if (!face.unbreakable) {
         const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
         p.lower = -joint.tensile_strength * half_area * timing.dt_kick;
         if (joint.normal_stiffness > 0 || joint.shear_stiffness > 0) {
-          add_compliance(joint, half_area, true, timing, relative_velocity(p, before), p);
-          p.partner = static_cast<int>(rows.size()) + (end == 0 ? 1 : -1);
+          u[end] = relative_velocity(p, before);
+          add_compliance(joint, half_area, true, timing, u[end], p);
+          p.partner = static_cast<int>(end == 0 ? at + 1 : at);
         }
-        p.friction = std::tan(joint.friction_angle);
+        p.friction = friction[static_cast<size_t>(face.joint)];
         const bool open = stands_open(joint, apart.opening[end], noticeable(blocks, a, b));
         p.cohesion = open ? 0 : joint.cohesion * half_area * timing.dt_kick;
       }
       // the two tangential rows of a face between rigid blocks say the same: from equal guesses they stay
       // equal. Where a block deforms, unequal ones belong to a balance that must not be disturbed
-      const auto& force = state.bond_force[2 * f + static_cast<size_t>(end)];
+      const auto& force = state.bond_force[2 * f + end];
       const bool rigid = blocks.kind[a] != BlockKind::kDeformable && blocks.kind[b] != BlockKind::kDeformable;
       const double shear =
           rigid ? 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]) : force[1];
-      rows.add(p, {force[0] * timing.dt_kick, shear * timing.dt_kick});
-      owner.push_back(static_cast<int>(2 * f) + end);
+      rows.points[at + end] = p;
+      rows.impulse[at + end] = {force[0] * timing.dt_kick, shear * timing.dt_kick};
     }
-  }
+    guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});
+  };
+  workers.for_chunks(owner.size() / 2, kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) add(static_cast<size_t>(owner[2 * i]) / 2, first + 2 * i);
+  });
 }
 
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const RowTiming& timing, State& state) {
-  for (size_t r = 0; r < owner.size(); ++r) {
+                    const std::vector<int>& owner, const RowTiming& timing, const Workers& workers,
+                    State& state) {
+  const auto remember = [&](size_t r) {
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
     const auto point = static_cast<size_t>(owner[r]);
     state.bond_force[point] = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
-    if (p.row[1].compliance == 0 || !slides(p, impulse)) continue;
+    if (p.row[1].compliance == 0 || !slides(p, impulse)) return;
     // what is off after the step, but for the elastic slip under its force
     state.face[point / 2].slip[point % 2] =
         face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
         timing.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, timing);
-  }
+  };
+  workers.for_chunks(owner.size(), 2 * kGrain, [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r) remember(r);
+  });
 }
 
+namespace {
+
+// Follows the mean forces of a face over a step of length dt; whether it has come to its limit.
+bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointProperty& joint, double friction,
+                 double dt, size_t f, State& state) {
+  const BondFace& face = bonds.faces[f];
+  FaceState& now = state.face[f];
+  const double share = dt / (face.memory + dt);
+  for (size_t end = 0; end < 2; ++end)
+    for (size_t k = 0; k < 2; ++k) {
+      double& mean = now.mean_force[2 * end + k];
+      mean += share * (state.bond_force[2 * f + end][k] - mean);
+    }
+  const FaceOffset offset = face_offset(blocks, state, face);
+  if (!is_at_limit(blocks, face, joint, friction, now, offset)) return false;
+  now.broken = true;
+  now.broken_step = state.step;
+  now.offset = {offset.tangential[0] - now.slip[0], offset.tangential[1] - now.slip[1]};
+  state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};
+  return true;
+}
+
+}  // namespace
+
 int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                 double dt, State& state) {
-  int broken = 0;
-  for (size_t f = 0; f < bonds.faces.size(); ++f) {
-    const BondFace& face = bonds.faces[f];
-    FaceState& now = state.face[f];
-    if (face.unbreakable || now.broken) continue;
-    const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
-    const double share = dt / (face.memory + dt);
-    for (size_t end = 0; end < 2; ++end)
-      for (size_t k = 0; k < 2; ++k) {
-        double& mean = now.mean_force[2 * end + k];
-        mean += share * (state.bond_force[2 * f + end][k] - mean);
-      }
-    const FaceOffset offset = face_offset(blocks, state, face);
-    if (!is_at_limit(blocks, face, joint, now, offset)) continue;
-    now.broken = true;
-    now.broken_step = state.step;
-    now.offset = {offset.tangential[0] - now.slip[0], offset.tangential[1] - now.slip[1]};
-    state.bond_force[2 * f] = state.bond_force[2 * f + 1] = {};
-    ++broken;
-  }
-  return broken;
+                 double dt, const Workers& workers, State& state) {
+  const std::vector<double> friction = friction_of(joints);
+  return workers.sum_chunks<int>(bonds.faces.size(), kGrain, [&](size_t begin, size_t end, int& broken) {
+    for (size_t f = begin; f < end; ++f) {
+      if (bonds.faces[f].unbreakable || state.face[f].broken) continue;
+      const auto j = static_cast<size_t>(bonds.faces[f].joint);
+      broken += follow_face(blocks, bonds, joints[j], friction[j], dt, f, state);
+    }
+  });
 }
 
 }  // namespace talus

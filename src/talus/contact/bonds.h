@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "talus/base/parallel.h"
 #include "talus/blocks/state.h"
 #include "talus/contact/compliance.h"
 #include "talus/rows/rows.h"
@@ -37,15 +38,16 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 
 /// Rows of all intact faces (two points each), with the first guess from the last step.
 /// @param before  rates half a step ago
-/// @param owner   gets 2 * face + end for each row added
+/// @param owner   becomes 2 * face + end for each row
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
                    const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
-                   RowSet& rows, std::vector<int>& owner);
+                   const Workers& workers, RowSet& rows, std::vector<int>& owner);
 
 /// After the solution: forces, and the slip of points that slide at the limit of an elastic shear.
 /// @param owner  of each row, as from add_bond_rows
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const RowTiming& timing, State& state);
+                    const std::vector<int>& owner, const RowTiming& timing, const Workers& workers,
+                    State& state);
 
 /// How far the tied points of a face are apart, material point from material point, counted from the joint
 /// without force (the stress of the ground has closed it).
@@ -59,6 +61,6 @@ FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFac
 /// Follows the mean forces of breakable faces over a step of length dt and breaks those at their limit, or
 /// open, at both ends. Returns the number broken.
 int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                 double dt, State& state);
+                 double dt, const Workers& workers, State& state);
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #pragma once
 // Elastic joints as compliant rows: the alpha family of theory 4.6.
 
+#include <algorithm>
 #include <array>
 
 #include "talus/rows/rows.h"
@@ -32,6 +33,36 @@ inline void add_compliance(const JointProperty& joint, double half_area, bool in
     const double one = k / (stiffness * half_area * timing.dt * timing.dt_kick);
     p.row[i].compliance = in_face ? 2 * one : one;
     p.row[i].bias = k * p.row[i].bias - r * r * u_before[static_cast<size_t>(i)];
+  }
+}
+
+/// First guess of a compliant row (k = 0 normal, 1 tangential) of the two ends of a face: the impulses that
+/// satisfy both as long as the blocks move as before the kick. What is left to the solver is the change of
+/// velocities, where the impulses of the last step leave it the velocities too: less by the time step over
+/// the time in which motions change.
+/// @param p  the rows of the two ends, or twice those of a point alone
+/// @param u  relative velocities of the ends half a step ago [m/s]
+inline std::array<double, 2> guess_compliant(const std::array<const PointRows*, 2>& p, int k,
+                                             const std::array<double, 2>& u) {
+  const double c = p[0]->row[k].compliance, first = -(u[0] + p[0]->row[k].bias) / c,
+               second = -(u[1] + p[1]->row[k].bias) / c;
+  if (p[0]->partner < 0) return {first, second};
+  return {4.0 / 3 * (first + 0.5 * second), 4.0 / 3 * (second + 0.5 * first)};  // cross compliance: -c / 2
+}
+
+/// The guess for both rows of the two ends (or of a point alone, given twice), within their bounds. Rows
+/// without compliance keep theirs.
+inline void guess_compliant(const std::array<const PointRows*, 2>& p,
+                            const std::array<std::array<double, 2>, 2>& u,
+                            const std::array<Impulse*, 2>& guess) {
+  for (int k = 0; k < 2; ++k) {
+    if (p[0]->row[k].compliance == 0) continue;
+    const auto i = static_cast<size_t>(k);
+    const auto impulse = guess_compliant(p, k, {u[0][i], u[1][i]});
+    for (size_t end = 0; end < 2; ++end) {
+      const Bounds bounds = bounds_of(*p[end], k, (*guess[end])[0]);
+      (*guess[end])[i] = std::clamp(impulse[end], bounds.lower, bounds.upper);
+    }
   }
 }
 

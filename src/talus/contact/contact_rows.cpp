@@ -54,7 +54,8 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
   for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_after()));
   const size_t plain = joints.size() - 1;
 
-  const auto add = [&](const ContactPair& pair, size_t i) {
+  using Velocity = std::array<double, 2>;
+  const auto add = [&](const ContactPair& pair, size_t i, Velocity& u) {
     const Contact& c = state.contacts[i];
     const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
     const size_t joint = c.joint < 0 ? plain : static_cast<size_t>(c.joint);
@@ -102,7 +103,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
       p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing.dt;
     }
     if (property.restitution >= 0 || soft || property.shear_stiffness > 0) {
-      const auto u = relative_velocity(p, before);
+      u = relative_velocity(p, before);
       if (property.restitution >= 0 && gap + timing.dt * u[0] <= 0 && u[0] < 0)
         p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
       if (soft || property.shear_stiffness > 0) {
@@ -118,9 +119,19 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
     rows.impulse[first + i] = guess;
   };
   workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
+    std::vector<Velocity> u;
     for (size_t q = begin; q < end; ++q) {
       const ContactPair& pair = state.pairs[q];
-      for (int k = 0; k < pair.count; ++k) add(pair, static_cast<size_t>(pair.begin + k));
+      const auto at = static_cast<size_t>(pair.begin), count = static_cast<size_t>(pair.count);
+      u.resize(count);
+      for (size_t k = 0; k < count; ++k) add(pair, at + k, u[k]);
+      for (size_t k = 0; k < count; ++k) {
+        const PointRows& p = rows.points[first + at + k];
+        const size_t other = p.partner < 0 ? k : static_cast<size_t>(p.partner) - first - at;
+        if (other < k) continue;
+        const size_t i = first + at + k, j = first + at + other;
+        guess_compliant({&p, &rows.points[j]}, {u[k], u[other]}, {&rows.impulse[i], &rows.impulse[j]});
+      }
     }
   });
 }

@@ -277,10 +277,9 @@ class Kick {
 
   void gather_rows() {
     work_.rows.restart();
-    work_.bond_owner.clear();
     const Model& model = scene_.model;
-    add_bond_rows(blocks_, scene_.bonds, model.joints, state_, work_.rate_before, timing(), work_.rows,
-                  work_.bond_owner);
+    add_bond_rows(blocks_, scene_.bonds, model.joints, state_, work_.rate_before, timing(), work_.workers,
+                  work_.rows, work_.bond_owner);
     work_.first_contact = work_.rows.size();
     add_contact_rows(blocks_, model, state_, work_.rate_before, timing(), work_.workers, work_.rows,
                      work_.places);
@@ -505,7 +504,7 @@ class Kick {
   }
 
   void remember() {
-    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, timing(), state_);
+    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, timing(), work_.workers, state_);
     remember_contacts(work_.rows, work_.first_contact, work_.places, timing(), work_.workers, state_);
     const auto keep = [this](size_t row, const auto& points, double sign,
                              std::vector<std::array<double, 2>>& force) {

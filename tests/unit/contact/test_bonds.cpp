@@ -67,7 +67,7 @@ Scene grid_scene(int joint, GridPattern pattern = GridPattern::kRectangles) {
 Scene pair_scene(int joint) { return scene_of({box(0, 0, 1, 1), box(0, 1, 1, 2)}, joint); }
 
 int update(const Scene& s, double dt, State& state) {
-  return update_bonds(s.blocks, s.bonds, s.model.joints, dt, state);
+  return update_bonds(s.blocks, s.bonds, s.model.joints, dt, Workers(1), state);
 }
 
 constexpr double kEnd = 0.5 * 1 * kThickness;  // area of half the face of pair_scene [m2]
@@ -256,7 +256,8 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     const double dt = 1e-4, dt_kick = 5e-5;
     RowSet rows;
     std::vector<int> owner;
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {dt, dt_kick, 0.2}, rows, owner);
+    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {dt, dt_kick, 0.2}, Workers(1), rows,
+                  owner);
     CHECK(owner == std::vector<int>{0, 1});
     REQUIRE(rows.points.size() == 2);
     for (const PointRows& p : rows.points) {
@@ -277,7 +278,8 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     CHECK(rows.impulse[1][1] == relative(7 * dt_kick, 1e-14));
     state.face[0].broken = true;
     rows = {};
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {dt, dt_kick, 0.2}, rows, owner);
+    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {dt, dt_kick, 0.2}, Workers(1), rows,
+                  owner);
     CHECK(rows.points.empty());
   }
 }
@@ -297,7 +299,7 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   const auto make_rows = [&] {
     rows = {};
     owner.clear();
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, timing, rows, owner);
+    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, timing, Workers(1), rows, owner);
   };
   make_rows();
   REQUIRE(rows.points.size() == 2);
@@ -306,7 +308,7 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   // 1/(k l t/2) [[2, -1], [-1, 2]]
   const double normal = stiffness * kEnd * 1e-4, limit = kCohesion * kEnd + std::tan(0.5) * normal;
   rows.impulse = {{normal * dt_kick, -limit * dt_kick}, {normal * dt_kick, -0.9 * limit * dt_kick}};
-  remember_bonds(s.blocks, s.bonds, rows, owner, timing, state);
+  remember_bonds(s.blocks, s.bonds, rows, owner, timing, Workers(1), state);
   const double elastic = (2 * limit - 0.9 * limit) / (stiffness * kEnd);
   CHECK(state.face[0].slip[0] == relative(off - elastic, 1e-12));
   CHECK(state.face[0].slip[1] == 0);  // below its limit

@@ -1,0 +1,271 @@
+// Runs of examples/xianglushan side by side: what the four points of the tunnel do, how the tunnel closes,
+// which joints slip, what bolts carry, and whether the ground moves as a column does. Prints tables
+// (Markdown). examples/xianglushan/README.md has them.
+//
+// Usage: tunnel_variants MOTION.csv NAME=FOLDER ...
+//   MOTION.csv  the outcrop velocity that all runs were shaken with (talus record)
+//   FOLDER      results of talus run
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "talus/base/text_file.h"
+#include "talus/output/files.h"
+#include "talus/talus.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Series = std::vector<double>;
+
+const std::array<std::string, 4> kPoints{"crown", "right", "invert", "left"};
+
+// The ground of the example.
+constexpr double kTop = 300, kAxis = 200;  // above the base [m]
+constexpr double kQuiet = 25;              // nothing comes in any more; what is left must not grow [s]
+
+struct Extent {
+  double least = 0, most = 0;
+  void take(double v) { least = std::min(least, v), most = std::max(most, v); }
+  double largest() const { return std::max(-least, most); }
+};
+
+// A run from the beginning of its shaking.
+struct Run {
+  std::string name;
+  fs::path folder;
+  nlohmann::json summary;
+  talus::CsvTable table;
+  size_t first = 0;  // row at which the shaking begins
+  double begin = 0;  // [s]
+
+  double time(size_t i) const { return table.values[0][first + i] - begin; }
+  size_t rows() const { return table.rows() - first; }
+  Series series(const std::string& column) const {
+    const Series& all = table.column(column);
+    return {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()};
+  }
+  const nlohmann::json& shaking() const { return summary["stages"].back(); }
+};
+
+Run read_run(const std::string& argument) {
+  const size_t equals = argument.find('=');
+  if (equals == std::string::npos) throw std::runtime_error("\"" + argument + "\" is no NAME=FOLDER");
+  Run run{argument.substr(0, equals), argument.substr(equals + 1), {}, {}};
+  run.summary = nlohmann::json::parse(talus::read_text_file((run.folder / "summary.json").string()));
+  run.table = talus::read_csv(run.folder / "histories.csv");
+  run.begin = run.shaking()["begin [s]"].get<double>();
+  const Series& t = run.table.values[0];
+  // the row at the very beginning still counts displacements from before the reset
+  while (run.first < t.size() && t[run.first] <= run.begin) ++run.first;
+  if (run.first == t.size()) throw std::runtime_error(argument + ": the shaking has no rows");
+  return run;
+}
+
+Extent extent(const Series& s) {
+  Extent e;
+  for (const double v : s) e.take(v);
+  return e;
+}
+
+// Least-squares line of what comes after kQuiet: its slope [per s] and its value at the end.
+struct Line {
+  double slope = 0, end = 0;
+};
+Line quiet_line(const Run& run, const Series& s) {
+  double n = 0, t = 0, v = 0, tt = 0, tv = 0, last = 0;
+  for (size_t i = 0; i < s.size(); ++i) {
+    const double x = run.time(i) - kQuiet;
+    if (x < 0) continue;
+    n += 1, t += x, v += s[i], tt += x * x, tv += x * s[i], last = x;
+  }
+  if (n < 3) return {std::nan(""), s.back()};
+  const double slope = (n * tv - t * v) / (n * tt - t * t);
+  return {slope, (v - slope * t) / n + slope * last};
+}
+
+// Motion of level ground, softer than its rock by its joints (ks every 3 m, two sets), on rock without joints
+// (the dashpots of the base): half the outcrop's motion goes up, comes down again from the free top, and is
+// thrown back in part by the stiffer rock. Displacement at a height above the base [m].
+struct Ground {
+  Series time, integral;           // of the outcrop velocity
+  double speed = 0, softness = 0;  // of the jointed ground; its share of that of the rock
+
+  explicit Ground(const fs::path& motion) {
+    const talus::CsvTable table = talus::read_csv(motion);
+    time = table.values[0];
+    const Series& v = table.column("velocity");
+    integral.assign(time.size(), 0);
+    for (size_t i = 1; i < time.size(); ++i)
+      integral[i] = integral[i - 1] + 0.5 * (v[i] + v[i - 1]) * (time[i] - time[i - 1]);
+    const double shear = 5e9 / (2 * 1.29);
+    softness = 1 / std::sqrt(1 + 2 * shear / (20e9 * 3));
+    speed = softness * std::sqrt(shear / 2850);
+  }
+  double outcrop(double t) const {
+    if (t <= 0) return 0;
+    const auto above = std::upper_bound(time.begin(), time.end(), t);
+    if (above == time.end()) return integral.back();
+    const auto k = static_cast<size_t>(above - time.begin());
+    const double share = (t - time[k - 1]) / (time[k] - time[k - 1]);
+    return integral[k - 1] + share * (integral[k] - integral[k - 1]);
+  }
+  double at(double height, double t) const {
+    const double in = 1 / (1 + softness), back = (softness - 1) / (softness + 1);
+    double sum = 0, share = in;
+    for (int n = 0; n < 4; ++n, share *= back)
+      sum += share * (outcrop(t - (2 * n * kTop + height) / speed) +
+                      outcrop(t - (2 * (n + 1) * kTop - height) / speed));
+    return sum;
+  }
+};
+
+// Largest bolt force at the ends of the stages of excavation and of shaking [N].
+struct BoltForces {
+  double before = 0, after = 0;
+  int ruptured = 0;
+};
+BoltForces bolt_forces(const Run& run) {
+  BoltForces out;
+  std::ifstream file(run.folder / "bolts.csv");
+  std::string line;
+  while (std::getline(file, line)) {
+    std::vector<std::string> cell(1);
+    for (const char c : line) {
+      if (c == ',')
+        cell.emplace_back();
+      else if (c != '"')
+        cell.back() += c;
+    }
+    if (cell.size() < 9 || cell[0] == "stage") continue;
+    double& largest = cell[0] == run.shaking()["name"].get<std::string>() ? out.after : out.before;
+    largest = std::max(largest, std::stod(cell[7]));
+    out.ruptured += cell.back() == "ruptured" && &largest == &out.after;
+  }
+  return out;
+}
+
+std::string millimetres(double metres) { return fmt::format("{:.1f}", 1e3 * metres); }
+
+void print_motion(const std::vector<Run>& runs) {
+  fmt::print(
+      "| run | largest relative to the base: crown, right, invert, left [m] | least, most of all [m] | left "
+      "at the end: "
+      "crown, right, invert, left [mm] | largest relative to their mean [mm] | left at the end [mm] |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const Run& run : runs) {
+    std::string peaks, left, own, own_left;
+    Extent all;
+    for (const std::string& p : kPoints) {
+      const Series base = run.series(p + "_to_base.displacement_x"),
+                   mean_x = run.series(p + "_to_mean.displacement_x"),
+                   mean_y = run.series(p + "_to_mean.displacement_y");
+      const Extent e = extent(base);
+      all.take(e.least), all.take(e.most);
+      double most = 0;
+      for (size_t i = 0; i < mean_x.size(); ++i) most = std::max(most, std::hypot(mean_x[i], mean_y[i]));
+      const char* comma = p == kPoints.front() ? "" : ", ";
+      peaks += fmt::format("{}{:.4f}", comma, e.largest());
+      left += comma + millimetres(quiet_line(run, base).end);
+      own += comma + millimetres(most);
+      own_left += comma + millimetres(std::hypot(quiet_line(run, mean_x).end, quiet_line(run, mean_y).end));
+    }
+    fmt::print("| {} | {} | {:.4f}, {:.4f} | {} | {} | {} |\n", run.name, peaks, all.least, all.most, left,
+               own, own_left);
+  }
+}
+
+void print_damage(const std::vector<Run>& runs) {
+  fmt::print(
+      "\n| run | tunnel nearer, height: most, left [mm] | width: most, left [mm] | largest slip [mm], set, "
+      "at | joints that "
+      "slipped | faces broken | bolts: tension before, after the shaking [kN] (ruptured) |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const Run& run : runs) {
+    const auto closure = [&](const std::string& monitor) {
+      const Series s = run.series(monitor + ".convergence");
+      const Extent e = extent(s);
+      return fmt::format("{}, {}", millimetres(e.most > -e.least ? e.most : e.least),
+                         millimetres(quiet_line(run, s).end));
+    };
+    const auto& joints = run.summary["joints"];
+    const BoltForces bolts = bolt_forces(run);
+    const auto& at = joints["residual_slip_largest_at"];
+    fmt::print("| {} | {} | {} | {}, {}, ({:.1f}, {:.1f}) | {} | {} | {} |\n", run.name, closure("height"),
+               closure("width"), millimetres(joints["residual_slip_largest [m]"].get<double>()),
+               at["set"].get<std::string>(), at["x [m]"].get<double>(), at["y [m]"].get<double>(),
+               joints["slipped_joints"].get<int>(), run.summary["contacts"]["bond_faces_broken"].get<int>(),
+               bolts.before == 0 ? "-"
+                                 : fmt::format("{:.1f}, {:.1f} ({})", 1e-3 * bolts.before, 1e-3 * bolts.after,
+                                               bolts.ruptured));
+  }
+}
+
+void print_health(const std::vector<Run>& runs, const Ground& ground) {
+  fmt::print(
+      "\n| run | step [ms] | blocks clamped (most) | steps | sweeps a step | wall [min] | contact error [m] "
+      "| energy left "
+      "over | fastest change after {:g} s: absolute, to base, to mean [m/s] | free field off the column [%] "
+      "|\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n",
+      kQuiet);
+  for (const Run& run : runs) {
+    const auto &s = run.shaking(), &solver = run.summary["solver"];
+    double absolute = 0, base = 0, mean = 0;
+    for (const std::string& p : kPoints) {
+      const auto raise = [&](double& largest, const std::string& column) {
+        largest = std::max(largest, std::abs(quiet_line(run, run.series(column)).slope));
+      };
+      raise(absolute, p + ".displacement_x");
+      raise(base, p + "_to_base.displacement_x");
+      raise(mean, p + "_to_mean.displacement_x"), raise(mean, p + "_to_mean.displacement_y");
+    }
+    // the free field at the height of the axis
+    const Series point = run.series("right.displacement_x"),
+                 relative = run.series("right_to_field.displacement_x");
+    double off = 0, largest = 0;
+    for (size_t i = 0; i < point.size(); ++i) {
+      const double exact = ground.at(kAxis, run.time(i));
+      off = std::max(off, std::abs(point[i] - relative[i] - exact)),
+      largest = std::max(largest, std::abs(exact));
+    }
+    int64_t steps = 0;
+    for (const auto& stage : run.summary["stages"]) steps += stage["steps"].get<int64_t>();
+    fmt::print(
+        "| {} | {:.3f} | {} ({:.1f}) | {} | {:.1f} | {:.1f} | {:.1e} | {:.1e} | {:.1e}, {:.1e}, {:.1e} | "
+        "{:.2f} |\n",
+        run.name, 1e3 * s["dt [s]"].get<double>(), s["blocks_clamped"].get<int>(),
+        s["largest_clamp"].get<double>(), steps, solver["iterations_mean"].get<double>(),
+        run.summary["wall_time [s]"].get<double>() / 60, solver["contact_error_worst [m]"].get<double>(),
+        run.summary["energy_closure"].get<double>(), absolute, base, mean, 100 * off / largest);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    fmt::print(stderr, "usage: tunnel_variants MOTION.csv NAME=FOLDER ...\n");
+    return 2;
+  }
+  try {
+    const Ground ground(argv[1]);
+    std::vector<Run> runs;
+    for (int i = 2; i < argc; ++i) runs.push_back(read_run(argv[i]));
+    print_motion(runs);
+    print_damage(runs);
+    print_health(runs, ground);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "tunnel_variants: {}\n", e.what());
+    return 1;
+  }
+  return 0;
+}

@@ -159,6 +159,8 @@ Layout make_layout(const Model& model, Findings& findings) {
 Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   Layout layout;
   layout.default_joint = model.default_joint;
+  layout.slivers_merged = cut.slivers.merged, layout.slivers_deleted = cut.slivers.deleted,
+  layout.slivers_kept = cut.slivers.kept;
   for (const JointProperty& j : model.joints) layout.glued.push_back(j.bonded);
   bool sound = true;
   for (const BlockInput& in : model.blocks) {

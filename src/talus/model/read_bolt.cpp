@@ -39,11 +39,14 @@ class BoltReader : private SectionReader {
     for_named("bolt_type", [this](const std::string& name, const Fields& f) { read_type(name, f); });
     for_list("bolt", [this](const Fields& f) { read_bolt(f); });
     for_list("bolt_pattern", [this](const Fields& f) { read_pattern(f); });
-    for (size_t i = 0; i < model_.bolt_types.size(); ++i)
-      if (std::none_of(model_.bolts.begin(), model_.bolts.end(),
-                       [i](const BoltInput& b) { return b.type == static_cast<int>(i); }))
-        findings_.warning(model_.bolt_types[i].where, "bolt_type." + model_.bolt_types[i].name,
-                          "is used by no bolt", "name it in a [[bolt]] or [[bolt_pattern]]");
+    for (size_t i = 0; i < model_.bolt_types.size(); ++i) {
+      const std::string& name = model_.bolt_types[i].name;
+      const bool used = std::any_of(model_.bolts.begin(), model_.bolts.end(),
+                                    [i](const BoltInput& b) { return b.type == static_cast<int>(i); });
+      if (!used && !is_left_out("bolt", "type", name) && !is_left_out("bolt_pattern", "type", name))
+        findings_.warning(model_.bolt_types[i].where, "bolt_type." + name, "is used by no bolt",
+                          "name it in a [[bolt]] or [[bolt_pattern]]");
+    }
   }
 
  private:

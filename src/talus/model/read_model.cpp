@@ -432,7 +432,7 @@ class ModelReader : private SectionReader {
       } else if (f.given("bolt")) {
         m.kind = MonitorKind::kBolt;
         m.target_a = f.get<std::string>("bolt");
-        if (is_left_out("bolt", m.target_a) || is_left_out("bolt_pattern", m.target_a)) {
+        if (is_left_out("bolt", "name", m.target_a) || is_left_out("bolt_pattern", "name", m.target_a)) {
           findings_.warning(f.where("bolt"), f.path_of("bolt"),
                             fmt::format("\"{}\" is left out (use = false): nothing is recorded", m.target_a));
           return;

@@ -71,13 +71,13 @@ class SectionReader {
     }
   }
 
-  // Whether the file has a [[section]] of this name that `use = false` leaves out.
-  bool is_left_out(const std::string& section, const std::string& name) const {
+  // Whether the file has a [[section]] with this text at this key that `use = false` leaves out.
+  bool is_left_out(const std::string& section, const std::string& key, const std::string& text) const {
     const toml::array* list = source_.root.get_as<toml::array>(section);
     if (!list) return false;
     for (const toml::node& entry : *list) {
       const toml::table* t = entry.as_table();
-      if (t && (*t)["name"].value_or(std::string()) == name && !(*t)["use"].value_or(true)) return true;
+      if (t && (*t)[key].value_or(std::string()) == text && !(*t)["use"].value_or(true)) return true;
     }
     return false;
   }

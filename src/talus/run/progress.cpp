@@ -85,6 +85,10 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
         0.0 - r.energy.work.contact_closing);
   }
+  const Layout& cut = scene.layout;
+  if (cut.slivers_merged + cut.slivers_deleted + cut.slivers_kept > 0)
+    out += fmt::format("  slivers         {} merged, {} deleted, {} kept when the blocks were cut\n",
+                       cut.slivers_merged, cut.slivers_deleted, cut.slivers_kept);
   for (const StageResult& s : r.stages) {
     if (s.plan.clamped > 0)
       out += fmt::format("  moment clamp    stage \"{}\": {} of {} blocks, up to {:.3g} times\n", s.name,

@@ -326,7 +326,10 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                  {"deformable", count(BlockKind::kDeformable)},
                  {"rigid", count(BlockKind::kRigid)},
                  {"fixed", count(BlockKind::kFixed)},
-                 {"driven", count(BlockKind::kDriven)}};
+                 {"driven", count(BlockKind::kDriven)},
+                 {"slivers_merged", scene.layout.slivers_merged},
+                 {"slivers_deleted", scene.layout.slivers_deleted},
+                 {"slivers_kept", scene.layout.slivers_kept}};
   j["contacts"] = {
       {"bond_faces", scene.bonds.faces.size()},         {"bond_faces_broken", r.broken_faces},
       {"supported_points", scene.supported.size()},     {"boundary_points", scene.boundaries.points.size()},

@@ -178,3 +178,28 @@ TEST_CASE("wrong patterns of bolts") {
        {"spacing: makes 4e+06 bolts"}},
   });
 }
+
+TEST_CASE(
+    "use = false leaves bolts out: their type is no finding, and a monitor of them records nothing, says "
+    "so") {
+  const auto read = [](const std::string& text, const std::vector<std::string>& overrides) {
+    Findings findings("model.toml", text);
+    const Model model = prepare_run("model.toml", text, overrides, findings).scene.model;
+    return std::tuple(model.bolts.size(), model.monitors.size(), findings.render());
+  };
+  for (const std::string& out : {bolt(kBar, kLine + "use = false\n"),
+                                 pattern(kRadial + "count = 3\nangle_from = \"20 deg\"\nuse = false\n")}) {
+    const bool one = out.find("[[bolt]]") != std::string::npos;
+    const std::string name = one ? "b" : "p", section = one ? "bolt.b" : "bolt_pattern.p";
+    const std::string text = out + "[[monitor]]\nname = \"m\"\nbolt = \"" + name + "\"\n";
+    const auto [bolts, monitors, told] = read(text, {});
+    CHECK(bolts == 0);
+    CHECK(monitors == 0);
+    CHECK(told.find("monitor.m.bolt: \"" + name + "\" is left out (use = false)") != std::string::npos);
+    CHECK(told.find("is used by no bolt") == std::string::npos);
+    const auto [more, recorded, nothing] = read(text, {section + ".use=true"});
+    CHECK(more >= 1);
+    CHECK(recorded == 1);
+    CHECK(nothing.find("left out") == std::string::npos);
+  }
+}

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "talus/base/error.h"
+#include "talus/base/text.h"
+#include "talus/base/text_file.h"
 #include "talus/output/files.h"
 #include "talus/plot/figure.h"
 
@@ -35,6 +38,34 @@ std::vector<double> in_unit(std::vector<double> t, double scale) {
 std::string full_title(const CsvTable& table, const std::string& column) {
   const auto* values = &table.column(column);
   return table.columns[static_cast<size_t>(values - table.values.data())];
+}
+
+// Rows of one stage, times from its beginning. The row of the beginning itself, which counts displacements
+// from before they were reset, is left out.
+CsvTable only_stage(CsvTable table, const fs::path& folder, const std::string& stage) {
+  const fs::path file = folder / "summary.json";
+  std::vector<std::string> names;
+  try {
+    const auto summary = nlohmann::json::parse(read_text_file(file.string()));
+    for (const auto& s : summary.at("stages")) {
+      names.push_back(s.at("name").get<std::string>());
+      if (names.back() != stage) continue;
+      const double begin = s.at("begin [s]").get<double>(), end = s.at("end [s]").get<double>();
+      const std::vector<double> t = table.values[0];
+      for (std::vector<double>& column : table.values) {
+        size_t kept = 0;
+        for (size_t i = 0; i < t.size(); ++i)
+          if (t[i] > begin && t[i] <= end) column[kept++] = column[i];
+        column.resize(kept);
+      }
+      for (double& at : table.values[0]) at -= begin;
+      return table;
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw FileError(fmt::format("{}: cannot be read: {}", file.string(), e.what()));
+  }
+  throw Error(kExitUsage,
+              fmt::format("{} has no stage \"{}\"; there is {}", folder.string(), stage, join_or(names)));
 }
 
 // The name that the legend gives a curve: the runs where one column is drawn, the monitors where one run is.
@@ -121,6 +152,7 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
       ->default_val("exact");
   verb.add_option("--raw", args.raw,
                   "a second column drawn thin below, for example the force of each step below its mean");
+  verb.add_option("--stage", args.stage, "only this stage of the runs, times from its beginning");
   verb.add_option("--title", args.title, "title of the figure");
   verb.add_option("--time-unit", args.time_unit, "unit of the time axis")
       ->check(CLI::IsMember({"s", "ms"}))
@@ -133,8 +165,10 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
 
 int plot_command(const PlotArguments& args) {
   std::vector<CsvTable> tables;
-  for (const std::string& folder : args.folders)
+  for (const std::string& folder : args.folders) {
     tables.push_back(read_csv(fs::path(folder) / "histories.csv"));
+    if (!args.stage.empty()) tables.back() = only_stage(std::move(tables.back()), folder, args.stage);
+  }
   if (!args.columns.empty()) {
     if (args.columns.size() > 1 && args.output.empty())
       throw Error(kExitUsage, "several columns in one figure need -o, the path of the figure");

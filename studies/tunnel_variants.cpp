@@ -128,7 +128,22 @@ struct Ground {
   }
 };
 
-// Largest bolt force at the ends of the stages of excavation and of shaking [N].
+// The cells of a line of a table that holds texts too.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cell(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cell.emplace_back();
+    else
+      cell.back() += c;
+  }
+  return cell;
+}
+
+// Largest bolt force at the ends of the stages before the shaking and of the shaking [N].
 struct BoltForces {
   double before = 0, after = 0;
   int ruptured = 0;
@@ -137,20 +152,36 @@ BoltForces bolt_forces(const Run& run) {
   BoltForces out;
   std::ifstream file(run.folder / "bolts.csv");
   std::string line;
+  std::getline(file, line);  // titles
   while (std::getline(file, line)) {
-    std::vector<std::string> cell(1);
-    for (const char c : line) {
-      if (c == ',')
-        cell.emplace_back();
-      else if (c != '"')
-        cell.back() += c;
-    }
-    if (cell.size() < 9 || cell[0] == "stage") continue;
-    double& largest = cell[0] == run.shaking()["name"].get<std::string>() ? out.after : out.before;
-    largest = std::max(largest, std::stod(cell[7]));
+    const std::vector<std::string> cell = cells_of(line);
+    double& largest = cell.at(0) == run.shaking()["name"].get<std::string>() ? out.after : out.before;
+    largest = std::max(largest, std::stod(cell.at(7)));
     out.ruptured += cell.back() == "ruptured" && &largest == &out.after;
   }
   return out;
+}
+
+// The largest residual slip at the end of a stage, and where [m]; joints that have slipped by more than
+// kVisible.
+constexpr double kVisible = 1e-4;  // [m]
+struct Slip {
+  double size = 0, x = 0, y = 0;
+  std::string set;
+  int visible = 0;
+};
+Slip largest_slip(const Run& run, const std::string& stage) {
+  std::ifstream file(run.folder / "slips.csv");
+  std::string line;
+  Slip slip;
+  while (std::getline(file, line)) {  // by falling slip
+    const std::vector<std::string> cell = cells_of(line);
+    if (cell.at(0) != stage) continue;
+    const double size = std::stod(cell.at(8));
+    if (slip.size == 0) slip = {size, std::stod(cell.at(6)), std::stod(cell.at(7)), cell.at(4), 0};
+    slip.visible += size > kVisible;
+  }
+  return slip;
 }
 
 std::string millimetres(double metres) { return fmt::format("{:.1f}", 1e3 * metres); }
@@ -185,24 +216,28 @@ void print_motion(const std::vector<Run>& runs) {
 
 void print_damage(const std::vector<Run>& runs) {
   fmt::print(
-      "\n| run | tunnel nearer, height: most, left [mm] | width: most, left [mm] | largest slip [mm], set, "
-      "at | joints that "
-      "slipped | faces broken | bolts: tension before, after the shaking [kN] (ruptured) |\n"
+      "\n| run | height lost: by digging; by shaking most, left [mm] | width | largest slip [mm] before, "
+      "after the "
+      "shaking, set, at | joints that slipped; by over 0.1 mm | faces broken | bolts: tension before, after "
+      "the shaking [kN] (ruptured) |\n"
       "|---|---|---|---|---|---|---|\n");
   for (const Run& run : runs) {
     const auto closure = [&](const std::string& monitor) {
       const Series s = run.series(monitor + ".convergence");
       const Extent e = extent(s);
-      return fmt::format("{}, {}", millimetres(e.most > -e.least ? e.most : e.least),
-                         millimetres(quiet_line(run, s).end));
+      const double dug = run.table.column(monitor + ".convergence").at(run.first - 1);
+      return fmt::format("{:.1f}; {:.2f}, {:.2f}", 1e3 * dug, 1e3 * (e.most > -e.least ? e.most : e.least),
+                         1e3 * quiet_line(run, s).end);
     };
     const auto& joints = run.summary["joints"];
+    const auto& stages = run.summary["stages"];
+    const Slip before = largest_slip(run, stages[stages.size() - 2]["name"].get<std::string>()),
+               after = largest_slip(run, run.shaking()["name"].get<std::string>());
     const BoltForces bolts = bolt_forces(run);
-    const auto& at = joints["residual_slip_largest_at"];
-    fmt::print("| {} | {} | {} | {}, {}, ({:.1f}, {:.1f}) | {} | {} | {} |\n", run.name, closure("height"),
-               closure("width"), millimetres(joints["residual_slip_largest [m]"].get<double>()),
-               at["set"].get<std::string>(), at["x [m]"].get<double>(), at["y [m]"].get<double>(),
-               joints["slipped_joints"].get<int>(), run.summary["contacts"]["bond_faces_broken"].get<int>(),
+    fmt::print("| {} | {} | {} | {}, {}, {}, ({:.1f}, {:.1f}) | {}; {} | {} | {} |\n", run.name,
+               closure("height"), closure("width"), millimetres(before.size), millimetres(after.size),
+               after.set, after.x, after.y, joints["slipped_joints"].get<int>(), after.visible,
+               run.summary["contacts"]["bond_faces_broken"].get<int>(),
                bolts.before == 0 ? "-"
                                  : fmt::format("{:.1f}, {:.1f} ({})", 1e-3 * bolts.before, 1e-3 * bolts.after,
                                                bolts.ruptured));

@@ -147,10 +147,10 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const double in_front = c.along * c.length + before, behind = beyond - (c.along - 1) * c.length;
       const bool above = in_front >= 0 && behind >= 0;
       clearance_ = std::min({clearance_, std::abs(in_front), std::abs(behind)});
-      // a corner that comes past the end of an edge and would be clearly inside the block after the
+      // a corner that comes past the end of an edge and would be inside the block after the
       // look-ahead: corner runs into corner
       const double along_then = c.along + look_ahead_ * dot(turn_left(c.normal), u) / c.length;
-      const bool comes_in = c.gap > -same_ && expected < -same_ && along_then >= 0 && along_then <= 1;
+      const bool comes_in = c.gap > -same_ && expected < 0 && along_then >= 0 && along_then <= 1;
       if (!above && !comes_in) continue;
       if (!a.may_enter(v, c.normal)) continue;
       by_velocity_ = by_velocity_ || !above;

@@ -212,7 +212,12 @@ TEST_CASE("command: plot draws a column, several runs, and names what is missing
   has(mixed.text, "different quantities");
   has(overlay(pair).text, "several columns in one figure need -o");
   CHECK(overlay("-c impact.force_x -c impact.force_x -o " + out + "/pair").code == 0);
-  has(read_text_file(out + "/pair.svg"), "impact");
+  CHECK(fs::file_size(out + "/pair.png") > 5000);
+  const Outcome no_stage = overlay("-c impact.force_x --stage nothing -o " + out + "/stage");
+  CHECK(no_stage.code == 2);
+  CHECK(overlay("-c impact.force_x --stage impact -o " + out + "/stage").code == 0);
+  CHECK(fs::file_size(out + "/stage.png") > 5000);
+  has(no_stage.text, "has no stage \"nothing\"; there is");
   const Outcome all = shell(f, fmt::format("$talus plot {}", out));
   CHECK(all.code == 0);
   CHECK(fs::exists(out + "/plots/impact.normal_force.svg"));

@@ -284,6 +284,40 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
   }
 }
 
+TEST_CASE(
+    "rows of an elastic face begin where they hold if the blocks go on as before, within their strength") {
+  Scene s = pair_scene(kFrictional);
+  s.model.joints[kFrictional].normal_stiffness = 2e9;
+  s.model.joints[kFrictional].shear_stiffness = 1e9;
+  s.bonds.faces[0].elastic_shear = true;
+  for (const double push : {1e-6, 1000.0}) {  // the second far beyond the strength along the face
+    CAPTURE(push);
+    State state = start_state(s);
+    state.displacement[1] = {2e-5, -1e-4};
+    state.rate[0].a = {push, 0.003};
+    state.rate[1].G = {1e-3, 2e-3, -1e-3, 5e-4};  // the two ends move differently
+    RowSet rows;
+    std::vector<int> owner;
+    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {1e-4, 9e-5, 0.2}, Workers(1), rows,
+                  owner);
+    REQUIRE(rows.points.size() == 2);
+    for (size_t r = 0; r < 2; ++r) {
+      const PointRows& p = rows.points[r];
+      const auto u = relative_velocity(p, state.rate);
+      const auto left_over = [&](int k) {
+        const auto i = static_cast<size_t>(k);
+        return u[i] + p.row[k].bias + p.row[k].compliance * rows.impulse[r][i] +
+               p.cross(k) * rows.impulse[1 - r][i];
+      };
+      CHECK(std::abs(left_over(0)) < 1e-12 * std::abs(p.row[0].bias));
+      if (push < 1)
+        CHECK(std::abs(left_over(1)) < 1e-12 * std::abs(p.row[1].bias));
+      else
+        CHECK(std::abs(rows.impulse[r][1]) == relative(bounds_of(p, 1, rows.impulse[r][0]).upper, 1e-14));
+    }
+  }
+}
+
 TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and unloads along ks") {
   Scene s = pair_scene(kFrictional);
   const double stiffness = 2e9;

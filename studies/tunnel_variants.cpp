@@ -48,7 +48,6 @@ struct Run {
   double begin = 0;  // [s]
 
   double time(size_t i) const { return table.values[0][first + i] - begin; }
-  size_t rows() const { return table.rows() - first; }
   Series series(const std::string& column) const {
     const Series& all = table.column(column);
     return {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()};
@@ -101,35 +100,28 @@ Line quiet_line(const Run& run, const Series& s) {
 // (the dashpots of the base): half the outcrop's motion goes up, comes down again from the free top, and is
 // thrown back in part by the stiffer rock. Displacement at a height above the base [m].
 struct Ground {
-  Series time, integral;           // of the outcrop velocity
+  talus::History outcrop;          // velocity
   double speed = 0, softness = 0;  // of the jointed ground; its share of that of the rock
 
   explicit Ground(const fs::path& motion) {
     const talus::CsvTable table = talus::read_csv(motion);
-    time = table.values[0];
-    const Series& v = table.column("velocity");
-    integral.assign(time.size(), 0);
-    for (size_t i = 1; i < time.size(); ++i)
-      integral[i] = integral[i - 1] + 0.5 * (v[i] + v[i - 1]) * (time[i] - time[i - 1]);
+    outcrop.time = table.values[0], outcrop.value = table.column("velocity");
+    const Series &t = outcrop.time, &v = outcrop.value;
+    outcrop.integral.assign(t.size(), 0);
+    for (size_t i = 1; i < t.size(); ++i)
+      outcrop.integral[i] = outcrop.integral[i - 1] + 0.5 * (v[i] + v[i - 1]) * (t[i] - t[i - 1]);
     const double shear = 5e9 / (2 * 1.29);
     softness = 1 / std::sqrt(1 + 2 * shear / (20e9 * 3));
     speed = softness * std::sqrt(shear / 2850);
   }
-  double outcrop(double t) const {
-    if (t <= 0) return 0;
-    const auto above = std::upper_bound(time.begin(), time.end(), t);
-    if (above == time.end()) return integral.back();
-    const auto k = static_cast<size_t>(above - time.begin());
-    const double share = (t - time[k - 1]) / (time[k] - time[k - 1]);
-    return integral[k - 1] + share * (integral[k] - integral[k - 1]);
-  }
+  double moved(double t) const { return t > 0 ? outcrop.integral_at(t) : 0; }
   /// @param top  of a wave that comes up, the share that the top throws back: 1 free
   double at(double height, double t, double top) const {
     const double in = 1 / (1 + softness), back = (softness - 1) / (softness + 1);
     double sum = 0, share = in;
     for (int n = 0; n < 4; ++n, share *= back * top)
-      sum += share * (outcrop(t - (2 * n * kTop + height) / speed) +
-                      top * outcrop(t - (2 * (n + 1) * kTop - height) / speed));
+      sum += share * (moved(t - (2 * n * kTop + height) / speed) +
+                      top * moved(t - (2 * (n + 1) * kTop - height) / speed));
     return sum;
   }
 };

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "talus/output/files.h"
+#include "talus/plot/axes.h"
 #include "talus/plot/canvas.h"
 #include "talus/plot/cut_layers.h"
 #include "talus/plot/edge_chains.h"
@@ -27,13 +27,6 @@ constexpr double kLargestWidth = 1100, kLargestHeight = 1200;  // of the frame
 constexpr double kLeastFrame = 64;                             // along either axis
 constexpr double kLeastSheet = 480;                            // width
 constexpr double kPad = 10;                                    // from the model to the frame
-constexpr double kTickLength = 4, kTickGap = 4;
-
-struct Axis {
-  Ticks ticks;
-  std::vector<std::string> labels;
-  double widest = 0;  // label
-};
 
 // Everything the sheet shows and where; both files are drawn from it.
 struct Picture {
@@ -68,26 +61,6 @@ View make_view(const Cut& cut) {
   return view;
 }
 
-// Ticks with room for their labels; a single one where there is room for no two.
-Axis make_axis(cairo_t* cr, Range range, double length, bool across) {
-  constexpr double kDense = 65;                       // between ticks; one step for both axes
-  constexpr double kBetween = 20, kBetweenLines = 8;  // labels
-  Axis axis;
-  set_font(cr, kFontSize);
-  for (int target = std::max(3, static_cast<int>(length / kDense)); target > 0; --target) {
-    const Ticks ticks = nice_ticks(range.lo, range.hi, target);
-    if (ticks.values.empty()) continue;  // never for 3: their step is shorter than the range
-    axis = {ticks, tick_labels(ticks), 0};
-    for (const std::string& label : axis.labels) axis.widest = std::max(axis.widest, text_width(cr, label));
-    const double spacing = ticks.step / range.length() * length;
-    if (spacing >= (across ? axis.widest + kBetween : kFontSize + kBetweenLines)) return axis;
-  }
-  if (axis.labels.empty()) return axis;
-  axis.ticks.values = {axis.ticks.values[axis.ticks.values.size() / 2]};
-  axis.labels = tick_labels(axis.ticks);
-  return axis;
-}
-
 // Title at the left and number of blocks at the right; a narrow model has a wider sheet where they need it.
 void place_title(cairo_t* cr, const Model& model, Picture& picture) {
   constexpr double kWidestTitle = 800, kBetween = 24;
@@ -106,11 +79,11 @@ void place_title(cairo_t* cr, const Model& model, Picture& picture) {
 
 // Below the frame, or to the right of one that is higher than wide.
 void place_legend(cairo_t* cr, double right, Picture& picture) {
-  constexpr double kColumn = 420, kBelow = kTickLength + kTickGap + 2 * (kFontSize + kGap);
+  constexpr double kColumn = 420;
   const Rect& frame = picture.view.frame;
   const auto count = static_cast<double>(picture.legend.size());
   const bool beside = frame.h > frame.w && count * kLegendRow <= frame.h;
-  const double below = frame.bottom() + kBelow;
+  const double below = frame.bottom() + room_below() + kGap;
   const Rect legend =
       beside ? place_legend(cr, {std::ceil(right) + 2 * kGap, frame.y}, kColumn, 1, picture.legend)
              : place_legend(cr, {frame.x, below}, picture.width - kMargin - frame.x, picture.legend.size(),
@@ -133,7 +106,7 @@ Picture make_picture(cairo_t* cr, const Model& model, const Cut& cut) {
   Rect& frame = picture.view.frame;
   picture.x = make_axis(cr, picture.view.x_range(), frame.w, true);
   picture.y = make_axis(cr, picture.view.y_range(), frame.h, false);
-  frame.x = std::ceil(kMargin + kFontSize + kGap + picture.y.widest + kTickLength + kTickGap);
+  frame.x = std::ceil(kMargin + room_left(picture.y));
   frame.y = kMargin + kTitleRow;
   Rect room = frame;
   if (frame.w < kSlim) room.w += kOutside;
@@ -181,42 +154,9 @@ void draw_section(cairo_t* cr, const Picture& picture) {
   }
 }
 
-void draw_rule(cairo_t* cr, Vec2 from, Vec2 to) {
-  cairo_move_to(cr, crisp(from.x), crisp(from.y));
-  cairo_line_to(cr, crisp(to.x), crisp(to.y));
-  cairo_stroke(cr);
-}
-
-void draw_axes(cairo_t* cr, const Picture& picture) {
-  const Rect& frame = picture.view.frame;
-  set_pen(cr, {{0.25, 0.25, 0.25}, 1, {}});
-  cairo_set_line_cap(cr, CAIRO_LINE_CAP_SQUARE);
-  draw_rule(cr, {frame.x, frame.y}, {frame.x, frame.bottom()});
-  draw_rule(cr, {frame.x, frame.bottom()}, {frame.right(), frame.bottom()});
-  set_font(cr, kFontSize);
-  const double label_y = frame.bottom() + kTickLength + kTickGap + kFontSize / 2;
-  for (std::size_t i = 0; i < picture.x.labels.size(); ++i) {
-    const double x = picture.view.to_sheet({picture.x.ticks.values[i], 0}).x;
-    draw_rule(cr, {x, frame.bottom()}, {x, frame.bottom() + kTickLength});
-    draw_text(cr, picture.x.labels[i], x, label_y, 0.5);
-  }
-  for (std::size_t i = 0; i < picture.y.labels.size(); ++i) {
-    const double y = picture.view.to_sheet({0, picture.y.ticks.values[i]}).y;
-    draw_rule(cr, {frame.x - kTickLength, y}, {frame.x, y});
-    draw_text(cr, picture.y.labels[i], frame.x - kTickLength - kTickGap, y, 1);
-  }
-  set_color(cr, kText);
-  draw_text(cr, "x [m]", frame.middle().x, label_y + kFontSize + kGap, 0.5);
-  cairo_save(cr);
-  cairo_translate(cr, kMargin + kFontSize / 2, frame.middle().y);
-  cairo_rotate(cr, -std::numbers::pi / 2);
-  draw_text(cr, "y [m]", 0, 0, 0.5);
-  cairo_restore(cr);
-}
-
 void draw(cairo_t* cr, const Picture& picture) {
   draw_section(cr, picture);
-  draw_axes(cr, picture);
+  draw_axes(cr, picture.view, picture.x, picture.y);
   draw_names(cr, picture.names);
   draw_legend(cr, picture.legend);
   set_color(cr, kText);

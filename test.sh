@@ -4,6 +4,7 @@
 set -eu
 cd "$(dirname "$0")"
 . tools/setup.sh
+add_maps
 install_missing_packages
 
 format_check() {

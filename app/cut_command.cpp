@@ -7,19 +7,28 @@
 
 #include "talus/base/error.h"
 #include "talus/cut/blocks_file.h"
+#include "talus/maps/expand.h"
+#include "talus/maps/vector_module.h"
 #include "talus/model/read_model.h"
 #include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
 #include "talus/output/files.h"
 #include "talus/plot/cut_picture.h"
+#include "talus/plot/map_picture.h"
 
 namespace talus::app {
 
 int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
                 bool force) {
-  const std::string text = read_text_file(file);
+  const std::string text_of_file = read_text_file(file);
+  Findings map_findings(file, text_of_file);
+  const maps::ExpandedModel expanded =
+      maps::expand_model(file, text_of_file, overrides, maps::read_drawing, map_findings);
+  map_findings.throw_if_errors();
+  if (map_findings.warning_count() > 0) fmt::print(stderr, "{}", map_findings.render());
+  const std::string& text = expanded.text;
   Findings findings(file, text);
-  const Model model = read_model(file, text, overrides, findings);
+  const Model model = read_model(file, text, expanded.overrides, findings);
   if (!model.shapes_readable) findings.throw_if_errors();
   if (model.regions.empty() && model.arches.empty())
     findings.error({1, 1, ""}, "region", "the file has no [[region]] or [[arch]]: there is nothing to cut",
@@ -34,20 +43,22 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
 
   open_result_folder(folder, force, ResultKind::kCut);
   const CutStatistics statistics = cut_statistics(model, cut);
-  const std::string report = cut_report(model, cut, statistics);
+  const std::string report = map_report_text(expanded.report) + cut_report(model, cut, statistics);
   const std::filesystem::path out(folder);
   write_file(out / "cut.json", cut_summary(model, cut, statistics));
-  write_file(out / "model.toml", model.text);
+  write_file(out / "model.toml",
+             expanded.has_maps ? maps::with_folder(model.text, expanded.folder, out) : model.text);
   write_file(out / "blocks.json", blocks_file_text(model, cut));
   write_file(out / "blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
   write_file(out / "slivers.csv", slivers_csv(cut));
   write_file(out / "report.txt", report);
   plot::write_cut_picture(model, cut, out / "cut");
+  if (expanded.has_maps) plot::write_map_picture(expanded.report, out / "map");
   fmt::print(
-      "{}\nwritten to {}: cut.png and cut.svg (picture), blocks.json (for cut.blocks), blocks.csv, "
-      "slivers.csv, "
-      "report.txt, cut.json\n",
-      report, folder);
+      "{}\nwritten to {}: cut.png and cut.svg (picture), {}blocks.json (for cut.blocks), blocks.csv, "
+      "slivers.csv, report.txt, cut.json, model.toml{}\n",
+      report, folder, expanded.has_maps ? "map.png and map.svg (maps before and after cleaning), " : "",
+      expanded.has_maps ? " (the model with the sections made from its maps)" : "");
   return kExitOk;
 }
 

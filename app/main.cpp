@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "cut_command.h"
+#include "import_command.h"
 #include "plot_command.h"
 #include "record_command.h"
 #include "safety_command.h"
@@ -196,6 +197,11 @@ int run_command(int argc, char** argv) {
   cut_verb->add_flag("--force", force, "replace the results in that folder");
   cut_verb->footer("Example: talus cut examples/tunnel/tunnel.toml -o out/tunnel");
 
+  talus::app::ImportArguments import;
+  CLI::App* import_verb = app.add_subcommand(
+      "import", "sections of a model file from a drawing or map (DXF, shapefile, GeoPackage, GeoJSON)");
+  talus::app::add_import_arguments(*import_verb, import);
+
   CLI::App* safety_verb = app.add_subcommand(
       "safety", "seek the factor of safety: joint strength divided by a factor until the model fails");
   add_model_arguments(*safety_verb, model);
@@ -233,7 +239,8 @@ int run_command(int argc, char** argv) {
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
-  const std::vector<std::string> verbs{"run", "check", "cut", "plot", "record", "replay", "safety", "schema"};
+  const std::vector<std::string> verbs{"run",    "check",  "cut",    "import", "plot",
+                                       "record", "replay", "safety", "schema"};
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
     fmt::print(
@@ -253,6 +260,7 @@ int run_command(int argc, char** argv) {
   if (*run_verb) return run(model, how);
   if (*check_verb) return check(model);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
+  if (*import_verb) return talus::app::import_command(import);
   if (*safety_verb)
     return talus::app::safety_command(model.file, model.overrides, folder, force, how.threads);
   if (*replay_verb) return replay(problem, method, tolerance);

@@ -12,7 +12,9 @@ ALLOWED = {
     "base": "",
     "record": "base",
     "geometry": "base",
-    "model": "base geometry record",
+    "mesh": "base geometry",
+    "model": "base geometry record mesh",
+    "maps": "base geometry model",
     "cut": "base geometry model",
     "blocks": "base geometry model cut",
     "rows": "base geometry model cut blocks",
@@ -22,7 +24,7 @@ ALLOWED = {
     "step": "base geometry model cut blocks rows contact supports solve",
     "output": "base geometry model cut blocks",
     "run": "base geometry record model cut blocks rows contact supports solve step output",
-    "plot": "base geometry record model cut output",
+    "plot": "base geometry record model maps cut output",
 }
 
 

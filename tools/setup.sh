@@ -4,6 +4,12 @@
 talus_packages="g++ cmake ninja-build pkgconf python3-minimal libeigen3-dev libgeos-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   libmuparser-dev libcairo2-dev libtbb-dev libhdf5-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
 
+# What the module that reads maps needs; a build made without it is configured anew.
+add_maps() {
+  talus_packages="$talus_packages libgdal-dev"
+  talus_configure_again=$([ -e /usr/include/gdal/gdal.h ] && echo no || echo yes)
+}
+
 install_missing_packages() {
   local missing="" p
   for p in $talus_packages; do
@@ -34,6 +40,7 @@ build() {
   local log="build/$1.log"
   mkdir -p build
   [ -e "build/$1/build.ninja" ] || echo "building ($1); the first time takes a few minutes"
-  { { [ -e "build/$1/build.ninja" ] || cmake --preset "$1" ${2:-}; } && cmake --build --preset "$1"; } >"$log" 2>&1 ||
+  { { { [ -e "build/$1/build.ninja" ] && [ "${talus_configure_again:-no}" = no ]; } || cmake --preset "$1" ${2:-}; } &&
+    cmake --build --preset "$1"; } >"$log" 2>&1 ||
     { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }
 }

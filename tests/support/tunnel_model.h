@@ -91,10 +91,50 @@ struct Tunnel {
 
   /// The model: at rest under the in-situ stress with its core, then dug. Block "t<n>" is triangle n of
   /// mesh(). Monitors "side" and "crown" at the wall, "side_block": the stress of triangle 0, at the wall.
-  std::string text() const;
+  /// @param mesh_file  the triangles as [[mesh]] of this file, "ring[<n>]"; "": as blocks
+  std::string text(const std::string& mesh_file = "") const;
+  /// The same for triangles of another mesh of the ring.
+  std::string text(const std::string& mesh_file, const TriangleMesh& grid, double step) const;
+
+  /// mesh() as Gmsh writes it, in format 4.1 or 2.2: physical surface "rock", physical curve "wall".
+  std::string msh(bool version4) const;
 };
 
-inline std::string Tunnel::text() const {
+inline std::string Tunnel::msh(bool version4) const {
+  const TriangleMesh grid = mesh();
+  std::string out = fmt::format(
+      "$MeshFormat\n{} 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 5 \"wall\"\n2 9 "
+      "\"rock\"\n$EndPhysicalNames\n",
+      version4 ? "4.1" : "2.2");
+  const size_t nodes = grid.node.size(), triangles = grid.triangle.size();
+  if (version4) out += "$Entities\n0 1 1 0\n3 0 0 0 1 1 0 1 5 0\n4 0 0 0 10 10 0 1 9 1 3\n$EndEntities\n";
+  out +=
+      version4 ? fmt::format("$Nodes\n1 {0} 1 {0}\n2 4 0 {0}\n", nodes) : fmt::format("$Nodes\n{}\n", nodes);
+  if (version4)
+    for (size_t i = 0; i < nodes; ++i) out += fmt::format("{}\n", i + 1);
+  for (size_t i = 0; i < nodes; ++i)
+    out += (version4 ? "" : fmt::format("{} ", i + 1)) +
+           fmt::format("{} {} 0\n", grid.node[i].x, grid.node[i].y);
+  out += "$EndNodes\n$Elements\n";
+  const auto wall = static_cast<size_t>(sectors);
+  out += version4 ? fmt::format("2 {0} 1 {0}\n1 3 1 {1}\n", wall + triangles, wall)
+                  : fmt::format("{}\n", wall + triangles);
+  for (size_t j = 0; j < wall; ++j)
+    out += fmt::format("{}{} {}\n", version4 ? fmt::format("{} ", j + 1) : fmt::format("{} 1 2 5 3 ", j + 1),
+                       node(0, static_cast<int>(j)) + 1, node(0, static_cast<int>(j) + 1) + 1);
+  if (version4) out += fmt::format("2 4 2 {}\n", triangles);
+  for (size_t t = 0; t < triangles; ++t)
+    out += fmt::format("{}{} {} {}\n",
+                       version4 ? fmt::format("{} ", wall + t + 1) : fmt::format("{} 2 2 9 4 ", wall + t + 1),
+                       grid.triangle[t][0] + 1, grid.triangle[t][1] + 1, grid.triangle[t][2] + 1);
+  return out + "$EndElements\n";
+}
+
+inline std::string Tunnel::text(const std::string& mesh_file) const {
+  return text(mesh_file, mesh(), 1.6e-3 / rings);
+}
+
+inline std::string Tunnel::text(const std::string& mesh_file, const TriangleMesh& grid, double step) const {
   const auto polygon = [](const std::vector<Vec2>& corners) {
     std::string out;
     for (const Vec2 v : corners)
@@ -129,7 +169,7 @@ name = "crown"
 point = [0, {wall:.10g}]
 [[monitor]]
 name = "side_block"
-block = "t0"
+block = "{first}"
 [[stage]]
 name = "in_situ"
 kind = "static"
@@ -156,7 +196,8 @@ unbalanced = 1e-6
 tolerance = 1e-9
 )",
                                 rock().young, rock().poisson, -horizontal, -vertical, fmt::arg("edge", kEdge),
-                                fmt::arg("step", 1.6e-3 / rings), fmt::arg("wall", kWall + 1e-6));
+                                fmt::arg("step", step), fmt::arg("wall", kWall + 1e-6),
+                                fmt::arg("first", mesh_file.empty() ? "t0" : "ring[0]"));
   std::vector<Vec2> core = {{0, 0}};
   for (int j = 0; j <= sectors; ++j) core.push_back(corner(0, j));
   const auto block = [&out, &polygon](const std::string& name, const std::vector<Vec2>& corners) {
@@ -164,21 +205,25 @@ tolerance = 1e-9
         fmt::format("[[block]]\nname = \"{}\"\nmaterial = \"rock\"\npolygon = {}\n", name, polygon(corners));
   };
   block("core", core);
-  const TriangleMesh grid = mesh();
-  for (size_t t = 0; t < grid.triangle.size(); ++t) {
+  if (!mesh_file.empty())
+    out += fmt::format("[[mesh]]\nname = \"ring\"\nfile = \"{}\"\nmaterial = \"rock\"\n", mesh_file);
+  for (size_t t = 0; mesh_file.empty() && t < grid.triangle.size(); ++t) {
     std::vector<Vec2> corners;
     for (const int n : grid.triangle[t]) corners.push_back(grid.node[static_cast<size_t>(n)]);
     block(fmt::format("t{}", t), corners);
   }
   // the outer edge; what its two ends may do along the axes the rollers say
-  for (int j = 0; j <= sectors; ++j) {
-    const Vec2 p = corner(rings, j), u = exact(p);
+  std::vector<Vec2> outer;
+  for (const Vec2 p : grid.node)
+    if (norm(p) > kEdge - 1e-6) outer.push_back(p);
+  for (size_t j = 0; j < outer.size(); ++j) {
+    const Vec2 p = outer[j], u = exact(p);
     out += fmt::format(
         "[history.x{0}]\ntime = [0, 0.01]\nvalue = [0, {1:.17g}]\n[history.y{0}]\ntime = [0, 0.01]\n"
         "value = [0, {2:.17g}]\n[[support]]\nname = \"edge{0}\"\npoint = [{3:.17g}, {4:.17g}]\n",
         j, u.x, u.y, p.x, p.y);
     for (const char axis : {'x', 'y'}) {
-      const bool on_roller = j == (axis == 'x' ? sectors : 0);
+      const bool on_roller = (axis == 'x' ? p.x : p.y) == 0;
       out += on_roller ? fmt::format("{} = \"free\"\n", axis)
                        : fmt::format("{0} = {{ displacement = \"{0}{1}\" }}\n", axis, j);
     }

@@ -154,6 +154,10 @@ std::string cut_fingerprint(const Model& model) {
     f.add(std::string("arch"), a.name, a.center, a.radius, a.thickness, a.from, a.to, a.voussoirs);
   for (const OpeningInput& o : model.openings) f.add(std::string("opening"), o.name, o.polygon, o.kept);
   for (const FaultInput& x : model.faults) f.add(std::string("fault"), x.name, x.points);
+  for (const TracesInput& t : model.traces) {
+    f.add(std::string("traces"), t.name);
+    for (const Polyline& line : t.lines) f.add(line);
+  }
   for (const MasonryInput& m : model.masonry)
     f.add(std::string("masonry"), m.name, m.region, m.length, m.height, m.overlap, m.origin);
   for (const TessellationInput& t : model.tessellations)
@@ -183,7 +187,7 @@ std::string blocks_file_text(const Model& model, const Cut& cut) {
 }
 
 Cut read_blocks_file(const Model& model, Findings& findings) {
-  const auto path = std::filesystem::path(model.file).parent_path() / model.cut.blocks_file;
+  const auto path = std::filesystem::path(model.folder) / model.cut.blocks_file;
   const Where& where = model.cut.where_file;
   std::ifstream in(path, std::ios::binary);
   if (!in) {

@@ -87,6 +87,7 @@ class Cutter {
     out.regions = regions_.list();
     out.origins = traces_.origins;
     out.joint_sets = std::move(traces_.joint_sets);
+    out.surveys = std::move(traces_.surveys);
     out.point = net.point;
     out.edge = net.edge;
     for (const int line : net.edge_source)

@@ -51,6 +51,7 @@ struct Cut {
   std::vector<CutBlock> whole;           // all blocks before anything was merged or taken out, by id
   std::vector<CutBlock> blocks;          // what is left
   std::vector<JointSetNote> joint_sets;
+  std::vector<SurveyNote> surveys;
   std::vector<Polyline> dead_ends;  // parts of traces that bound no block
   double dead_end_length = 0;       // [m]
   int bridges = 0;                  // cuts added where a block had a hole

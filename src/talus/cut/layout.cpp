@@ -53,9 +53,46 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
   }
 }
 
+// Blocks of a mesh, with a group for it and one for each of its physical surfaces; edges are named after
+// their curve, or the mesh.
+void add_mesh(const Model& model, const MeshInput& m, Layout& layout) {
+  const int first_group = static_cast<int>(layout.groups.size());
+  const int first_origin = static_cast<int>(layout.origins.size());
+  layout.groups.push_back(m.name);
+  for (const std::string& group : m.mesh.surface_groups) {
+    layout.mesh_of[static_cast<int>(layout.groups.size())] = first_group;
+    layout.groups.push_back(m.name + "-" + group);
+  }
+  layout.group_where.resize(layout.groups.size(), m.where);
+  layout.origins.push_back(m.name);
+  layout.origins.insert(layout.origins.end(), m.mesh.curve_groups.begin(), m.mesh.curve_groups.end());
+  std::map<std::pair<int, int>, int> curve_of;
+  for (const MeshEdge& e : m.mesh.edges) curve_of[std::minmax(e.from, e.to)] = e.group;
+  const int between = m.joint >= 0 ? m.joint : model.bonded_joint;
+  for (size_t i = 0; i < m.mesh.elements.size(); ++i) {
+    const MeshElement& e = m.mesh.elements[i];
+    BlockShape b;
+    b.name = fmt::format("{}[{}]", m.name, i);
+    b.id = static_cast<int>(layout.blocks.size());
+    b.group = first_group + 1 + e.group;
+    b.polygon = m.polygon(e);
+    b.material = e.group < 0 ? m.material : m.group_material[static_cast<size_t>(e.group)];
+    b.kind = m.kind;
+    for (int k = 0; k < e.corners; ++k) {
+      const int from = e.node[static_cast<size_t>(k)], to = e.node[static_cast<size_t>((k + 1) % e.corners)];
+      const auto curve = curve_of.find(std::minmax(from, to));
+      const int joint = curve == curve_of.end() ? -1 : m.curve_joint[static_cast<size_t>(curve->second)];
+      b.edge_origin.push_back(first_origin + (curve == curve_of.end() ? 0 : 1 + curve->second));
+      b.edge_joint.push_back(joint >= 0 ? joint : between);
+    }
+    layout.blocks.push_back(std::move(b));
+  }
+}
+
 void add_cut(const Model& model, const Cut& cut, Layout& layout) {
   layout.first_cut_group = static_cast<int>(layout.groups.size());
   layout.touching = 2 * cut.grid;
+  const int first_origin = static_cast<int>(layout.origins.size());
   for (const Origin& o : cut.origins) layout.origins.push_back(o.name);
   const auto add_group = [&](const std::string& name, const Where& where) {
     layout.groups.push_back(name);
@@ -68,6 +105,7 @@ void add_cut(const Model& model, const Cut& cut, Layout& layout) {
   for (BlockShape& shape : shapes_of(model, cut, cut.blocks)) {
     shape.id += first_id;
     shape.group += layout.first_cut_group;
+    for (int& origin : shape.edge_origin) origin += first_origin;
     layout.blocks.push_back(std::move(shape));
   }
 }
@@ -144,11 +182,21 @@ int Layout::find_group(const std::string& name) const {
   return it == groups.end() ? -1 : static_cast<int>(it - groups.begin());
 }
 
-std::vector<int> Layout::blocks_called(const std::string& name) const {
+std::vector<int> Layout::groups_called(const std::string& name) const {
   const int group = find_group(name);
+  if (group < 0) return {};
+  std::vector<int> list{group};
+  for (const auto& [surface, mesh] : mesh_of)
+    if (mesh == group) list.push_back(surface);
+  return list;
+}
+
+std::vector<int> Layout::blocks_called(const std::string& name) const {
+  const std::vector<int> called = groups_called(name);
   std::vector<int> list;
   for (size_t i = 0; i < blocks.size(); ++i)
-    if (blocks[i].group == group || blocks[i].name == name) list.push_back(static_cast<int>(i));
+    if (std::find(called.begin(), called.end(), blocks[i].group) != called.end() || blocks[i].name == name)
+      list.push_back(static_cast<int>(i));
   return list;
 }
 
@@ -191,6 +239,7 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
     add_grid(g, group, layout);
     layout.pair_joint[{group, group}] = g.joint;
   }
+  for (const MeshInput& m : model.meshes) add_mesh(model, m, layout);
   add_cut(model, cut, layout);
   for (const ContactPairInput& p : model.contact_pairs) {
     const int a = layout.find_group(p.name_a), b = layout.find_group(p.name_b);
@@ -208,11 +257,13 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
       findings.error(p.where, "contact_pair.between",
                      fmt::format("\"{}\" and \"{}\" have a joint already", p.name_a, p.name_b));
     if (a == b) findings.error(p.where, "contact_pair", "names the same group twice");
-    layout.pair_joint[std::minmax(a, b)] = p.joint;
+    for (const int one : layout.groups_called(p.name_a))
+      for (const int other : layout.groups_called(p.name_b))
+        layout.pair_joint[std::minmax(one, other)] = p.joint;
   }
   if (layout.blocks.empty() && sound)
     findings.error({1, 1, ""}, "block", "the model has no block",
-                   "add a [[block]], a [[grid]] or a [[region]]");
+                   "add a [[block]], a [[grid]], a [[mesh]] or a [[region]]");
   if (layout.blocks.empty() || !sound) return layout;
 
   check_overlaps(layout, findings);

@@ -22,16 +22,18 @@ struct BlockShape {
   Vec2 velocity;
   double spin = 0;
   Motion motion_x, motion_y, motion_rotation;
-  std::vector<int> edge_origin;  // [edges] of cut blocks: index into Layout::origins; empty otherwise
-  std::vector<int> edge_joint;   // [edges] of cut blocks: joint along each edge, -1 hard and frictionless
+  std::vector<int> edge_origin;  // [edges] of cut blocks and meshes: index into Layout::origins; else empty
+  std::vector<int> edge_joint;   // [edges] of the same: joint along each edge, -1 hard and frictionless
 };
 
 struct Layout {
   std::vector<BlockShape> blocks;
-  std::vector<std::string> groups;   // names of blocks, grids, regions and kept openings
+  std::vector<std::string>
+      groups;  // names of blocks, grids, meshes and their surfaces, regions, kept openings
   std::vector<Where> group_where;    // [groups]
+  std::map<int, int> mesh_of;        // group of a physical surface -> that of its mesh
   int first_cut_group = 0;           // groups from here on were cut together
-  std::vector<std::string> origins;  // what edges of cut blocks come from
+  std::vector<std::string> origins;  // what edges of cut blocks and meshes come from
   double touching = 0;               // [m] edges of cut blocks lie this near to each other where they touch
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
@@ -50,6 +52,8 @@ struct Layout {
   int joint_of_pair(int group_a, int group_b) const;
   /// Index of the group called `name`, -1 when there is none.
   int find_group(const std::string& name) const;
+  /// The group called `name`, and those of its surfaces when it is a mesh; empty when there is none.
+  std::vector<int> groups_called(const std::string& name) const;
   /// Indices of the blocks of the group, or of the single block, called `name`.
   std::vector<int> blocks_called(const std::string& name) const;
 };

@@ -26,6 +26,7 @@ class TraceMaker {
     add_openings();
     add_sides();
     add_faults();
+    add_surveys();
     add_masonry();
     add_arches();
     add_tessellations();
@@ -79,6 +80,23 @@ class TraceMaker {
       if (length == 0)
         findings_.warning(f.where, "fault." + f.name, "has no part in the regions",
                           "are its points in metres?");
+    }
+  }
+
+  void add_surveys() {
+    for (const TracesInput& t : model_.traces) {
+      const int o = origin(t.name, OriginKind::kSurveyed);
+      SurveyNote note{t.name, static_cast<int>(t.lines.size()), 0, 0};
+      for (const Polyline& line : t.lines) {
+        double length = 0;
+        for (size_t k = 0; k + 1 < line.size(); ++k) length += add_clipped(line[k], line[k + 1], -1, o);
+        note.length += length;
+        note.inside += length > 0;
+      }
+      if (note.inside == 0)
+        findings_.warning(t.where, "traces." + t.name, "have no part in the regions",
+                          "are their points in metres?");
+      out_.surveys.push_back(std::move(note));
     }
   }
 
@@ -198,6 +216,7 @@ std::vector<Origin> all_origins(const Model& model, const RegionMap& regions) {
     }
   }
   for (const FaultInput& f : model.faults) list.push_back({f.name, OriginKind::kFault, f.joint});
+  for (const TracesInput& t : model.traces) list.push_back({t.name, OriginKind::kSurveyed, t.joint});
   for (const MasonryInput& m : model.masonry) {
     list.push_back({m.name + "-bed", OriginKind::kMasonry, m.bed_joint});
     list.push_back({m.name + "-head", OriginKind::kMasonry, m.head_joint});

@@ -10,7 +10,17 @@
 
 namespace talus {
 
-enum class OriginKind { kOpening, kSide, kFault, kMasonry, kArch, kTessellation, kJointSet, kConstruction };
+enum class OriginKind {
+  kOpening,
+  kSide,
+  kFault,
+  kSurveyed,  // [[traces]]
+  kMasonry,
+  kArch,
+  kTessellation,
+  kJointSet,
+  kConstruction
+};
 
 /// What a block edge comes from.
 struct Origin {
@@ -24,10 +34,19 @@ struct Trace {
   int origin = 0;
 };
 
+/// What came of one [[traces]].
+struct SurveyNote {
+  std::string name;
+  int lines = 0;      // of the file
+  int inside = 0;     // of them with a part in the regions
+  double length = 0;  // in the regions [m]
+};
+
 struct TraceSet {
   std::vector<Origin> origins;
   std::vector<Trace> traces;  // most important first: where two coincide the first names the edge
   std::vector<JointSetNote> joint_sets;
+  std::vector<SurveyNote> surveys;
 };
 
 /// Everything that block edges of the model may come from, in the order of their importance.

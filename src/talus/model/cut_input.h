@@ -75,6 +75,14 @@ struct FaultInput {
   Where where;
 };
 
+/// Joints of one set as they were surveyed.
+struct TracesInput {
+  std::string name;
+  std::vector<Polyline> lines;  // [m]
+  int joint = -1;
+  Where where;
+};
+
 enum class OpeningShape { kCircle, kHorseshoe, kPolygon };
 
 struct OpeningInput {

@@ -12,6 +12,7 @@
 #include "talus/model/bolt_input.h"
 #include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
+#include "talus/model/mesh_input.h"
 
 namespace talus {
 
@@ -273,7 +274,8 @@ struct SafetyInput {
 
 struct Model {
   std::string file, title, hash;
-  std::string text;  // the file as read, byte for byte, with the overrides as closing comments
+  std::string folder;  // that relative paths of the file count from
+  std::string text;    // the file as read, byte for byte, with the overrides as closing comments
   bool shapes_readable =
       false;  // every block and grid has its polygon: the layout can be checked in spite of errors
   double thickness = 1;
@@ -286,11 +288,13 @@ struct Model {
   std::vector<History> histories;
   std::vector<BlockInput> blocks;
   std::vector<GridInput> grids;
+  std::vector<MeshInput> meshes;
   CutInput cut;
   std::vector<RegionInput> regions;
   std::vector<ArchInput> arches;
   std::vector<OpeningInput> openings;
   std::vector<FaultInput> faults;
+  std::vector<TracesInput> traces;
   std::vector<MasonryInput> masonry;
   std::vector<TessellationInput> tessellations;
   std::vector<JointSetInput> joint_sets;

@@ -24,11 +24,13 @@ class CutReader : private SectionReader {
       : SectionReader(source, findings), model_(model), block_names_(block_names) {}
 
   void read() {
+    claim_mesh_names();
     read_cut();
     read_regions();
     read_arches();
     read_openings();
     read_faults();
+    read_traces();
     read_masonry();
     read_tessellations();
     read_joint_sets();
@@ -40,6 +42,19 @@ class CutReader : private SectionReader {
 
   // Names that supports may follow: each stands for one source of block edges.
   void claim_trace_name(const Fields& f, const std::string& what) { claim_name(f, trace_names_, what); }
+
+  // Curves of meshes, and their other edges by the name of the mesh, are sources of edges, too.
+  void claim_mesh_names() {
+    for (const MeshInput& m : model_.meshes) {
+      for (const std::string& name : m.mesh.curve_groups) {
+        if (trace_names_.insert(name).second) continue;
+        findings_.error(m.where, "mesh." + m.name,
+                        fmt::format("its physical curve \"{}\" has the name of another", name),
+                        "supports follow these names: they must differ");
+      }
+      trace_names_.insert(m.name);
+    }
+  }
 
   // A name of blocks that is a source of edges, too: one message is enough.
   void claim_both(const Fields& f, const std::string& what) {
@@ -234,6 +249,22 @@ class CutReader : private SectionReader {
     });
   }
 
+  void read_traces() {
+    for_list("traces", [this](const Fields& f) {
+      claim_trace_name(f, "source of joints");
+      TracesInput t;
+      t.name = f.get<std::string>("name");
+      t.where = f.where();
+      t.lines = f.get<std::vector<Polyline>>("lines");
+      if (f.has("lines") && t.lines.empty())
+        findings_.error(f.where("lines"), f.path_of("lines"), "is empty",
+                        "give lines [[[x, y], [x, y], ...], ...], or leave the section out");
+      t.joint = joint(f);
+      if (t.lines.empty()) incomplete();
+      model_.traces.push_back(std::move(t));
+    });
+  }
+
   void read_masonry() {
     for_list("masonry", [this](const Fields& f) {
       claim_trace_name(f, "source of joints");
@@ -332,11 +363,12 @@ class CutReader : private SectionReader {
 
   // Sections that would have nothing to work on, and names that stand for two things.
   void check_use() {
-    const bool divides = !model_.joint_sets.empty() || !model_.faults.empty() || !model_.openings.empty() ||
-                         model_.cut.where.line > 0;
+    const bool divides = !model_.joint_sets.empty() || !model_.faults.empty() || !model_.traces.empty() ||
+                         !model_.openings.empty() || model_.cut.where.line > 0;
     if (divides && model_.regions.empty() && model_.arches.empty() && source_.root.get("region") == nullptr) {
       const Where where = !model_.joint_sets.empty() ? model_.joint_sets[0].where
                           : !model_.faults.empty()   ? model_.faults[0].where
+                          : !model_.traces.empty()   ? model_.traces[0].where
                           : !model_.openings.empty() ? model_.openings[0].where
                                                      : model_.cut.where;
       findings_.error(where, "region", "the file has no [[region]]: there is nothing to cut",
@@ -348,7 +380,7 @@ class CutReader : private SectionReader {
         findings_.error(place.first, place.second,
                         fmt::format("\"{}\" is the name of a side and of a source of joints", side),
                         "supports follow these names: they must differ");
-    if (model_.regions.empty() && model_.arches.empty()) return;
+    if (model_.regions.empty() && model_.arches.empty() && model_.meshes.empty()) return;
     JointProperty glue;
     glue.name = "(glued)";
     glue.bonded = true;

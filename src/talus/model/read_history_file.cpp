@@ -8,14 +8,14 @@
 
 namespace talus {
 
-std::string read_history_file(const Fields& fields, const std::string& model_file, History& history,
+std::string read_history_file(const Fields& fields, const std::string& folder, History& history,
                               Findings& findings) {
   if (!fields.has("file")) return "";  // wrong, and told
   if (fields.get<std::string>("file").empty()) {
     findings.error(fields.where("file"), fields.path_of("file"), "is empty", "name a file, or leave it out");
     return "";
   }
-  const auto path = std::filesystem::path(model_file).parent_path() / fields.get<std::string>("file");
+  const auto path = std::filesystem::path(folder) / fields.get<std::string>("file");
   std::string text;
   try {
     text = read_text_file(path);

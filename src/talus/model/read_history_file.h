@@ -9,9 +9,9 @@
 namespace talus {
 
 /// Fills time and value [SI] of `history` from the file; what is wrong with it becomes a finding at its key.
-/// @param model_file  the model file, from whose folder the path counts
+/// @param folder  that the path counts from
 /// @return the content of the file, which belongs to the hash of the model; "" when it could not be read
-std::string read_history_file(const Fields& fields, const std::string& model_file, History& history,
+std::string read_history_file(const Fields& fields, const std::string& folder, History& history,
                               Findings& findings);
 
 }  // namespace talus

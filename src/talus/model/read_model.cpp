@@ -13,6 +13,7 @@
 #include "talus/model/read_bolt.h"
 #include "talus/model/read_cut.h"
 #include "talus/model/read_history_file.h"
+#include "talus/model/read_mesh.h"
 #include "talus/model/read_stages.h"
 #include "talus/model/section_reader.h"
 
@@ -27,15 +28,16 @@ class ModelReader : private SectionReader {
 
   void read() {
     check_section_names();
-    if (!read_top()) return;
+    if (!read_top() || !check_maps()) return;
     model_.shapes_readable = true;
     read_general();
     read_materials();
     read_joints();
     read_histories();
-    if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_blocks();
     read_grids();
+    files_ += read_mesh_sections(source_, block_names_, model_, findings_);
+    if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_cut_sections(source_, block_names_, model_, findings_);
     read_contact();
     read_stage_sections(source_, model_, findings_);
@@ -48,6 +50,11 @@ class ModelReader : private SectionReader {
     for (const BlockInput& b : model_.blocks)
       check_material_of(b.kind, b.material, b.where, "block." + b.name);
     for (const GridInput& g : model_.grids) check_material_of(g.kind, g.material, g.where, "grid." + g.name);
+    for (const MeshInput& m : model_.meshes) {
+      check_material_of(m.kind, m.material, m.where, "mesh." + m.name);
+      for (const int material : m.group_material)
+        check_material_of(m.kind, material, m.where, "mesh." + m.name);
+    }
     for (const RegionInput& r : model_.regions)
       check_material_of(r.kind, r.material, r.where, "region." + r.name);
     for (const ArchInput& a : model_.arches) check_material_of(a.kind, a.material, a.where, "arch." + a.name);
@@ -61,7 +68,7 @@ class ModelReader : private SectionReader {
     for (const SectionSpec& s : model_schema())
       if (s.shape != SectionShape::kTop) sections.emplace_back(s.name);
     std::vector<std::string> known = sections;
-    known.insert(known.end(), {"talus", "title"});
+    known.insert(known.end(), {"talus", "title", "folder"});
     for (const auto& [key, node] : source_.root) {
       const std::string name(key.str());
       if (std::find(known.begin(), known.end(), name) == known.end()) {
@@ -72,6 +79,21 @@ class ModelReader : private SectionReader {
                                      : fmt::format("did you mean \"{}\"?", near));
       }
     }
+  }
+
+  // Maps become sections before the model is read.
+  bool check_maps() {
+    for (const char* section : {"map", "maps"}) {
+      const toml::node* node = source_.root.get(section);
+      if (!node) continue;
+      const toml::array* list = node->as_array();
+      findings_.error(
+          where_of(list && !list->empty() ? list->get(0)->source() : node->source()), section,
+          "maps are read by talus cut alone",
+          "talus cut MODEL -o DIR writes DIR/model.toml with the sections that come of them: use that");
+      return false;
+    }
+    return true;
   }
 
   // What is allowed but hardly meant.
@@ -91,10 +113,15 @@ class ModelReader : private SectionReader {
     std::set<int> used{model_.default_joint};
     for (const ContactPairInput& c : model_.contact_pairs) used.insert(c.joint);
     for (const GridInput& g : model_.grids) used.insert(g.joint);
+    for (const MeshInput& m : model_.meshes) {
+      used.insert(m.joint);
+      used.insert(m.curve_joint.begin(), m.curve_joint.end());
+    }
     for (const RegionInput& r : model_.regions) used.insert(r.joint);
     for (const ArchInput& a : model_.arches) used.insert(a.joint);
     for (const OpeningInput& o : model_.openings) used.insert(o.joint);
     for (const FaultInput& x : model_.faults) used.insert(x.joint);
+    for (const TracesInput& t : model_.traces) used.insert(t.joint);
     for (const MasonryInput& m : model_.masonry) used.insert({m.bed_joint, m.head_joint});
     for (const TessellationInput& t : model_.tessellations) used.insert(t.joint);
     for (const JointSetInput& s : model_.joint_sets) used.insert(s.joint);
@@ -115,6 +142,8 @@ class ModelReader : private SectionReader {
   bool read_top() {
     const Fields f = read_section(section_spec("top"), source_.root, "", {1, 1, ""}, source_, findings_);
     model_.title = f.get<std::string>("title");
+    model_.folder =
+        (std::filesystem::path(model_.file).parent_path() / f.get<std::string>("folder")).string();
     const auto format = f.get<int64_t>("talus", kModelFormat);
     if (format > kModelFormat) {
       findings_.error(
@@ -233,7 +262,7 @@ class ModelReader : private SectionReader {
       } else if (formula) {
         sample_expression(f, h);
       } else if (file) {
-        files_ += read_history_file(f, model_.file, h, findings_);
+        files_ += read_history_file(f, model_.folder, h, findings_);
       } else {
         h.time = f.get<std::vector<double>>("time");
         h.value = f.get<std::vector<double>>("value");
@@ -505,7 +534,7 @@ class ModelReader : private SectionReader {
   Model& model_;
   std::set<std::string> block_names_, incomplete_;
   std::vector<Where> material_where_, joint_where_;
-  std::string files_;  // content of the files of histories, one behind the other
+  std::string files_;  // content of the files of histories and meshes, one behind the other
 };
 
 }  // namespace

@@ -53,7 +53,9 @@ class ValueReader {
       case KeyType::kIntegers:
         return integers(node);
       case KeyType::kPoints:
-        return points(node);
+        return wrap(points(node));
+      case KeyType::kLines:
+        return lines(node);
       case KeyType::kNumbers:
         return numbers(node);
       case KeyType::kNames:
@@ -147,7 +149,7 @@ class ValueReader {
     return Value(std::array<int, 2>{static_cast<int>(*x), static_cast<int>(*y)});
   }
 
-  std::optional<Value> points(const toml::node& node) const {
+  std::optional<std::vector<Vec2>> points(const toml::node& node) const {
     const toml::array* a = node.as_array();
     if (!a) return wrong(node, "a list of points [[x, y], [x, y], ...]");
     std::vector<Vec2> list;
@@ -156,7 +158,20 @@ class ValueReader {
       if (!p) return {};
       list.push_back(*p);
     }
-    return Value(list);
+    return list;
+  }
+
+  std::optional<Value> lines(const toml::node& node) const {
+    const toml::array* a = node.as_array();
+    if (!a) return wrong(node, "a list of lines [[[x, y], [x, y], ...], ...]");
+    std::vector<std::vector<Vec2>> list;
+    for (const toml::node& entry : *a) {
+      auto line = points(entry);
+      if (!line) return {};
+      if (line->size() < 2) return tell(entry, "is a line of fewer than two points");
+      list.push_back(std::move(*line));
+    }
+    return Value(std::move(list));
   }
 
   std::optional<Value> numbers(const toml::node& node) const {

@@ -21,7 +21,8 @@ struct MotionText {
 };
 
 using Value = std::variant<bool, int64_t, double, std::string, Vec2, std::array<int, 2>, std::vector<Vec2>,
-                           std::vector<double>, std::vector<std::string>, MotionText, Scattered>;
+                           std::vector<std::vector<Vec2>>, std::vector<double>, std::vector<std::string>,
+                           MotionText, Scattered>;
 
 /// The values of one section, in SI, defaults filled in. A key that was wrong is absent, and a finding tells
 /// why.

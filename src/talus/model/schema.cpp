@@ -37,6 +37,8 @@ std::string_view type_text(const KeySpec& k) {
       return "[nx, ny]";
     case K::kPoints:
       return "list of [x, y]";
+    case K::kLines:
+      return "list of lists of [x, y]";
     case K::kNumbers:
       return "list of numbers";
     case K::kTexts:
@@ -124,6 +126,8 @@ std::string json_type(const KeySpec& k) {
       return array(R"("type": "integer")" + json_range(k.range), two);
     case K::kPoints:
       return array(array(quantity, two), R"(, "minItems": 2)");
+    case K::kLines:
+      return array(array(array(quantity, two), R"(, "minItems": 2)"), R"(, "minItems": 1)");
     case K::kNumbers:
       return array(R"("type": "number")", R"(, "minItems": 2)");
     case K::kTexts:

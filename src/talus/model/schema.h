@@ -23,6 +23,7 @@ enum class KeyType {
   kVector,     // [x, y], each a quantity
   kIntegers,   // [nx, ny]
   kPoints,     // list of [x, y]
+  kLines,      // list of lists of [x, y]
   kNumbers,    // list of plain numbers
   kTexts,      // list of texts, any number
   kCurve,      // list of [time, number]

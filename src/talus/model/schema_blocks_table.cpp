@@ -50,6 +50,43 @@ std::vector<SectionSpec> block_sections() {
                 "displacement in "
                 "rad)."}}},
 
+      {"mesh",
+       SectionShape::kList,
+       "A plane mesh of Gmsh (.msh 2.2 or 4.1, ASCII) whose triangles and quadrilaterals are blocks, called "
+       "NAME[i] in the order of the file from 0. A physical surface called like a material has it, and its "
+       "blocks "
+       "are the group NAME-SURFACE; a physical curve called like a joint has it, and supports, boundaries "
+       "and "
+       "loads follow it by its name (`along`).",
+       {{.name = "name",
+         .type = K::kText,
+         .required = true,
+         .doc = "Unique name; stands for all its blocks."},
+        {.name = "file",
+         .type = K::kText,
+         .required = true,
+         .doc =
+             "The mesh; the path counts from the folder of the model. Its content belongs to the hash of the "
+             "model."},
+        {.name = "unit",
+         .type = K::kChoice,
+         .default_text = "\"m\"",
+         .choices = {"m", "mm", "cm", "km", "in", "ft"},
+         .doc = "Of its coordinates."},
+        {.name = "material",
+         .type = K::kName,
+         .refers_to = "material",
+         .doc = "Of elements whose physical surface is not called like a material."},
+        {.name = "joint",
+         .type = K::kName,
+         .refers_to = "joint",
+         .doc = "Between its blocks, but along curves called like a joint; none: glued."},
+        {.name = "kind",
+         .type = K::kChoice,
+         .default_text = "\"deformable\"",
+         .choices = {"deformable", "rigid", "fixed"},
+         .doc = "Kind of all its blocks."}}},
+
       {"grid",
        SectionShape::kList,
        "A rectangle divided into equal blocks. Blocks are named NAME[column,row] or NAME[column,row,k] "

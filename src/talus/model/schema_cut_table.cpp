@@ -175,6 +175,21 @@ std::vector<SectionSpec> cut_sections() {
          .refers_to = "joint",
          .doc = "Joint of the block edges along it; none: that of the region."}}},
 
+      {"traces",
+       SectionShape::kList,
+       "Joints of one set as they were surveyed, each with its own line. Ends that stop inside a block are "
+       "taken back to the last crossing. `talus import` writes this section from a map.",
+       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+        {.name = "lines",
+         .type = K::kLines,
+         .dimension = D::kLength,
+         .required = true,
+         .doc = "Lines [[[x, y], [x, y], ...], ...], each of two points or more from end to end."},
+        {.name = "joint",
+         .type = K::kName,
+         .refers_to = "joint",
+         .doc = "Joint of the block edges along them; none: that of the region."}}},
+
       {"opening",
        SectionShape::kList,
        "An excavation: its boundary always becomes block edges, and its rock is taken out, or kept as a "

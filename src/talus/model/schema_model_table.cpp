@@ -19,7 +19,13 @@ std::vector<SectionSpec> model_sections() {
         {.name = "title",
          .type = K::kText,
          .default_text = "\"\"",
-         .doc = "Free text, repeated in the results."}}},
+         .doc = "Free text, repeated in the results."},
+        {.name = "folder",
+         .type = K::kText,
+         .default_text = "\"\"",
+         .doc = "Folder that relative paths in this file count from, itself relative to the file; \"\": that "
+                "of the "
+                "file. `talus cut` gives it to the model that it makes of one with maps."}}},
 
       {"model",
        SectionShape::kTable,

@@ -15,6 +15,7 @@ inline constexpr Range kNonNegative{.min = 0};
 std::vector<SectionSpec> model_sections();
 std::vector<SectionSpec> block_sections();
 std::vector<SectionSpec> cut_sections();
+std::vector<SectionSpec> map_sections();
 std::vector<SectionSpec> action_sections();
 std::vector<SectionSpec> boundary_sections();
 std::vector<SectionSpec> stage_sections();

@@ -77,6 +77,14 @@ std::string joint_set_lines(const Cut& cut) {
   return out;
 }
 
+std::string survey_lines(const Cut& cut) {
+  std::string out;
+  for (const SurveyNote& n : cut.surveys)
+    out += fmt::format("traces     \"{}\": {} lines, {} of them in the regions, {:.4g} m\n", n.name, n.lines,
+                       n.inside, n.length);
+  return out;
+}
+
 std::string sliver_lines(const Cut& cut, const CutStatistics& s) {
   const SliverTable& t = cut.slivers;
   std::string out =
@@ -152,7 +160,7 @@ CutStatistics cut_statistics(const Model& model, const Cut& cut) {
 std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& s) {
   std::string out;
   if (!model.title.empty()) out += model.title + "\n";
-  out += joint_set_lines(cut);
+  out += survey_lines(cut) + joint_set_lines(cut);
   if (!cut.dead_ends.empty())
     out += fmt::format("dead ends  {} removed, {:.4g} m: they bound no block (grey in the picture)\n",
                        cut.dead_ends.size(), cut.dead_end_length);
@@ -182,11 +190,15 @@ std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics&
                     {"spacing", n.spacing},
                     {"traces", n.traces},
                     {"length", n.length}});
+  nlohmann::json surveys = nlohmann::json::array();
+  for (const SurveyNote& n : cut.surveys)
+    surveys.push_back({{"name", n.name}, {"lines", n.lines}, {"inside", n.inside}, {"length", n.length}});
   const SliverTable& t = cut.slivers;
   const nlohmann::json out = {
       {"title", model.title},
       {"grid", cut.grid},
       {"joint_sets", sets},
+      {"traces", surveys},
       {"dead_ends", {{"count", cut.dead_ends.size()}, {"length", cut.dead_end_length}}},
       {"holes_opened", cut.bridges},
       {"taken_out", cut.taken_out},

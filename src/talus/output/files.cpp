@@ -66,8 +66,8 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
                       "Give another folder",
                       folder.string()));
     if (kind == ResultKind::kCut) {
-      for (const char* name :
-           {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt"})
+      for (const char* name : {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv",
+                               "report.txt", "map.svg", "map.png"})
         fs::remove(folder / name, ec);
     } else if (kind == ResultKind::kRecord) {
       for (const char* name :

@@ -64,6 +64,9 @@ std::string degrees_text(double radians) {
 std::string label_of(const Cut& cut, const Origin& origin) {
   if (origin.kind == OriginKind::kSide) return "outline";
   if (origin.kind == OriginKind::kConstruction) return "construction cut";
+  if (origin.kind == OriginKind::kSurveyed)
+    for (const SurveyNote& note : cut.surveys)
+      if (note.name == origin.name) return origin.name + ": " + counted(at(note.inside), "trace");
   if (origin.kind == OriginKind::kJointSet)
     for (const JointSetNote& note : cut.joint_sets)
       if (note.name == origin.name)

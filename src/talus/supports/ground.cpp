@@ -18,6 +18,12 @@ class JointFinder {
     add_set(g.joint, {0, 1}, g.rows / (g.max.y - g.min.y));
   }
 
+  // Edges of a mesh run in any direction: what their give adds up to is not known.
+  void add_meshes() {
+    for (const MeshInput& m : model_.meshes)
+      if (is_soft(m.joint)) trouble_ = m.name;
+  }
+
   void add_region(int region) {
     const RegionInput& r = model_.regions[static_cast<size_t>(region)];
     const int own = r.joint >= 0 ? r.joint : model_.default_joint;
@@ -25,6 +31,8 @@ class JointFinder {
     const auto here = [region](int of) { return of < 0 || of == region; };
     for (const TessellationInput& t : model_.tessellations)
       if (here(t.region) && is_soft(t.joint)) trouble_ = t.name;
+    for (const TracesInput& t : model_.traces)
+      if (soft(t.joint)) trouble_ = t.name;
     for (const MasonryInput& m : model_.masonry)
       if (here(m.region) && (soft(m.bed_joint) || soft(m.head_joint))) trouble_ = m.name;
     for (const JointSetInput& s : model_.joint_sets) {
@@ -84,12 +92,14 @@ Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfR
 
 std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, int block,
                                         std::string& trouble) {
-  // groups are the blocks, the grids, then what was cut, the regions first
+  // groups are the blocks, the grids, the meshes, then what was cut, the regions first
   const auto group = static_cast<size_t>(layout.blocks[static_cast<size_t>(block)].group);
   const size_t first_cut = static_cast<size_t>(layout.first_cut_group), blocks = model.blocks.size();
   JointFinder finder(model, trouble);
-  if (group >= blocks && group < first_cut)
+  if (group >= blocks && group - blocks < model.grids.size())
     finder.add_grid(model.grids[group - blocks]);
+  else if (group >= blocks && group < first_cut)
+    finder.add_meshes();
   else if (group >= first_cut && group - first_cut < model.regions.size())
     finder.add_region(static_cast<int>(group - first_cut));
   return finder.sets;

@@ -50,6 +50,7 @@ std::string error_of(Model model, const std::string& text) {
   const Folder folder("blocks_file_error");
   folder.write("case.blocks", text);
   model.file = folder / "case.toml";
+  model.folder = folder / "";
   model.cut.blocks_file = "case.blocks";
   Findings findings("case.toml", "");
   const Cut cut = read(model, findings);
@@ -83,6 +84,7 @@ TEST_CASE("blocks file: read back it gives the same blocks to the last bit") {
     const Folder folder("blocks_file");
     folder.write("case.blocks", blocks_file_text(model, cut));
     model.file = folder / "case.toml";
+    model.folder = folder / "";
     model.cut.blocks_file = "case.blocks";
     Findings findings("case.toml", "");
     const Cut back = read(model, findings);

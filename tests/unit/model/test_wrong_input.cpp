@@ -240,7 +240,7 @@ TEST_CASE("wrong input: no block, no stage") {
   const std::string message = refusal("talus = 1\n");
   check_message(message, {"the file has no [[stage]]"});
   check_message(refusal("talus = 1\n[[stage]]\nname=\"s\"\nkind=\"dynamic\"\nduration=1\ntime_step=0.1\n"),
-                {"the model has no block", "add a [[block]], a [[grid]] or a [[region]]"});
+                {"the model has no block", "add a [[block]], a [[grid]], a [[mesh]] or a [[region]]"});
 }
 
 TEST_CASE("overrides: values, names in lists, and their own mistakes") {

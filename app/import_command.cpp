@@ -1,0 +1,72 @@
+#include "import_command.h"
+
+#include <fmt/format.h>
+
+#include "talus/base/error.h"
+#include "talus/maps/import.h"
+#include "talus/maps/vector_module.h"
+#include "talus/model/units.h"
+#include "talus/output/files.h"
+#include "talus/plot/map_picture.h"
+
+namespace talus::app {
+
+namespace {
+
+double quantity(const std::string& option, const std::string& text, Dimension dimension) {
+  const Quantity q = parse_quantity(text, dimension);
+  if (!q.error.empty() || q.value < 0)
+    throw Error(kExitUsage,
+                fmt::format("--{}: {}", option, q.error.empty() ? "must not be negative" : q.error));
+  return q.value;
+}
+
+}  // namespace
+
+void add_import_arguments(CLI::App& verb, ImportArguments& args) {
+  verb.add_option("MAP", args.file, "DXF, shapefile, GeoPackage or GeoJSON")->required();
+  verb.add_option(
+          "--as", args.uses,
+          "LAYER=joints, fault, outline, opening, bolt, monitor or ignored (repeatable; a * at the end of "
+          "LAYER stands for any text); none: guessed from names and shapes, and said")
+      ->allow_extra_args(false);
+  verb.add_option("--attribute", args.attribute, "take values of this attribute in place of layers");
+  verb.add_option("--unit", args.unit, "of its coordinates: auto, m, mm, cm, km, in, ft")
+      ->capture_default_str();
+  verb.add_option("--snap", args.snap, "distance within which ends are joined to lines")
+      ->capture_default_str();
+  verb.add_option("--shortest", args.shortest, "shorter lines and segments are left out")
+      ->capture_default_str();
+  verb.add_option("--curve-step", args.curve_step, "angle between two points of an arc")
+      ->capture_default_str();
+  verb.add_option("--origin", args.origin, "point of the map [m] that becomes 0 0")->expected(2);
+  verb.add_option("-o,--output", args.output, "file for the sections; none: they are printed");
+  verb.add_option("--picture", args.picture,
+                  "also draw the lines before and after cleaning, as NAME.svg and NAME.png");
+  verb.footer(
+      "Example: talus import outcrop.gpkg --as \"set_*=joints\" --as border=outline --snap \"5 cm\" -o "
+      "map.toml");
+}
+
+int import_command(const ImportArguments& args) {
+  maps::ImportRequest request;
+  request.file = args.file, request.attribute = args.attribute, request.unit = args.unit;
+  request.uses = args.uses;
+  request.maps.snap = quantity("snap", args.snap, Dimension::kLength);
+  request.maps.shortest = quantity("shortest", args.shortest, Dimension::kLength);
+  request.maps.curve_step = quantity("curve-step", args.curve_step, Dimension::kAngle);
+  request.maps.has_origin = args.origin.size() == 2;
+  if (request.maps.has_origin) request.maps.origin = {args.origin[0], args.origin[1]};
+  Findings findings(args.file, "");
+  const maps::MapSections made = maps::import_map(request, maps::read_drawing, findings);
+  findings.throw_if_errors();
+  fmt::print(stderr, "{}{}", findings.render(), map_report_text(made.report));
+  if (!args.picture.empty()) plot::write_map_picture(made.report, args.picture);
+  if (args.output.empty())
+    fmt::print("{}", made.text);
+  else
+    write_file(args.output, made.text);
+  return kExitOk;
+}
+
+}  // namespace talus::app

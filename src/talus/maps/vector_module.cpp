@@ -1,0 +1,97 @@
+#include "talus/maps/vector_module.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "talus/base/error.h"
+#include "talus/base/text_file.h"
+#include "talus/maps/dxf_scan.h"
+
+namespace talus::maps {
+
+namespace {
+
+constexpr const char* kModuleFile = "libtalus_vector.so";
+
+// Beside the program, where a build puts it, and where an installation does.
+std::vector<std::filesystem::path> places() {
+  std::error_code ignored;
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  return {folder / kModuleFile, folder / "../modules" / kModuleFile, folder / "../lib/talus" / kModuleFile};
+}
+
+const VectorModule& module() {
+  static const VectorModule* const loaded = []() -> const VectorModule* {
+    std::string trouble;
+    for (const auto& place : places()) {
+      std::error_code ignored;
+      if (!std::filesystem::exists(place, ignored)) continue;
+      void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+      const auto* found =
+          library ? static_cast<const VectorModule*>(dlsym(library, "talus_vector_module")) : nullptr;
+      if (found && std::strcmp(found->version, kVectorModuleVersion) == 0) return found;
+      const char* reason = library ? "it belongs to another talus" : dlerror();
+      trouble = fmt::format("{}: {}", place.string(), reason ? reason : "no reason given");
+    }
+    throw FileError(
+        trouble.empty()
+            ? fmt::format("maps need {}, which was not built: install the package libgdal-dev and "
+                          "build again (./run.sh --maps does both)",
+                          kModuleFile)
+            : "the module for maps cannot be loaded: " + trouble);
+  }();
+  return *loaded;
+}
+
+bool is_dxf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".dxf";
+}
+
+// Kinds of entities that lines and points can come of; all others are left out by the reader without a word.
+bool is_drawn(const std::string& kind) {
+  static const std::vector<std::string> drawn{"LINE",  "POLYLINE", "LWPOLYLINE", "CIRCLE",      "ELLIPSE",
+                                              "ARC",   "SPLINE",   "POINT",      "INSERT",      "HATCH",
+                                              "SOLID", "TRACE",    "3DFACE",     "TEXT",        "MTEXT",
+                                              "MLINE", "LEADER",   "DIMENSION",  "MULTILEADER", "ATTDEF"};
+  return std::find(drawn.begin(), drawn.end(), kind) != drawn.end();
+}
+
+}  // namespace
+
+Drawing read_drawing(const std::filesystem::path& path, double curve_step) {
+  DxfScan scan;
+  if (is_dxf(path)) {
+    scan = scan_dxf(read_text_file(path));
+    if (!scan.defect.empty()) throw InputError(fmt::format("{}: {}", path.string(), scan.defect));
+  } else if (std::error_code error; !std::filesystem::exists(path, error)) {
+    throw FileError(fmt::format("{}: there is no such file", path.string()));
+  }
+  Drawing out;
+  std::string error;
+  if (!module().read(path.string(), curve_step, out, error))
+    throw InputError(fmt::format("{}: {}", path.string(), error));
+  if (!is_dxf(path)) return out;
+  const auto [unit, name] = insunits_unit(scan.insunits);
+  out.unit = unit;
+  out.unit_source =
+      name.empty() ? (scan.insunits == 0 ? std::string("it has no $INSUNITS")
+                                         : fmt::format("$INSUNITS = {} is no unit of a map", scan.insunits))
+                   : fmt::format("$INSUNITS = {} ({})", scan.insunits, name);
+  for (const auto& [what, count] : scan.entities)
+    if (!is_drawn(what.second)) out.leave_out(what.first, what.second, "is no line or point", count);
+  for (const auto& [layer, count] : scan.fit_splines)
+    out.leave_out(layer, "SPLINE", "is given by fit points alone: explode it, or save it as a polyline",
+                  count);
+  return out;
+}
+
+}  // namespace talus::maps

@@ -1,0 +1,28 @@
+#pragma once
+// Reads vector files by a module of its own (libtalus_vector, built where GDAL is installed), loaded when it
+// is first asked for: talus itself is built and runs without it.
+
+#include <filesystem>
+#include <string>
+
+#include "talus/maps/drawing.h"
+
+namespace talus::maps {
+
+/// What the module offers, found by its name. Program and module are built together: `version` tells.
+struct VectorModule {
+  const char* version;  // kVectorModuleVersion of the build
+  /// Reads `path`; on failure returns false with the reason in `error`.
+  /// @param curve_step  [rad] of arcs between two points
+  bool (*read)(const std::string& path, double curve_step, Drawing& drawing, std::string& error);
+};
+
+inline constexpr const char* kVectorModuleVersion = "1";
+
+/// Reads the lines and points of a DXF, shapefile, GeoPackage or GeoJSON.
+/// @param curve_step  [rad] of arcs between two points
+/// @throws FileError   the file cannot be opened, or the module is not there (with what to install)
+/// @throws InputError  the file is damaged or of another format
+Drawing read_drawing(const std::filesystem::path& path, double curve_step);
+
+}  // namespace talus::maps

@@ -1,0 +1,101 @@
+#include "talus/model/read_maps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "talus/model/section_reader.h"
+
+namespace talus {
+
+namespace {
+
+class MapsReader : private SectionReader {
+ public:
+  using SectionReader::SectionReader;
+
+  MapsInput read() {
+    const Fields f = read_table("maps");
+    out_.snap = f.get("snap", 0.0);
+    out_.shortest = f.get("shortest", 0.0);
+    out_.curve_step = f.get("curve_step", 0.0);
+    out_.has_origin = f.has("origin");
+    out_.origin = f.get<Vec2>("origin");
+    std::set<std::string> names;
+    for_list("map", [&](const Fields& m) { read_map(m, names); });
+    return std::move(out_);
+  }
+
+ private:
+  void read_map(const Fields& f, std::set<std::string>& names) {
+    claim_name(f, names, "map");
+    MapInput m;
+    m.name = f.get<std::string>("name");
+    m.file = f.get<std::string>("file");
+    m.layer = f.get<std::string>("layer");
+    m.attribute = f.get<std::string>("attribute");
+    m.values = f.get<std::vector<std::string>>("values");
+    m.unit = drawing_unit(f.get<std::string>("unit"));
+    const auto& uses = map_use_names();
+    const auto use = std::find(uses.begin(), uses.end(), f.get<std::string>("becomes"));
+    if (use != uses.end()) m.use = static_cast<MapUse>(use - uses.begin());
+    m.joint = f.get<std::string>("joint");
+    m.material = f.get<std::string>("material");
+    m.type = f.get<std::string>("type");
+    m.rock_kept = f.get<std::string>("rock") == "kept";
+    m.where = f.where(), m.where_file = f.where("file"), m.where_layer = f.where("layer");
+    m.where_attribute = f.where("attribute"), m.where_unit = f.where("unit");
+    if (f.given("file") && m.file.empty())
+      findings_.error(f.where("file"), f.path_of("file"), "is empty", "name a drawing");
+    if (f.given("attribute") != f.given("values"))
+      findings_.error(f.where(), f.path_of(f.given("values") ? "attribute" : "values"),
+                      "is missing: attribute and values belong together");
+    if (f.has("becomes")) check_keys(f, m.use);
+    out_.list.push_back(std::move(m));
+  }
+
+  // Keys that what it becomes has not, and those it cannot be without.
+  void check_keys(const Fields& f, MapUse use) {
+    const std::map<std::string, std::vector<MapUse>> belongs{
+        {"joint", {MapUse::kJoints, MapUse::kFault, MapUse::kOutline, MapUse::kOpening}},
+        {"material", {MapUse::kOutline}},
+        {"type", {MapUse::kBolt}},
+        {"rock", {MapUse::kOpening}}};
+    for (const auto& [key, uses] : belongs) {
+      const bool has = std::find(uses.begin(), uses.end(), use) != uses.end();
+      const std::string& word = map_use_names()[static_cast<size_t>(use)];
+      if (f.given(key) && !has)
+        findings_.error(f.where(key), f.path_of(key), fmt::format("has no meaning for \"{}\"", word),
+                        "leave it out");
+      if (!f.given(key) && has && uses.size() == 1 && key != "rock")
+        findings_.error(f.where(), f.path_of(key), fmt::format("is missing for becomes = \"{}\"", word));
+    }
+  }
+
+  MapsInput out_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& map_use_names() {
+  static const std::vector<std::string> names{"joints", "fault",   "outline", "opening",
+                                              "bolt",   "monitor", "ignored"};
+  return names;
+}
+
+double drawing_unit(const std::string& name) {
+  static const std::map<std::string, double> units{{"m", 1},    {"mm", 1e-3},   {"cm", 1e-2},
+                                                   {"km", 1e3}, {"in", 0.0254}, {"ft", 0.3048}};
+  const auto it = units.find(name);
+  return it == units.end() ? std::nan("") : it->second;
+}
+
+bool has_maps(const TomlSource& source) {
+  return source.root.get("map") != nullptr || source.root.get("maps") != nullptr;
+}
+
+MapsInput read_maps(const TomlSource& source, Findings& findings) {
+  return MapsReader(source, findings).read();
+}
+
+}  // namespace talus

@@ -253,7 +253,8 @@ TEST_CASE("import: a spline given by fit points alone is left out, and said; the
 TEST_CASE("cut: maps in a model become sections; run refuses them and takes the model that cut writes") {
   if (!has_module()) return;
   const Folder folder;
-  shell(folder, "cp " + kMaps + "metres.dxf drawing.dxf");
+  shell(folder, "cp " + kMaps +
+                    "metres.dxf drawing.dxf; printf 'time [s],velocity [m/s]\\n0,0\\n1,1\\n' > motion.csv");
   const std::string model = kHead + R"([joint.steep]
 friction_angle = "30 deg"
 [maps]
@@ -275,6 +276,8 @@ name = "gauge"
 file = "drawing.dxf"
 layer = "GAUGES"
 becomes = "monitor"
+[history.motion]
+file = "motion.csv"              # counts from the folder of the model, wherever its copy goes
 [contact]
 joint = "steep"
 [[stage]]

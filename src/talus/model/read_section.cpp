@@ -233,7 +233,6 @@ class ValueReader {
     const std::string expected =
         R"(a quantity, { mean = ..., normal = standard deviation }, { mean = ..., uniform = half width } or )"
         R"({ exponential = mean })";
-    Scattered s;
     if (t->size() == 1 && t->contains("exponential")) {
       const auto mean = quantity(*t->get("exponential"));
       if (!mean) return {};

@@ -1,10 +1,10 @@
 #!/bin/bash
-# Fuzzes every reader of talus, two at a time, from the seeds of tests/fuzz_seeds, under the address and
+# Fuzzes every reader of talus, AT_ONCE at a time, from the seeds of tests/fuzz_seeds, under the address and
 # undefined-behaviour sanitizers. Needs clang and libclang-rt. What breaks a reader stays in build/fuzz/found.
-# Usage: fuzz/run.sh [SECONDS [READER...]]     (default: 600 seconds each)
+# Usage: [AT_ONCE=2] fuzz/run.sh [SECONDS [READER...]]     (default: 600 seconds each)
 set -eu
 cd "$(dirname "$0")/.."
-seconds=${1:-600}
+seconds=${1:-600} at_once=${AT_ONCE:-2}
 [ $# = 0 ] || shift
 [ -e build/fuzz/build.ninja ] || cmake --preset fuzz >/dev/null
 cmake --build build/fuzz --target $(printf 'fuzz_%s ' model msh dxf record history blocks replay) | tail -1
@@ -20,7 +20,7 @@ one() {
 failed=0
 for reader in ${@:-model msh dxf record history blocks replay}; do
   one "$reader" &
-  while [ "$(jobs -rp | wc -l)" -ge 2 ]; do wait -n || failed=1; done
+  while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do wait -n || failed=1; done
 done
 while [ "$(jobs -rp | wc -l)" -gt 0 ]; do wait -n || failed=1; done
 exit $failed

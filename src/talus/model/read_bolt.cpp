@@ -11,6 +11,7 @@ namespace talus {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kMostBolts = 10000;  // of a pattern
 
 // Force across a joint per displacement along it, of a bar on an elastic foundation of the grout's stiffness
 // on both sides (theory 4.21) [N/m].
@@ -188,12 +189,19 @@ class BoltReader : private SectionReader {
       error(f, "angle_to", "must lie above angle_from, by at most 360 deg", "angles go counter-clockwise");
       return {};
     }
+    if (!f.has("count") && !f.has("angle_spacing")) return {};  // wrong, and told
     int count = static_cast<int>(f.get<int64_t>("count", 0));
     double step = f.get("angle_spacing", 0.0);
-    if (count > 0)
+    if (count > 0) {
       step = around ? range / count : count > 1 ? range / (count - 1) : 0;
-    else
-      count = static_cast<int>(std::floor(range / step * (1 + 1e-12))) + 1;
+    } else {
+      const double wanted = std::floor(range / step * (1 + 1e-12)) + 1;
+      if (wanted > kMostBolts) {
+        error(f, "angle_spacing", fmt::format("makes {:g} bolts", wanted), "is a unit missing?");
+        return {};
+      }
+      count = static_cast<int>(wanted);
+    }
     if (step > 0 && step * count > 2 * kPi * (1 + 1e-9))
       count = static_cast<int>(std::lround(2 * kPi / step));
     std::vector<double> angles;
@@ -210,7 +218,7 @@ class BoltReader : private SectionReader {
     const Vec2 from = f.get<Vec2>("from"), line = f.get<Vec2>("to") - from;
     const double angle = f.get<double>("direction"), spacing = f.get<double>("spacing");
     const double count = std::floor(norm(line) / spacing * (1 + 1e-12)) + 1;
-    if (count > 10000) {
+    if (count > kMostBolts) {
       error(f, "spacing", fmt::format("makes {:g} bolts", count), "is a unit missing?");
       return {};
     }

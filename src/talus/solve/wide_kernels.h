@@ -21,25 +21,25 @@ inline Lanes size(Lanes x) {
 inline void load(const double* p0, const double* p1, const double* p2, const double* p3, Lanes out[4]) {
   const Lanes r0 = *reinterpret_cast<const Lanes*>(p0), r1 = *reinterpret_cast<const Lanes*>(p1),
               r2 = *reinterpret_cast<const Lanes*>(p2), r3 = *reinterpret_cast<const Lanes*>(p3);
-  const Lanes t0 = __builtin_shuffle(r0, r1, Mask{0, 4, 2, 6}),
-              t1 = __builtin_shuffle(r0, r1, Mask{1, 5, 3, 7}),
-              t2 = __builtin_shuffle(r2, r3, Mask{0, 4, 2, 6}),
-              t3 = __builtin_shuffle(r2, r3, Mask{1, 5, 3, 7});
-  out[0] = __builtin_shuffle(t0, t2, Mask{0, 1, 4, 5});
-  out[1] = __builtin_shuffle(t1, t3, Mask{0, 1, 4, 5});
-  out[2] = __builtin_shuffle(t0, t2, Mask{2, 3, 6, 7});
-  out[3] = __builtin_shuffle(t1, t3, Mask{2, 3, 6, 7});
+  const Lanes t0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6),
+              t1 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7),
+              t2 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6),
+              t3 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+  out[0] = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  out[1] = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  out[2] = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  out[3] = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
 }
 
 inline void store(const Lanes in[4], double* p0, double* p1, double* p2, double* p3) {
-  const Lanes t0 = __builtin_shuffle(in[0], in[1], Mask{0, 4, 2, 6}),
-              t1 = __builtin_shuffle(in[0], in[1], Mask{1, 5, 3, 7}),
-              t2 = __builtin_shuffle(in[2], in[3], Mask{0, 4, 2, 6}),
-              t3 = __builtin_shuffle(in[2], in[3], Mask{1, 5, 3, 7});
-  *reinterpret_cast<Lanes*>(p0) = __builtin_shuffle(t0, t2, Mask{0, 1, 4, 5});
-  *reinterpret_cast<Lanes*>(p1) = __builtin_shuffle(t1, t3, Mask{0, 1, 4, 5});
-  *reinterpret_cast<Lanes*>(p2) = __builtin_shuffle(t0, t2, Mask{2, 3, 6, 7});
-  *reinterpret_cast<Lanes*>(p3) = __builtin_shuffle(t1, t3, Mask{2, 3, 6, 7});
+  const Lanes t0 = __builtin_shufflevector(in[0], in[1], 0, 4, 2, 6),
+              t1 = __builtin_shufflevector(in[0], in[1], 1, 5, 3, 7),
+              t2 = __builtin_shufflevector(in[2], in[3], 0, 4, 2, 6),
+              t3 = __builtin_shufflevector(in[2], in[3], 1, 5, 3, 7);
+  *reinterpret_cast<Lanes*>(p0) = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  *reinterpret_cast<Lanes*>(p1) = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  *reinterpret_cast<Lanes*>(p2) = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  *reinterpret_cast<Lanes*>(p3) = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
 }
 
 // Four blocks, one in each lane.

@@ -46,11 +46,7 @@ class ColumnKick {
  public:
   ColumnKick(const FreeField& field, const GroundColumn& column, const std::vector<History>& histories,
              const ColumnTiming& timing)
-      : field_(field),
-        c_(column),
-        histories_(histories),
-        t_(timing),
-        mass_(mass_of(field, column, timing.lumped)) {}
+      : c_(column), histories_(histories), t_(timing), mass_(mass_of(field, column, timing.lumped)) {}
 
   // @param v      in: rates before; out: after
   // @param force  of the stresses and body forces [Pa]
@@ -93,7 +89,6 @@ class ColumnKick {
     }
   }
 
-  const FreeField& field_;
   const GroundColumn& c_;
   const std::vector<History>& histories_;
   const ColumnTiming& t_;

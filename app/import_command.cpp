@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "talus/base/error.h"
 #include "talus/maps/import.h"
 #include "talus/maps/vector_module.h"
@@ -12,6 +14,8 @@
 namespace talus::app {
 
 namespace {
+
+constexpr double kLeastCurveStep = std::numbers::pi / 180, kMostCurveStep = std::numbers::pi / 2;  // [rad]
 
 double quantity(const std::string& option, const std::string& text, Dimension dimension) {
   const Quantity q = parse_quantity(text, dimension);
@@ -55,6 +59,8 @@ int import_command(const ImportArguments& args) {
   request.maps.snap = quantity("snap", args.snap, Dimension::kLength);
   request.maps.shortest = quantity("shortest", args.shortest, Dimension::kLength);
   request.maps.curve_step = quantity("curve-step", args.curve_step, Dimension::kAngle);
+  if (request.maps.curve_step < kLeastCurveStep || request.maps.curve_step > kMostCurveStep)
+    throw Error(kExitUsage, "--curve-step: must be from 1 deg to 90 deg");
   request.maps.has_origin = args.origin.size() == 2;
   if (request.maps.has_origin) request.maps.origin = {args.origin[0], args.origin[1]};
   Findings findings(args.file, "");

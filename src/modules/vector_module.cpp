@@ -71,9 +71,7 @@ class Setting {
 class Reader {
  public:
   Reader(GDALDatasetH dataset, double curve_step, Drawing& out)
-      : dataset_(dataset), curve_step_(curve_step), out_(out) {
-    is_dxf_ = std::string(GDALGetDriverShortName(GDALGetDatasetDriver(dataset))) == "DXF";
-  }
+      : dataset_(dataset), curve_step_(curve_step), out_(out), is_dxf_(out.format == "DXF") {}
 
   bool read(std::string& error) {
     for (int i = 0; i < GDALDatasetGetLayerCount(dataset_); ++i) {
@@ -186,7 +184,7 @@ class Reader {
   GDALDatasetH dataset_;
   double curve_step_;
   Drawing& out_;
-  bool is_dxf_ = false;
+  bool is_dxf_;
   int above_ = 0;
   std::string error_;
 };
@@ -204,9 +202,10 @@ bool read(const std::string& path, double curve_step, Drawing& out, std::string&
     if (!messages.first_failure.empty()) error += " (" + messages.first_failure + ")";
     return false;
   }
+  out.format = GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get()));
   Reader reader(dataset.get(), curve_step, out);
   if (!reader.read(error)) return false;
-  const bool is_dxf = std::string(GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get()))) == "DXF";
+  const bool is_dxf = out.format == "DXF";
   if (messages.failures > 0 && !is_dxf) {
     error = "is damaged: " + messages.first_failure;
     return false;

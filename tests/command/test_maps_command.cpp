@@ -235,6 +235,9 @@ TEST_CASE("import: what cannot be read or is not there is told, and nothing is w
   refused(kMaps + "cut_short.shp --attribute set --as A=joints", 3, "is damaged");
   refused("nothing.gpkg --as A=joints", 4, "there is no such file");
   shell(folder, "echo no map > text.gpkg; echo '{}' > empty.geojson");
+  shell(folder, "cp " + kMaps + "metres.dxf drawing.txt");
+  refused("drawing.txt --as STEEP=joints", 3, "give its name the ending .dxf");
+  refused(kMaps + "metres.dxf --as STEEP=joints --curve-step 0", 2, "must be from 1 deg to 90 deg");
   refused("text.gpkg --as A=joints", 3, "is no DXF, shapefile, GeoPackage or GeoJSON");
   refused("empty.geojson --as A=joints", 3, "empty.geojson");
 }

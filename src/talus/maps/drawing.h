@@ -28,6 +28,7 @@ struct LeftOut {
 };
 
 struct Drawing {
+  std::string format;                                      // "DXF", "GPKG" ... as the reader calls it
   double unit = std::numeric_limits<double>::quiet_NaN();  // [m] of one unit; NaN: the file does not say
   std::string unit_source;                                 // how that is known: "$INSUNITS = 4 (mm)"
   bool geographic = false;                                 // degrees of longitude and latitude

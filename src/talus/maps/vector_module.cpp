@@ -79,7 +79,12 @@ Drawing read_drawing(const std::filesystem::path& path, double curve_step) {
   std::string error;
   if (!module().read(path.string(), curve_step, out, error))
     throw InputError(fmt::format("{}: {}", path.string(), error));
-  if (!is_dxf(path)) return out;
+  if (!is_dxf(path)) {
+    if (out.format == "DXF")
+      throw InputError(
+          fmt::format("{}: is a DXF by what it holds: give its name the ending .dxf", path.string()));
+    return out;
+  }
   const auto [unit, name] = insunits_unit(scan.insunits);
   out.unit = unit;
   out.unit_source =

@@ -4,10 +4,11 @@
 talus_packages="g++ cmake ninja-build pkgconf python3-minimal libeigen3-dev libgeos-dev libtomlplusplus-dev libcli11-dev libfmt-dev
   libmuparser-dev libcairo2-dev libtbb-dev libhdf5-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
 
-# What the module that reads maps needs; a build made without it is configured anew.
+# What the module that reads maps needs; a build without the module is configured anew.
+talus_maps=no
 add_maps() {
   talus_packages="$talus_packages libgdal-dev"
-  talus_configure_again=$([ -e /usr/include/gdal/gdal.h ] && echo no || echo yes)
+  talus_maps=yes
 }
 
 install_missing_packages() {
@@ -40,7 +41,9 @@ build() {
   local log="build/$1.log"
   mkdir -p build
   [ -e "build/$1/build.ninja" ] || echo "building ($1); the first time takes a few minutes"
-  { { { [ -e "build/$1/build.ninja" ] && [ "${talus_configure_again:-no}" = no ]; } || cmake --preset "$1" ${2:-}; } &&
-    cmake --build --preset "$1"; } >"$log" 2>&1 ||
+  local configure=no
+  [ -e "build/$1/build.ninja" ] || configure=yes
+  [ "$talus_maps" = no ] || [ -e "build/$1/modules/libtalus_vector.so" ] || configure=yes
+  { { [ $configure = no ] || cmake --preset "$1" ${2:-}; } && cmake --build --preset "$1"; } >"$log" 2>&1 ||
     { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }
 }

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <string>
 
+#include "talus/base/version.h"
 #include "talus/maps/vector_module.h"
 
 namespace talus::maps {
@@ -93,8 +94,19 @@ class Reader {
 
  private:
   void take_unit(OGRLayerH layer) {
+    if (is_dxf_) return;  // it has none, and counting reads, and fails, once more
+    if (OGR_L_GetFeatureCount(layer, TRUE) == 0) return;
     OGRSpatialReferenceH system = OGR_L_GetSpatialRef(layer);
-    if (!system) return;
+    const bool first = layers_++ == 0;
+    if (first) system_ = system;
+    const bool same =
+        (system == nullptr) == (system_ == nullptr) && (!system || OSRIsSame(system, system_) != 0);
+    if (!same) {
+      error_ = std::string("its layer ") + OGR_L_GetName(layer) +
+               " is not in the coordinate system of the first: save the layers that you need in one";
+      return;
+    }
+    if (!system || !first) return;
     if (OSRIsGeographic(system)) {
       out_.geographic = true;
       return;
@@ -103,11 +115,7 @@ class Reader {
     const double unit = OSRGetLinearUnits(system, &name);
     const std::string source =
         std::string("its coordinate system, in ") + (name && *name ? name : "units without a name");
-    if (std::isnan(out_.unit)) {
-      out_.unit = unit, out_.unit_source = source;
-    } else if (out_.unit != unit) {
-      error_ = "has layers in different units: save them alike";
-    }
+    out_.unit = unit, out_.unit_source = source;
   }
 
   void take_feature(const char* layer_name, OGRFeatureH f) {
@@ -130,6 +138,9 @@ class Reader {
       if (!attribute("Text").empty() && OGR_F_GetGeometryRef(f) &&
           wkbFlatten(OGR_G_GetGeometryType(OGR_F_GetGeometryRef(f))) == wkbPoint)
         return leave_out(feature, "TEXT", "is no line or point");
+      const std::string classes = attribute("SubClasses");
+      if (classes.find("Dimension") != std::string::npos || classes.find("Leader") != std::string::npos)
+        return leave_out(feature, "annotation", "is no line or point");
       kind = "entity";
     }
     OGRGeometryH geometry = OGR_F_GetGeometryRef(f);
@@ -163,6 +174,7 @@ class Reader {
   }
 
   void take_points(Feature feature, OGRGeometryH g, bool is_point, bool is_hole) {
+    if (OGR_G_GetPointCount(g) == 0) return leave_out(feature, "part of a feature", "has no geometry");
     feature.is_point = is_point, feature.is_hole = is_hole;
     double low = 0, high = 0;
     for (int i = 0; i < OGR_G_GetPointCount(g); ++i) {
@@ -185,7 +197,8 @@ class Reader {
   double curve_step_;
   Drawing& out_;
   bool is_dxf_;
-  int above_ = 0;
+  int above_ = 0, layers_ = 0;
+  OGRSpatialReferenceH system_ = nullptr;  // of the first layer that holds anything
   std::string error_;
 };
 
@@ -210,9 +223,7 @@ bool read(const std::string& path, double curve_step, Drawing& out, std::string&
     error = "is damaged: " + messages.first_failure;
     return false;
   }
-  if (messages.failures > 0)
-    out.notes.push_back(std::to_string(messages.failures) + " of its entities cannot be read (" +
-                        messages.first_failure + ")");
+  out.unreadable = messages.failures, out.first_failure = messages.first_failure;
   if (messages.warnings > 0) out.notes.push_back(messages.first_warning);
   return true;
 }
@@ -224,5 +235,6 @@ bool read(const std::string& path, double curve_step, Drawing& out, std::string&
 extern "C" {
 // found by dlsym
 extern const talus::maps::VectorModule talus_vector_module;
-const talus::maps::VectorModule talus_vector_module{talus::maps::kVectorModuleVersion, &talus::maps::read};
+const talus::maps::VectorModule talus_vector_module{talus::kVersion, sizeof(talus::maps::Drawing),
+                                                    sizeof(talus::maps::Feature), &talus::maps::read};
 }

@@ -69,6 +69,9 @@ void add_mesh(const Model& model, const MeshInput& m, Layout& layout) {
   std::map<std::pair<int, int>, int> curve_of;
   for (const MeshEdge& e : m.mesh.edges) curve_of[std::minmax(e.from, e.to)] = e.group;
   const int between = m.joint >= 0 ? m.joint : model.bonded_joint;
+  std::map<std::pair<int, int>, int> users;  // elements along each edge
+  for (const MeshElement& e : m.mesh.elements)
+    for (int k = 0; k < e.corners; ++k) ++users[std::minmax(e.at(k), e.at(k + 1))];
   for (size_t i = 0; i < m.mesh.elements.size(); ++i) {
     const MeshElement& e = m.mesh.elements[i];
     BlockShape b;
@@ -79,11 +82,12 @@ void add_mesh(const Model& model, const MeshInput& m, Layout& layout) {
     b.material = e.group < 0 ? m.material : m.group_material[static_cast<size_t>(e.group)];
     b.kind = m.kind;
     for (int k = 0; k < e.corners; ++k) {
-      const int from = e.node[static_cast<size_t>(k)], to = e.node[static_cast<size_t>((k + 1) % e.corners)];
-      const auto curve = curve_of.find(std::minmax(from, to));
+      const std::pair<int, int> ends = std::minmax(e.at(k), e.at(k + 1));
+      const auto curve = curve_of.find(ends);
       const int joint = curve == curve_of.end() ? -1 : m.curve_joint[static_cast<size_t>(curve->second)];
       b.edge_origin.push_back(first_origin + (curve == curve_of.end() ? 0 : 1 + curve->second));
-      b.edge_joint.push_back(joint >= 0 ? joint : between);
+      // the outside meets other bodies, as that of a region does
+      b.edge_joint.push_back(joint >= 0 ? joint : users.at(ends) > 1 ? between : model.default_joint);
     }
     layout.blocks.push_back(std::move(b));
   }
@@ -117,7 +121,8 @@ void check_overlaps(const Layout& layout, Findings& findings) {
   for (const auto& [i, j] : close_pairs(boxes, 0)) {
     const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
     const bool cut_a = a.group >= layout.first_cut_group, cut_b = b.group >= layout.first_cut_group;
-    if (a.group == b.group || (cut_a && cut_b)) continue;  // these share their corners exactly
+    const bool in_mesh = a.group >= layout.first_mesh_group && !cut_a;  // from outside: anything may be wrong
+    if ((a.group == b.group && !in_mesh) || (cut_a && cut_b)) continue;  // these share their corners exactly
     const Overlap overlap = polygon_overlap(a.polygon, b.polygon);
     const double smaller = std::min(signed_area(a.polygon), signed_area(b.polygon));
     // sides of cut blocks lie on the grid, not exactly where they were drawn
@@ -239,6 +244,7 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
     add_grid(g, group, layout);
     layout.pair_joint[{group, group}] = g.joint;
   }
+  layout.first_mesh_group = static_cast<int>(layout.groups.size());
   for (const MeshInput& m : model.meshes) add_mesh(model, m, layout);
   add_cut(model, cut, layout);
   for (const ContactPairInput& p : model.contact_pairs) {

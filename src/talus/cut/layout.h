@@ -1,6 +1,6 @@
 #pragma once
-// From the model's blocks, grids and cut regions to the list of block polygons, and the checks that need them
-// all: simple, apart from each other, monitors and supports on a block.
+// From the model's blocks, grids, meshes and cut regions to the list of block polygons, and the checks that
+// need them all: simple, apart from each other, monitors and supports on a block.
 
 #include <map>
 #include <string>
@@ -15,7 +15,7 @@ namespace talus {
 struct BlockShape {
   std::string name;
   int id = 0;       // number that stays when other blocks are merged or taken out
-  int group = 0;    // index of the block, grid, region or opening it belongs to
+  int group = 0;    // index of the block, grid, mesh surface, region or opening it belongs to
   Polygon polygon;  // counter-clockwise
   int material = 0;
   BlockKind kind = BlockKind::kDeformable;
@@ -32,6 +32,7 @@ struct Layout {
       groups;  // names of blocks, grids, meshes and their surfaces, regions, kept openings
   std::vector<Where> group_where;    // [groups]
   std::map<int, int> mesh_of;        // group of a physical surface -> that of its mesh
+  int first_mesh_group = 0;          // groups from here to the next are those of meshes
   int first_cut_group = 0;           // groups from here on were cut together
   std::vector<std::string> origins;  // what edges of cut blocks and meshes come from
   double touching = 0;               // [m] edges of cut blocks lie this near to each other where they touch

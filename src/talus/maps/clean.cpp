@@ -11,19 +11,13 @@ namespace talus::maps {
 
 namespace {
 
-constexpr int kMostPasses = 8;  // of joining ends; each may bring one end within reach of another
+constexpr int kMostPasses = 8;         // of joining ends; each may bring one end within reach of another
+constexpr double kShareOfLine = 1e-9;  // of a segment: round-off
 
 double length_of(const Polyline& line) {
   double sum = 0;
   for (size_t k = 0; k + 1 < line.size(); ++k) sum += norm(line[k + 1] - line[k]);
   return sum;
-}
-
-double distance_to_line(Vec2 p, const Polyline& line) {
-  double least = std::numeric_limits<double>::infinity();
-  for (size_t k = 0; k + 1 < line.size(); ++k)
-    least = std::min(least, distance_to_segment(p, line[k], line[k + 1]));
-  return least;
 }
 
 Vec2 nearest_on(Vec2 p, Vec2 a, Vec2 b) {
@@ -51,7 +45,7 @@ class Cleaner {
     drop_doubles();
     for (int pass = 0; pass < kMostPasses; ++pass)
       if (!join_ends()) break;
-    drop_crumbs();
+    drop_short_lines();
     return std::move(mends_);
   }
 
@@ -86,6 +80,19 @@ class Cleaner {
     forget_empty();
   }
 
+  // Lines that joining made too short, and points that it put on each other. Corners and joined points stay.
+  void drop_short_lines() {
+    for (MapLine& line : lines_) {
+      if (line.fixed) continue;
+      line.points.erase(std::unique(line.points.begin(), line.points.end()), line.points.end());
+      if (line.points.size() > 1 && length_of(line.points) >= std::max(limits_.shortest, limits_.round))
+        continue;
+      note(Mend::kCrumb, line, line.points.front());
+      line.points.clear();
+    }
+    forget_empty();
+  }
+
   // --- doubles ---
 
   void drop_doubles() {
@@ -94,12 +101,14 @@ class Cleaner {
     for (const MapLine& line : lines_) length.push_back(length_of(line.points));
     std::vector<std::pair<int, int>> pairs = close_pairs(boxes_of_lines(), reach);
     for (const auto& [i, j] : pairs) {
-      // the longer one stays, of equal ones the first
-      const bool first_stays =
-          lines_[at(i)].fixed || (!lines_[at(j)].fixed && length[at(i)] >= length[at(j)] - reach);
+      // what other bodies meet at must not lose its joint: lines along outlines and openings stay
+      if (lines_[at(i)].fixed || lines_[at(j)].fixed) continue;
+      // the more important, then the longer one stays, of equal ones the first
+      const int more = lines_[at(i)].rank - lines_[at(j)].rank;
+      const bool first_stays = more != 0 ? more > 0 : length[at(i)] >= length[at(j)] - reach;
       MapLine& stays = lines_[at(first_stays ? i : j)];
       MapLine& goes = lines_[at(first_stays ? j : i)];
-      if (goes.fixed || goes.points.empty() || stays.points.empty()) continue;
+      if (goes.points.empty() || stays.points.empty()) continue;
       if (!lies_along(goes.points, stays.points, reach)) continue;
       note(Mend::kDouble, goes, 0.5 * (goes.points.front() + goes.points.back()));
       goes.points.clear();
@@ -107,13 +116,61 @@ class Cleaner {
     forget_empty();
   }
 
-  // Whether all points of `line`, and the middles between them, lie within `reach` of `other`.
+  // Whether every point of `line` lies within `reach` of `other`.
   static bool lies_along(const Polyline& line, const Polyline& other, double reach) {
-    for (size_t k = 0; k < line.size(); ++k) {
-      if (distance_to_line(line[k], other) > reach) return false;
-      if (k + 1 < line.size() && distance_to_line(0.5 * (line[k] + line[k + 1]), other) > reach) return false;
-    }
+    for (size_t k = 0; k + 1 < line.size(); ++k)
+      if (!is_covered(line[k], line[k + 1], other, reach)) return false;
     return true;
+  }
+
+  // The points of a-b within `reach` of one segment form an interval, since what lies within reach of a
+  // segment is convex; together the intervals must cover all of it.
+  static bool is_covered(Vec2 a, Vec2 b, const Polyline& other, double reach) {
+    std::vector<std::pair<double, double>> parts;
+    for (size_t k = 0; k + 1 < other.size(); ++k) {
+      const auto distance = [&](double t) {
+        return distance_to_segment(a + t * (b - a), other[k], other[k + 1]);
+      };
+      const double nearest = least_of(distance);
+      if (distance(nearest) <= reach)
+        parts.emplace_back(edge_of(distance, nearest, 0, reach), edge_of(distance, nearest, 1, reach));
+    }
+    std::sort(parts.begin(), parts.end());
+    double covered = 0;
+    for (const auto& [from, to] : parts)
+      if (from <= covered + kShareOfLine) covered = std::max(covered, to);
+    return covered >= 1 - kShareOfLine;
+  }
+
+  // Where a convex function on [0, 1] is least.
+  template <class Function>
+  static double least_of(const Function& f) {
+    double low = 0, high = 1;
+    while (high - low > kShareOfLine) {
+      const double third = (high - low) / 3;
+      if (f(low + third) <= f(high - third))
+        high -= third;
+      else
+        low += third;
+    }
+    const double middle = 0.5 * (low + high);
+    if (f(0) <= f(middle)) return 0;
+    return f(1) < f(middle) ? 1 : middle;
+  }
+
+  // How far from `inside` towards `end` the function stays at or below `limit`.
+  template <class Function>
+  static double edge_of(const Function& f, double inside, double end, double limit) {
+    if (f(end) <= limit) return end;
+    double outside = end;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      if (f(middle) <= limit)
+        inside = middle;
+      else
+        outside = middle;
+    }
+    return inside;
   }
 
   // --- ends ---
@@ -219,8 +276,8 @@ class Cleaner {
         continue;
       }
       // a point of the line near by is better than one more
-      for (const Vec2 corner : {a, b})
-        if (norm(corner - t.point) <= reach) t.point = corner, t.line = t.segment = -1;
+      const Vec2 corner = norm(a - t.point) <= norm(b - t.point) ? a : b;
+      if (norm(corner - t.point) <= reach) t.point = corner, t.line = t.segment = -1;
       t.distance = norm(t.point - end);
       if (t.distance > std::max(room, limits_.round)) continue;  // it would turn the line about
       // joined already is best; a crossing before a gap; then the nearest

@@ -12,6 +12,7 @@ namespace talus::maps {
 struct MapLine {
   Polyline points;     // [m]
   int source = 0;      // index of the [[map]] it came by
+  int rank = 0;        // of two that lie along each other the higher stays
   bool fixed = false;  // others are joined to it, itself it stays (openings)
 };
 

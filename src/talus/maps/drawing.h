@@ -35,6 +35,8 @@ struct Drawing {
   std::vector<Feature> features;
   std::vector<LeftOut> left_out;
   std::vector<std::string> notes;  // of the reader, worth a warning
+  int unreadable = 0;              // entities of a DXF that the reader gave up
+  std::string first_failure;       // what it said of the first
 
   /// Counts one feature that was left out.
   void leave_out(const std::string& layer, const std::string& what, const std::string& reason,

@@ -12,8 +12,11 @@ ExpandedModel expand_model(const std::string& file, const std::string& text,
                            Findings& findings) {
   ExpandedModel out;
   std::vector<std::string> of_maps;
-  for (const std::string& item : overrides)
-    (item.rfind("map.", 0) == 0 || item.rfind("maps.", 0) == 0 ? of_maps : out.overrides).push_back(item);
+  for (const std::string& item : overrides) {
+    const bool is_map = item.rfind("map.", 0) == 0 || item.rfind("maps.", 0) == 0;
+    if (is_map || item.rfind("folder=", 0) == 0) of_maps.push_back(item);
+    if (!is_map) out.overrides.push_back(item);
+  }
   const TomlSource source = parse_toml(text, of_maps, findings);
   if (findings.has_errors()) return out;
   out.has_maps = has_maps(source);
@@ -28,6 +31,9 @@ ExpandedModel expand_model(const std::string& file, const std::string& text,
   std::string head;
   for (const std::string& item : of_maps) head += "# --set " + item + "\n";
   out.text = replace_maps(text, head + made.text);
+  if (!findings.has_errors() && has_maps(parse_toml(out.text, {}, findings)))
+    findings.error({1, 1, ""}, "map", "is written in a way that cannot be replaced",
+                   "write [maps] and [[map]], each with its keys in the lines below");
   out.report = std::move(made.report);
   return out;
 }
@@ -41,15 +47,15 @@ std::string with_folder(const std::string& text, const std::filesystem::path& fo
       absolute(folder / "").lexically_relative(absolute(new_folder / "")).generic_string();
   std::string quoted;
   for (const char c : way) quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  std::istringstream in(text);
+  // the key that is there already becomes a comment
+  Findings ignored("", text);
+  const TomlSource source = parse_toml(text, {}, ignored);
+  const toml::node* key = source.root.get("folder");
+  const auto key_line = key ? key->source().begin.line : 0;
+  std::istringstream in(text.compare(0, 3, "\xef\xbb\xbf") == 0 ? text.substr(3) : text);
   std::string out = "folder = \"" + quoted + "\"\n", line;
-  bool at_top = true;  // keys before the first section
-  while (std::getline(in, line)) {
-    const size_t first = line.find_first_not_of(" \t");
-    at_top = at_top && (first == std::string::npos || line[first] != '[');
-    const bool is_key = at_top && first != std::string::npos && line.compare(first, 6, "folder") == 0;
-    out += (is_key ? "# " : "") + line + "\n";
-  }
+  for (toml::source_index number = 1; std::getline(in, line); ++number)
+    out += (number == key_line ? "# " : "") + line + "\n";
   return out;
 }
 

@@ -65,7 +65,8 @@ MapUse guessed_use(const std::string& layer, bool has_points, bool has_lines) {
 
 MapSections import_map(const ImportRequest& request, const DrawingReader& reader, Findings& findings) {
   MapsInput maps = request.maps;
-  const std::vector<std::string> units{"auto", "m", "mm", "cm", "km", "in", "ft"};
+  std::vector<std::string> units = drawing_unit_names();
+  units.insert(units.begin(), "auto");
   if (std::find(units.begin(), units.end(), request.unit) == units.end()) {
     findings.error({}, "unit", fmt::format("\"{}\" is not known; must be {}", request.unit, join_or(units)));
     return {};
@@ -116,7 +117,9 @@ MapSections import_map(const ImportRequest& request, const DrawingReader& reader
   }
   if (findings.has_errors()) return {};
   const auto again = [&drawing](const std::filesystem::path&, double) { return drawing; };
-  return make_sections(maps, "", again, findings);
+  MapSections made = make_sections(maps, "", again, findings);
+  made.text = "# materials and bolt types that are named here belong into the model\n" + made.text;
+  return made;
 }
 
 }  // namespace talus::maps

@@ -130,6 +130,8 @@ class SectionMaker {
     const std::string& use = map_use_names()[static_cast<size_t>(m.use)];
     if (m.use == MapUse::kIgnored)
       return drawing.leave_out(f.layer, f.is_point ? "point" : "line", "\"ignored\"");
+    if (f.points.size() < (f.is_point ? 1 : 2))
+      return drawing.leave_out(f.layer, f.is_point ? "point" : "line", "has too few points");
     if (f.is_point != (m.use == MapUse::kMonitor))
       return drawing.leave_out(f.layer, f.is_point ? "point" : "line", fmt::format("cannot become {}", use));
     const bool area = m.use == MapUse::kOutline || m.use == MapUse::kOpening;
@@ -257,13 +259,22 @@ class SectionMaker {
               "close it in the drawing, or give a wider [maps] snap");
         continue;
       }
+      const auto mend = [&](Mend::Kind kind, Vec2 at) {
+        ++note(t.map).mended[kind];
+        out_.report.mends.push_back({kind, t.map, at});
+      };
+      if (!t.is_closed) mend(Mend::kGap, t.points.back());
       t.points.pop_back();
       Polygon polygon;  // no point twice
-      for (const Vec2 p : t.points)
-        if (polygon.empty() || norm(p - polygon.back()) >= std::max(maps_.shortest, round_))
+      const double least = std::max(maps_.shortest, round_);
+      for (const Vec2 p : t.points) {
+        if (polygon.empty() || norm(p - polygon.back()) >= least)
           polygon.push_back(p);
-      while (polygon.size() > 1 && norm(polygon.back() - polygon.front()) < std::max(maps_.shortest, round_))
-        polygon.pop_back();
+        else
+          mend(Mend::kPoint, p);
+      }
+      for (; polygon.size() > 1 && norm(polygon.back() - polygon.front()) < least; polygon.pop_back())
+        mend(Mend::kPoint, polygon.back());
       const std::string defect = polygon_defect(polygon);
       if (!defect.empty()) {
         wrong(defect, "mend it in the drawing");
@@ -284,16 +295,16 @@ class SectionMaker {
         Polyline ring = t.points;
         ring.push_back(ring.front());
         out_.report.outlines.push_back(ring);
-        lines.push_back({ring, static_cast<int>(i), true});
+        lines.push_back({ring, static_cast<int>(i), 0, true});
       } else if (use == MapUse::kJoints || use == MapUse::kFault) {
-        lines.push_back({t.points, static_cast<int>(i), false});
-        out_.report.before.push_back({t.points, t.map, false});
+        lines.push_back({t.points, static_cast<int>(i), use == MapUse::kFault ? 1 : 0, false});
+        out_.report.before.push_back({t.points, t.map, 0, false});
       }
     }
-    out_.report.mends = clean_lines(lines, {maps_.snap, maps_.shortest, 2 * round_});
-    for (Mend& mend : out_.report.mends) {
+    for (Mend mend : clean_lines(lines, {maps_.snap, maps_.shortest, 2 * round_})) {
       mend.source = taken_[static_cast<size_t>(mend.source)].map;
       ++note(mend.source).mended[mend.kind];
+      out_.report.mends.push_back(mend);
     }
     // ends on an outline go through it: what is outside is clipped, and no rounding can leave them short
     for (MapLine& line : lines) {
@@ -302,7 +313,7 @@ class SectionMaker {
       pass_outline(line.points);
       round_points(line.points);
       lines_.emplace(i, line.points);
-      out_.report.after.push_back({line.points, taken_[i].map, false});
+      out_.report.after.push_back({line.points, taken_[i].map, 0, false});
     }
     for (const MapLine& line : lines) {
       if (!line.fixed) continue;
@@ -381,10 +392,10 @@ class SectionMaker {
         return "[[fault]]\n" + head + key("joint", m.joint) + "points = " + points(map, lines_.at(i)) + "\n";
       case MapUse::kOutline:
         return "[[region]]\n" + head + key("material", m.material) + key("joint", m.joint) +
-               "polygon = " + points(map, p) + "\n";
+               "polygon = " + ring(map, p) + "\n";
       case MapUse::kOpening:
         return "[[opening]]\n" + head + "shape = \"polygon\"\n" + (m.rock_kept ? "rock = \"kept\"\n" : "") +
-               key("joint", m.joint) + "polygon = " + points(map, rings_.at(i)) + "\n";
+               key("joint", m.joint) + "polygon = " + ring(map, rings_.at(i)) + "\n";
       case MapUse::kBolt:
         return "[[bolt]]\n" + head + key("type", m.type) + "from = " + point(p[0]) + "\nto = " + point(p[1]) +
                "\n";
@@ -420,6 +431,10 @@ class SectionMaker {
     return s == "-0" ? "0" : s;
   }
   std::string point(Vec2 p) const { return fmt::format("[{}, {}]", number(p.x), number(p.y)); }
+  std::string ring(int map, const Polygon& polygon) {
+    note(map).length += norm(polygon.front() - polygon.back());
+    return points(map, polygon);
+  }
   std::string points(int map, const Polyline& line) {
     std::string out;
     for (size_t k = 0; k < line.size(); ++k) {

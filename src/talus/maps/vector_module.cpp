@@ -11,6 +11,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
+#include "talus/base/version.h"
 #include "talus/maps/dxf_scan.h"
 
 namespace talus::maps {
@@ -35,7 +36,9 @@ const VectorModule& module() {
       void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
       const auto* found =
           library ? static_cast<const VectorModule*>(dlsym(library, "talus_vector_module")) : nullptr;
-      if (found && std::strcmp(found->version, kVectorModuleVersion) == 0) return found;
+      if (found && std::strcmp(found->version, kVersion) == 0 && found->drawing_size == sizeof(Drawing) &&
+          found->feature_size == sizeof(Feature))
+        return found;
       const char* reason = library ? "it belongs to another talus" : dlerror();
       trouble = fmt::format("{}: {}", place.string(), reason ? reason : "no reason given");
     }
@@ -93,6 +96,11 @@ Drawing read_drawing(const std::filesystem::path& path, double curve_step) {
                    : fmt::format("$INSUNITS = {} ({})", scan.insunits, name);
   for (const auto& [what, count] : scan.entities)
     if (!is_drawn(what.second)) out.leave_out(what.first, what.second, "is no line or point", count);
+  int fit_splines = 0;
+  for (const auto& [layer, count] : scan.fit_splines) fit_splines += count;
+  if (out.unreadable > fit_splines)
+    throw InputError(fmt::format("{}: {} of its entities cannot be read ({}): mend or explode them",
+                                 path.string(), out.unreadable - fit_splines, out.first_failure));
   for (const auto& [layer, count] : scan.fit_splines)
     out.leave_out(layer, "SPLINE", "is given by fit points alone: explode it, or save it as a polyline",
                   count);

@@ -9,15 +9,14 @@
 
 namespace talus::maps {
 
-/// What the module offers, found by its name. Program and module are built together: `version` tells.
+/// What the module offers, found by its name. Program and module are built together: the first three tell.
 struct VectorModule {
-  const char* version;  // kVectorModuleVersion of the build
+  const char* version;                // kVersion of the build
+  size_t drawing_size, feature_size;  // of the structs that it fills
   /// Reads `path`; on failure returns false with the reason in `error`.
   /// @param curve_step  [rad] of arcs between two points
   bool (*read)(const std::string& path, double curve_step, Drawing& drawing, std::string& error);
 };
-
-inline constexpr const char* kVectorModuleVersion = "1";
 
 /// Reads the lines and points of a DXF, shapefile, GeoPackage or GeoJSON.
 /// @param curve_step  [rad] of arcs between two points

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -13,6 +14,7 @@ namespace talus {
 
 namespace {
 
+constexpr double kLevel = 1e-9;      // of the coordinates: heights within it are one
 constexpr int64_t kMost = 20000000;  // nodes or elements: more is a damaged count
 
 enum Kind { kLine = 1, kTriangle = 2, kQuadrilateral = 3, kPoint = 15 };
@@ -123,6 +125,8 @@ class MshReader {
           read_entities();
         else
           words_.skip_to("$EndEntities");
+      } else if (section == "$PartitionedEntities") {
+        words_.fail("a partitioned mesh is not read: save it whole");
       } else if (section == "$Nodes") {
         read_nodes();
         has_nodes = true;
@@ -171,7 +175,7 @@ class MshReader {
         int64_t group = 0;
         const int64_t groups = words_.count("groups");
         for (int64_t k = 0; k < groups; ++k) {
-          const int64_t g = words_.integer();
+          const int64_t g = std::abs(words_.integer());  // negative where the group runs the other way
           if (k == 0) group = g;
         }
         if (groups > 1 && (dimension == 1 || dimension == 2))
@@ -188,7 +192,8 @@ class MshReader {
     const Vec2 p{words_.real(), words_.real()};
     const double z = words_.real();
     if (out_.node.empty()) level_ = z;
-    if (z != level_)
+    reach_ = std::max({reach_, std::abs(p.x), std::abs(p.y)});
+    if (std::abs(z - level_) > kLevel * reach_)
       words_.fail(
           fmt::format("node {} is not in the plane of the first: z = {:g}, not {:g}", tag, z, level_));
     if (!node_of_.emplace(tag, static_cast<int>(out_.node.size())).second)
@@ -225,7 +230,7 @@ class MshReader {
       const int64_t tags = words_.count("tags");
       for (int64_t k = 0; k < tags; ++k) {
         const int64_t t = words_.integer();
-        if (k == 0) group = t;
+        if (k == 0) group = std::abs(t);
       }
       add_element(tag, kind, group);
     }
@@ -240,6 +245,8 @@ class MshReader {
     for (int64_t b = 0; b < blocks; ++b) {
       const int64_t dimension = words_.integer(), entity = words_.integer(), kind = words_.integer();
       const auto group = group_of_.find({dimension, entity});
+      if (group == group_of_.end() && (!group_of_.empty() || !names_.empty()))
+        words_.fail(fmt::format("entity {} is not in $Entities", entity));
       const int64_t n = words_.count("elements");
       for (int64_t k = 0; k < n; ++k)
         add_element(words_.integer(), kind, group == group_of_.end() ? 0 : group->second);
@@ -306,7 +313,7 @@ class MshReader {
   Words words_;
   Mesh out_;
   bool version4_ = false;
-  double level_ = 0;
+  double level_ = 0, reach_ = 0;  // z of the first node; farthest coordinate so far
   std::map<std::pair<int64_t, int64_t>, std::string> names_;  // (dimension, tag)
   std::map<std::pair<int64_t, int64_t>, int64_t> group_of_;   // (dimension, entity) -> physical group
   std::map<std::pair<int64_t, int64_t>, int> group_number_;   // (dimension, group) -> place in its list

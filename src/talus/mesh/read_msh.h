@@ -15,6 +15,9 @@ struct MeshElement {
   int corners = 3;                          // 3 or 4
   int group = -1;                           // of surfaces; -1: in none
   int tag = 0;                              // of the file
+
+  /// Node at corner k, counted around.
+  int at(int k) const { return node[static_cast<size_t>(k % corners)]; }
 };
 
 struct MeshEdge {

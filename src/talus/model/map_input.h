@@ -15,7 +15,9 @@ enum class MapUse { kJoints, kFault, kOutline, kOpening, kBolt, kMonitor, kIgnor
 /// The words of the model file, in the order of MapUse.
 const std::vector<std::string>& map_use_names();
 
-/// Metres in one unit of a drawing by its name (mm, cm, m, km, in, ft); NaN for others.
+/// Units of drawings: m, mm, cm, km, in, ft.
+const std::vector<std::string>& drawing_unit_names();
+/// Metres in one unit of a drawing by its name; NaN for others.
 double drawing_unit(const std::string& name);
 
 /// One [[map]]: some features of a file and what they become.

@@ -83,11 +83,26 @@ const std::vector<std::string>& map_use_names() {
   return names;
 }
 
+namespace {
+
+const std::vector<std::pair<std::string, double>> kUnits{{"m", 1},    {"mm", 1e-3},   {"cm", 1e-2},
+                                                         {"km", 1e3}, {"in", 0.0254}, {"ft", 0.3048}};
+
+}  // namespace
+
+const std::vector<std::string>& drawing_unit_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const auto& [name, metres] : kUnits) list.push_back(name);
+    return list;
+  }();
+  return names;
+}
+
 double drawing_unit(const std::string& name) {
-  static const std::map<std::string, double> units{{"m", 1},    {"mm", 1e-3},   {"cm", 1e-2},
-                                                   {"km", 1e3}, {"in", 0.0254}, {"ft", 0.3048}};
-  const auto it = units.find(name);
-  return it == units.end() ? std::nan("") : it->second;
+  for (const auto& [unit, metres] : kUnits)
+    if (unit == name) return metres;
+  return std::nan("");
 }
 
 bool has_maps(const TomlSource& source) {

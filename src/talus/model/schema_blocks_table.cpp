@@ -1,5 +1,6 @@
 // Blocks given one by one and as grids.
 
+#include "talus/model/map_input.h"
 #include "talus/model/schema_tables.h"
 
 namespace talus {
@@ -71,7 +72,7 @@ std::vector<SectionSpec> block_sections() {
         {.name = "unit",
          .type = K::kChoice,
          .default_text = "\"m\"",
-         .choices = {"m", "mm", "cm", "km", "in", "ft"},
+         .choices = drawing_unit_names(),
          .doc = "Of its coordinates."},
         {.name = "material",
          .type = K::kName,
@@ -80,7 +81,9 @@ std::vector<SectionSpec> block_sections() {
         {.name = "joint",
          .type = K::kName,
          .refers_to = "joint",
-         .doc = "Between its blocks, but along curves called like a joint; none: glued."},
+         .doc =
+             "Between its blocks, but along curves called like a joint; none: glued. Its outside meets other "
+             "blocks by the joint of `[contact]`."},
         {.name = "kind",
          .type = K::kChoice,
          .default_text = "\"deformable\"",

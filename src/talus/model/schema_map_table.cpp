@@ -6,6 +6,8 @@
 namespace talus {
 
 std::vector<SectionSpec> map_sections() {
+  std::vector<std::string> units = drawing_unit_names();
+  units.insert(units.begin(), "auto");
   return {
       {"map",
        SectionShape::kList,
@@ -34,7 +36,7 @@ std::vector<SectionSpec> map_sections() {
         {.name = "unit",
          .type = K::kChoice,
          .default_text = "\"auto\"",
-         .choices = {"auto", "m", "mm", "cm", "km", "in", "ft"},
+         .choices = units,
          .doc =
              "Of the coordinates; `auto`: what the file says ($INSUNITS of a DXF, the coordinate system of "
              "others)."},

@@ -141,6 +141,19 @@ TEST_CASE("mesh: a joint for the whole, and contact pairs of its groups") {
   CHECK(name(c.layout.blocks[0].edge_joint[1]) == "weak");
 }
 
+TEST_CASE("mesh: its outside meets other blocks by the joint of [contact], its inside is glued") {
+  const Case c(kModel +
+               "[contact]\njoint = \"weak\"\n[[block]]\nname = \"b\"\nmaterial = \"rock\"\n"
+               "polygon = [[0, 1e-3], [1e-3, 1e-3], [1e-3, 2e-3], [0, 2e-3]]\n");
+  INFO(c.findings.render());
+  CHECK(c.findings.error_count() == 0);
+  const auto name = [&c](int joint) { return c.model.joints[static_cast<size_t>(joint)].name; };
+  REQUIRE(c.layout.blocks[0].name == "b");
+  CHECK(name(c.layout.joint_at(0, 0, 1, 2)) == "weak");  // floor of b on the top of the square
+  CHECK(name(c.layout.blocks[1].edge_joint[1]) == "(glued)");
+  CHECK(name(c.layout.blocks[1].edge_joint[3]) == "weak");
+}
+
 TEST_CASE("mesh: wrong ones are told") {
   const auto told = [](const std::string& text, const std::string& part, const std::string& mesh = kMesh) {
     const std::string found = Case(text, mesh).findings.render();
@@ -153,6 +166,9 @@ TEST_CASE("mesh: wrong ones are told") {
   told(replaced(kModel, "along = \"floor\"", "along = \"flor\""), "did you mean \"floor\"?");
   told(kModel, "cannot be read", kMesh.substr(0, 300));
   told(kModel, "element 5", replaced(kMesh, "1 2 6 5", "1 6 2 5"));
+  // a third triangle over the second, in the same surface
+  told(kModel, "overlaps",
+       replaced(replaced(kMesh, "$Elements\n8\n", "$Elements\n9\n"), "8 3 2 4", "9 2 2 3 1 2 3 6\n8 3 2 4"));
   told(kModel + "[[block]]\nname = \"m\"\nmaterial = \"rock\"\npolygon = [[5, 0], [6, 0], [6, 1]]\n",
        "is called \"m\"");
   told(kModel + "[[block]]\nname = \"b\"\nmaterial = \"rock\"\npolygon = [[0, 0], [6, 0], [6, 1]]\n",

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<MapLine> lines_of(const std::vector<Polyline>& list) {
   std::vector<MapLine> out;
-  for (const Polyline& l : list) out.push_back({l, static_cast<int>(out.size()), false});
+  for (const Polyline& l : list) out.push_back({l, static_cast<int>(out.size()), 0, false});
   return out;
 }
 
@@ -88,6 +88,36 @@ TEST_CASE("clean: doubles go, the longer of two stays, parts that only touch sta
   REQUIRE(lines.size() == 2);
   CHECK(lines[0].source == 1);
   CHECK(lines[1].source == 3);
+}
+
+TEST_CASE(
+    "clean: a straight line beside one that swings about it is no double, nor is one along an outline") {
+  std::vector<MapLine> lines = lines_of({{{0, 0}, {10, 0}}, {{0, 0}, {2.5, 1}, {5, 0}, {7.5, -1}, {10, 0}}});
+  CHECK(count(clean_lines(lines, {0.1, 0, 1e-6}), Mend::kDouble) == 0);
+  lines = lines_of({{{0, 0}, {10, 0}, {10, 5}, {0, 5}, {0, 0}}, {{1, 0.01}, {9, 0.01}}});
+  lines[0].fixed = true;
+  CHECK(count(clean_lines(lines, {0.1, 0, 1e-6}), Mend::kDouble) == 0);
+}
+
+TEST_CASE("clean: of a fault and a longer joint along it the fault stays") {
+  std::vector<MapLine> lines = lines_of({{{0, 0}, {10, 0}}, {{-5, 0.01}, {15, 0.01}}});
+  lines[0].rank = 1;
+  CHECK(count(clean_lines(lines, {0.1, 0, 1e-6}), Mend::kDouble) == 0);  // the joint goes on beyond the fault
+  lines = lines_of({{{0, 0}, {10, 0}}, {{0, 0.01}, {10.05, 0.01}}});
+  lines[0].rank = 1;
+  clean_lines(lines, {0.1, 0, 1e-6});
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].source == 0);
+}
+
+TEST_CASE("clean: joining takes no corner away, however near it is") {
+  // B ends 5.5 cm beside the corner of A, and D at it: farther than snap, nearer than the shortest segment
+  std::vector<MapLine> lines =
+      lines_of({{{0, 0}, {5, 0}, {5, 5}}, {{4.945, -3}, {4.945, 0}}, {{5, 0}, {9, -1}}});
+  clean_lines(lines, {0.05, 0.06, 1e-6});
+  CHECK(has_point(lines[0].points, {5, 0}));
+  CHECK(has_point(lines[0].points, lines[1].points.back()));
+  CHECK(lines[2].points.front() == Vec2{5, 0});
 }
 
 TEST_CASE("clean: crumbs and points too close go, ends stay where they are") {

@@ -8,6 +8,7 @@
 #include "talus/maps/expand.h"
 #include "talus/maps/import.h"
 #include "talus/model/read_model.h"
+#include "talus/model/toml_source.h"
 
 using namespace talus;
 using namespace talus::maps;
@@ -112,6 +113,20 @@ TEST_CASE("maps: what is left out is counted with layer and reason") {
   CHECK(report.find("4 TEXT on layer \"notes\"") != std::string::npos);
 }
 
+TEST_CASE("maps: an outline that nearly closes is closed, points too close to each other go, both counted") {
+  Drawing d = drawing(1, {0, 0});
+  d.features[0].points = {{0, 0}, {10, 0}, {10.01, 0.01}, {10, 6}, {0, 6}, {0.03, 0.02}};
+  d.features.push_back(line("joints", {}));
+  MapsInput maps = section_maps();
+  maps.shortest = 0.02;
+  const MapSections made = sections(maps, d);
+  CHECK(made.text.find("polygon = [[0, 0], [10, 0], [10, 6], [0, 6]]") != std::string::npos);
+  CHECK(made.report.maps[0].mended[Mend::kGap] == 1);
+  CHECK(made.report.maps[0].mended[Mend::kPoint] == 1);
+  CHECK(map_report_text(made.report).find("1 line on layer \"joints\": has too few points") !=
+        std::string::npos);
+}
+
 TEST_CASE("maps: wrong ones are told") {
   std::string told;
   Drawing d = drawing(1, {0, 0});
@@ -151,6 +166,14 @@ TEST_CASE("maps in a model text: lines keep their numbers, wrong keys are told")
   CHECK(line_of(made.text, "[material.stone]") == line_of(text, "[material.stone]"));
   CHECK(made.text.find("[[region]]") != std::string::npos);
 
+  // the key `folder` replaces the one that is there, whatever the lines before it look like
+  const std::string moved =
+      with_folder("\xef\xbb\xbf# folder\n\"folder\" = \"x\"\ntitle = \"\"\"\n[a]\"\"\"\n", "/a/b", "/a/c/d");
+  CHECK(moved.find("folder = \"../../b") == 0);
+  Findings of_moved("m.toml", moved);
+  CHECK(parse_toml(moved, {}, of_moved).root["folder"].value_or(std::string()).rfind("../../b", 0) == 0);
+  CHECK(!of_moved.has_errors());
+
   const auto told = [&](const std::string& from, const std::string& to, const std::string& part) {
     std::string wrong = text;
     wrong.replace(wrong.find(from), from.size(), to);
@@ -164,6 +187,7 @@ TEST_CASE("maps in a model text: lines keep their numbers, wrong keys are told")
   told("material = \"stone\"", "", "map.rock.material: is missing");
   told("layer = \"edge\"", "layer = \"egde\"", "did you mean \"edge\"?");
   told("layer = \"edge\"", "attribute = \"set\"", "map.rock.values: is missing");
+  told("[maps]\nsnap", "maps.snap", "is written in a way that cannot be replaced");
   told("\"5 cm\"", "\"5 kg\"", "maps.snap");
   told("\"5 cm\"", "\"-5 cm\"", "is not allowed; must be >= 0");
 }

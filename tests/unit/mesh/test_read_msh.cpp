@@ -128,6 +128,12 @@ TEST_CASE("msh: formats 2.2 and 4.1 give the same mesh") {
   }
 }
 
+TEST_CASE("msh: groups that run the other way have their names, heights of round-off are level") {
+  CHECK(read_msh("m.msh", replaced(k41, "0 1 7 2 1 -2", "0 1 -7 2 1 -2")).curve_groups[0] == "south side");
+  CHECK(read_msh("m.msh", replaced(k22, "2 1 2 7 1 1 2", "2 1 2 -7 1 1 2")).curve_groups[0] == "south side");
+  CHECK(read_msh("m.msh", replaced(k22, "3 2 2 0", "3 2 2 1e-17")).node.size() == 6);
+}
+
 TEST_CASE("msh: a text cut off anywhere is told, never read as a smaller mesh") {
   for (const std::string& text : {k22, k41})
     for (size_t n = 0; n + 2 < text.size(); ++n) {
@@ -149,6 +155,9 @@ TEST_CASE("msh: wrong files are told with file and line") {
   CHECK(defect(replaced(k22, "10 4 0 0", "10 4e999 0 0")).find("m.msh:16: expected a number") == 0);
   CHECK(defect(replaced(k22, "10 4 0 0", "10 nan 0 0")).find("not finite") != std::string::npos);
   CHECK(defect(replaced(k22, "\n6\n", "\n99999999999\n")).find("is not possible") != std::string::npos);
+  CHECK(defect(replaced(k41, "2 2 3 1\n", "2 9 3 1\n")).find("entity 9 is not in $Entities") !=
+        std::string::npos);
+  CHECK(defect(replaced(k41, "$Comments", "$PartitionedEntities")).find("partitioned") != std::string::npos);
   CHECK(defect(replaced(k41, "1 0 0 0 2 2 0 1 1 3", "1 0 0 0 2 2 0 2 1 2 3")).find("2 physical groups") !=
         std::string::npos);
 }

@@ -9,6 +9,7 @@ case "${1:-}" in
   --maps) add_maps ;;
   *) sed -n '2,3s/^# //p' "$0"; exit 2 ;;
 esac
+add_report
 install_missing_packages
 build release
 if [ "${1:-}" = --maps ]; then

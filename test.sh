@@ -5,6 +5,8 @@ set -eu
 cd "$(dirname "$0")"
 . tools/setup.sh
 add_maps
+add_report
+add_browser
 install_missing_packages
 
 format_check() {

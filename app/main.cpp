@@ -11,10 +11,13 @@
 #include <iostream>
 #include <optional>
 
+#include "command_pages.h"
 #include "cut_command.h"
 #include "import_command.h"
+#include "new_command.h"
 #include "plot_command.h"
 #include "record_command.h"
+#include "report_command.h"
 #include "safety_command.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
@@ -24,6 +27,7 @@
 #include "talus/run/progress.h"
 #include "talus/run/resolution.h"
 #include "talus/talus.h"
+#include "verify_command.h"
 
 namespace {
 
@@ -212,10 +216,19 @@ int run_command(int argc, char** argv) {
       ->capture_default_str();
   safety_verb->footer("Example: talus safety examples/toppling/toppling.toml -o out/toppling");
 
+  talus::app::NewArguments start;
+  CLI::App* new_verb = app.add_subcommand("new", "write a small commented model that runs as it is");
+  talus::app::add_new_arguments(*new_verb, start);
+
   talus::app::PlotArguments plot;
-  CLI::App* plot_verb =
-      app.add_subcommand("plot", "draw histories of one or more result folders as SVG and PNG");
+  CLI::App* plot_verb = app.add_subcommand(
+      "plot", "draw histories, or pictures of the blocks, of result folders as SVG and PNG");
   talus::app::add_plot_arguments(*plot_verb, plot);
+
+  talus::app::ReportArguments report;
+  CLI::App* report_verb = app.add_subcommand(
+      "report", "make one HTML page of a run: pictures in motion, charts, tables; opens in any browser");
+  talus::app::add_report_arguments(*report_verb, report);
 
   talus::app::RecordArguments record;
   CLI::App* record_verb = app.add_subcommand(
@@ -239,8 +252,28 @@ int run_command(int argc, char** argv) {
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
 
-  const std::vector<std::string> verbs{"run",    "check",  "cut",    "import", "plot",
-                                       "record", "replay", "safety", "schema"};
+  schema_verb->footer("Example: talus schema | less");
+
+  talus::app::VerifyArguments verify;
+  CLI::App* verify_verb = app.add_subcommand(
+      "verify", "run the verification cases on this machine: computed, exact, error, allowed");
+  talus::app::add_verify_arguments(*verify_verb, verify);
+
+  std::string shell;
+  CLI::App* completion_verb =
+      app.add_subcommand("completion", "print what completes this command in a shell");
+  completion_verb->add_option("SHELL", shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  completion_verb->footer(
+      "Example: talus completion bash > ~/.local/share/bash-completion/completions/talus");
+
+  CLI::App* man_verb = app.add_subcommand("man", "print the manual page");
+  man_verb->footer("Example: talus man | man -l -");
+
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
     fmt::print(
@@ -260,12 +293,19 @@ int run_command(int argc, char** argv) {
   if (*run_verb) return run(model, how);
   if (*check_verb) return check(model);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
+  if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
   if (*safety_verb)
     return talus::app::safety_command(model.file, model.overrides, folder, force, how.threads);
   if (*replay_verb) return replay(problem, method, tolerance);
   if (*record_verb) return talus::app::record_command(record);
+  if (*report_verb) return talus::app::report_command(report);
   if (*plot_verb) return talus::app::plot_command(plot);
+  if (*verify_verb) return talus::app::verify_command(verify);
+  if (*completion_verb || *man_verb) {
+    fmt::print("{}", *man_verb ? talus::app::manual_page(app) : talus::app::completion_script(app, shell));
+    return talus::kExitOk;
+  }
   fmt::print("{}", json ? talus::schema_json() : talus::schema_markdown());
   return talus::kExitOk;
 }

@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "plot_blocks.h"
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
+#include "talus/plot/block_picture.h"
 #include "talus/plot/figure.h"
 
 namespace talus::app {
@@ -159,11 +161,43 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
       ->default_val("s");
   verb.add_option("--limit-y", args.limit_y, "ends of the value axis")->expected(2);
   verb.add_option("--limit-t", args.limit_t, "ends of the time axis, in its unit")->expected(2);
+  std::vector<std::string> quantities = plot::block_quantities();
+  quantities.push_back("none");
+  verb.add_option(
+          "--blocks", args.blocks.quantities,
+          "picture of the blocks, coloured by this (repeatable), with joints and bolts; none: pale blocks")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(quantities));
+  verb.add_option(
+          "--time", args.blocks.times,
+          "with --blocks: time of the picture [s], the frame nearest to it (repeatable); without: the last")
+      ->allow_extra_args(false);
+  verb.add_option("--window", args.blocks.window, "with --blocks: x0 y0 x1 y1 of what is shown [m]")
+      ->expected(4);
+  verb.add_option("--deformation", args.blocks.deformation,
+                  "with --blocks: displacements are drawn so many times")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   verb.footer(
+      "Without -c and --blocks: all histories, and the blocks at the end.\n"
       "Example: talus plot out/bar -c impact.mean_normal_force --raw impact.normal_force -o out/force");
 }
 
 int plot_command(const PlotArguments& args) {
+  if (!args.blocks.quantities.empty()) {
+    if (!args.columns.empty())
+      throw Error(kExitUsage, "-c and --blocks are different figures: give one of them");
+    BlockPlotArguments blocks = args.blocks;
+    blocks.title = args.title;
+    const fs::path folder = args.folders[0];
+    const fs::path stem = args.output.empty() ? folder / "plots" / "blocks" : fs::path(args.output);
+    if (args.folders.size() > 1) throw Error(kExitUsage, "--blocks draws one folder at a time");
+    if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
+    plot_blocks(folder, blocks, stem, !args.output.empty());
+    return kExitOk;
+  }
+  if (!args.blocks.times.empty() || !args.blocks.window.empty())
+    throw Error(kExitUsage, "--time and --window need --blocks");
   std::vector<CsvTable> tables;
   for (const std::string& folder : args.folders) {
     tables.push_back(read_csv(fs::path(folder) / "histories.csv"));
@@ -187,6 +221,7 @@ int plot_command(const PlotArguments& args) {
     const std::string& column = tables[0].columns[c];
     draw_columns(args, tables, {column}, folder / column.substr(0, column.find(" [")));
   }
+  if (args.stage.empty()) plot_blocks_at_end(args.folders[0], folder);
   return kExitOk;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
-// `talus plot`: figures of histories.csv.
+// `talus plot`: figures of histories.csv and pictures of the blocks.
 
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "plot_blocks.h"
 
 namespace talus::app {
 
@@ -11,6 +13,7 @@ struct PlotArguments {
   std::vector<std::string> folders, columns, labels, references;
   std::string output, title, raw, reference_label, time_unit, stage;
   std::vector<double> limit_y, limit_t;
+  BlockPlotArguments blocks;
 };
 
 void add_plot_arguments(CLI::App& verb, PlotArguments& args);

@@ -25,6 +25,7 @@ ALLOWED = {
     "output": "base geometry model cut blocks",
     "run": "base geometry record model cut blocks rows contact supports solve step output",
     "plot": "base geometry record model maps cut output",
+    "report": "base geometry output",
 }
 
 

@@ -2,7 +2,7 @@
 # Quick when nothing has changed: one look at the package database, one look of the build tool at the sources.
 
 talus_packages="g++ cmake ninja-build pkgconf python3-minimal libeigen3-dev libgeos-dev libtomlplusplus-dev libcli11-dev libfmt-dev
-  libmuparser-dev libcairo2-dev libtbb-dev libhdf5-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
+  libmuparser-dev libcairo2-dev libtbb-dev libhdf5-dev zlib1g-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
 
 # What the module that reads maps needs; a build without the module is configured anew.
 talus_maps=no
@@ -10,6 +10,18 @@ add_maps() {
   talus_packages="$talus_packages libgdal-dev"
   talus_maps=yes
 }
+
+# What the page of talus report is bundled with, unless a Node.js of 18 or newer is here already.
+add_report() {
+  local version
+  version=$(node --version 2>/dev/null | sed 's/^v\([0-9]*\).*/\1/')
+  [ "${version:-0}" -ge 18 ] && command -v npm >/dev/null || talus_packages="$talus_packages nodejs npm"
+  talus_report=yes
+}
+talus_report=no
+
+# What its tests drive.
+add_browser() { command -v chromium >/dev/null || talus_packages="$talus_packages chromium"; }
 
 install_missing_packages() {
   local missing="" p
@@ -43,6 +55,7 @@ build() {
   [ -e "build/$1/build.ninja" ] || echo "building ($1); the first time takes a few minutes"
   local configure=no
   [ -e "build/$1/build.ninja" ] || configure=yes
+  [ "$talus_report" = no ] || [ -e "build/$1/share/talus/report_page.html" ] || configure=yes
   [ "$talus_maps" = no ] || [ -e "build/$1/modules/libtalus_vector.so" ] || configure=yes
   { { [ $configure = no ] || cmake --preset "$1" ${2:-}; } && cmake --build --preset "$1"; } >"$log" 2>&1 ||
     { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }

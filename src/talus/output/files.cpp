@@ -77,8 +77,9 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
     } else if (kind == ResultKind::kSafety) {
       for (const char* name : {"safety.json", "safety.csv", "model.toml"}) fs::remove(folder / name, ec);
     } else {
-      for (const char* name : {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv",
-                               "run.log", "blocks_start.svg", "blocks_end.svg", "bolts.csv", "slips.csv"})
+      for (const char* name :
+           {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "run.log",
+            "report.html", "blocks.csv", "blocks_start.svg", "blocks_end.svg", "bolts.csv", "slips.csv"})
         fs::remove(folder / name, ec);
       for (const char* name : {"fields", "plots", "saved"}) fs::remove_all(folder / name, ec);
       for (const auto& entry : fs::directory_iterator(folder, ec))

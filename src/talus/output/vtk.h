@@ -14,9 +14,13 @@ struct ContactFrame {
   Vec2 point;  // [m]
   Vec2 force;  // on the first block [N]
   double normal_force = 0, shear_force = 0, gap = 0;
-  int kind = 0;                  // 0 contact, 1 bond, 2 support, 3 boundary, 4 bolt
-  double slip = 0, opening = 0;  // of joints [m]
-  int state = -1;                // of joints: 0 intact, 1 slipped, 2 open, 3 never in touch; -1: no joint
+  int kind = 0;                    // 0 contact, 1 bond, 2 support, 3 boundary, 4 bolt
+  double slip = 0, opening = 0;    // of joints [m]
+  int state = -1;                  // of joints: 0 intact, 1 slipped, 2 open, 3 never in touch; -1: no joint
+  int block_a = -1, block_b = -1;  // -1: the ground
+  // of a contact the corner of block_a and the edge of block_b; else the index of the point and 0: the same
+  // point has the same numbers in every frame
+  int corner = 0, edge = 0;
 };
 
 /// The deformed blocks: displacement and velocity at corners; stress (sxx, syy, sxy), block id, kind,

@@ -11,6 +11,7 @@
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
+#include "talus/run/model_report.h"
 #include "talus/run/problem_file.h"
 #include "talus/run/slip_report.h"
 
@@ -43,6 +44,16 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
              : r < i.work.first_boundary ? 2
              : r < i.work.first_bolt     ? 3
                                          : 4;
+    f.block_a = p.block_a, f.block_b = p.block_b;
+    f.corner = static_cast<int>(r);
+    if (f.kind == 1) f.corner = static_cast<int>(i.work.bond_owner[r]);
+    if (f.kind == 0) {
+      const ContactKey& key = i.state.contacts[r - i.work.first_contact].key;
+      f.corner = key.vertex, f.edge = key.edge;
+    }
+    if (f.kind == 2) f.corner -= static_cast<int>(i.work.first_support);
+    if (f.kind == 3) f.corner -= static_cast<int>(i.work.first_boundary);
+    if (f.kind == 4) f.corner -= static_cast<int>(i.work.first_bolt);
     if (f.kind == 0) f.gap = i.work.places[r - i.work.first_contact].gap;
     if (const auto joint = joint_point(scene, i, r)) {
       f.slip = joint->slip, f.opening = joint->opening;
@@ -105,6 +116,7 @@ std::filesystem::path make_folder(const std::filesystem::path& p) {
 Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
     : scene_(scene),
       folder_(std::move(folder)),
+      model_(model_in_numbers(scene).dump()),
       history_file_(folder_ / "histories.csv", Histories(scene, nullptr).columns()),
       steps_file_(folder_ / "steps.csv", step_columns()),
       histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
@@ -124,6 +136,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
 Recorder::Recorder(const Scene& scene, std::filesystem::path folder, Archive& saved)
     : scene_(scene),
       folder_(std::move(folder)),
+      model_(model_in_numbers(scene).dump()),
       history_file_(folder_ / "histories.csv", size_in(saved, kHistorySize)),
       steps_file_(folder_ / "steps.csv", size_in(saved, kStepsSize)),
       histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
@@ -212,9 +225,11 @@ void Recorder::at(const Instant& i) {
   // a stage ends at the instant at which the next one starts
   if (i.stage_start && i.stage > 0) write_joints(i, i.stage - 1);
   if (i.last) write_joints(i, i.stage);
-  if (i.stage_start && i.stage == 0)
+  if (i.stage_start && i.stage == 0) {
+    write_file(folder_ / "blocks.csv", blocks_table(scene_));
     write_file(folder_ / "blocks_start.svg",
                blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
+  }
   if (i.last)
     write_file(folder_ / "blocks_end.svg",
                blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage),
@@ -301,12 +316,12 @@ void Recorder::finish(const RunResult& result, const std::vector<std::string>& o
   steps_file_.flush();
   write_file(folder_ / "summary.json",
              summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_,
-                          histories_.peaks()));
+                          histories_.peaks(), model_));
 }
 
 std::string summary_text(const Scene& scene, const RunResult& r, const std::vector<std::string>& overrides,
                          const Findings& findings, int frames, const JointSummary& joints,
-                         const std::vector<Histories::Peak>& peaks) {
+                         const std::vector<Histories::Peak>& peaks, const std::string& model) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -356,6 +371,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
     if (!joints.most_residual.set.empty())
       j["joints"]["residual_slip_largest_at"]["set"] = joints.most_residual.set;
   }
+  j["model"] = ordered_json::parse(model);
   j["stages"] = ordered_json::array();
   for (const StageResult& s : r.stages) {
     ordered_json stage = {{"name", s.name},

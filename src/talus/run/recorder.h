@@ -48,6 +48,7 @@ class Recorder : public Observer {
 
   const Scene& scene_;
   std::filesystem::path folder_;
+  std::string model_;  // in numbers, as it began: stages change materials and joints
   CsvWriter history_file_, steps_file_;
   Histories histories_;
   FrameSeries block_frames_, contact_frames_, bolt_frames_;
@@ -64,8 +65,10 @@ class Recorder : public Observer {
 };
 
 /// Text of summary.json.
+/// @param model  model_in_numbers() of the scene as it began, as text
 std::string summary_text(const Scene& scene, const RunResult& result,
                          const std::vector<std::string>& overrides, const Findings& findings, int frames,
-                         const JointSummary& joints = {}, const std::vector<Histories::Peak>& peaks = {});
+                         const JointSummary& joints = {}, const std::vector<Histories::Peak>& peaks = {},
+                         const std::string& model = "{}");
 
 }  // namespace talus

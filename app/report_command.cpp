@@ -1,0 +1,67 @@
+#include "report_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "data_files.h"
+#include "talus/base/error.h"
+#include "talus/base/text.h"
+#include "talus/base/text_file.h"
+#include "talus/output/files.h"
+#include "talus/report/page.h"
+
+namespace talus::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string page_text() {
+  const fs::path place = data_file("report_page.html");
+  std::error_code ec;
+  if (!fs::exists(place, ec))
+    throw FileError(fmt::format(
+        "{}: the page of the report was not built, for want of npm: install npm (with Node.js 18 or "
+        "newer) and build again (./run.sh does both)",
+        place.string()));
+  return read_text_file(place);
+}
+
+}  // namespace
+
+void add_report_arguments(CLI::App& verb, ReportArguments& args) {
+  verb.add_option("DIR", args.folders, "result folders; the charts of several are overlaid")->required();
+  verb.add_option("-o,--output", args.output, "file to write; without: report.html in the first folder");
+  verb.add_option("--frames", args.frames,
+                  "at most so many frames of each run, spread evenly; 0: as many as fit")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  verb.add_option("--megabytes", args.megabytes,
+                  "largest size of the page; 0: 2 kB a block, within 29 and 95 MB")
+      ->check(CLI::Range(0.0, 2000.0))
+      ->capture_default_str();
+  verb.footer(
+      "Example: talus report out/impact_bar/run      (then open out/impact_bar/run/report.html in a "
+      "browser)");
+}
+
+int report_command(const ReportArguments& args) {
+  const std::string page = page_text();
+  std::vector<report::RunFolder> runs;
+  for (const std::string& folder : args.folders) runs.push_back(report::read_run_folder(folder));
+  report::PageNotes notes;
+  const std::string html =
+      report::report_page(page, runs, {.frames = args.frames, .megabytes = args.megabytes}, notes);
+  const fs::path file =
+      args.output.empty() ? fs::path(args.folders[0]) / "report.html" : fs::path(args.output);
+  if (file.has_parent_path()) fs::create_directories(file.parent_path());
+  write_file(file, html);
+  for (const auto& run : notes.runs)
+    fmt::print("{}: {} of {} frames{}, contact points of {}\n", run.name, run.frames, run.frames_there,
+               run.reason.empty() ? "" : " (" + run.reason + ")", run.contact_frames);
+  fmt::print("{}: {}\n", file.string(), readable_bytes(static_cast<double>(html.size())));
+  return kExitOk;
+}
+
+}  // namespace talus::app

@@ -1,0 +1,20 @@
+#pragma once
+// `talus report`: one HTML page from one or more result folders.
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace talus::app {
+
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string output;
+  int frames = 0;
+  double megabytes = 0;
+};
+
+void add_report_arguments(CLI::App& verb, ReportArguments& args);
+int report_command(const ReportArguments& args);
+
+}  // namespace talus::app

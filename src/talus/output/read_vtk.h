@@ -1,0 +1,43 @@
+#pragma once
+// Reads back the frames that vtk.h and bolt_lines.h write: for pictures and reports made from a result
+// folder.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// The arrays of one frame, by name: "Points", "displacement [m]" ...
+struct VtkFrame {
+  struct Array {
+    int components = 1;
+    std::vector<double> values;  // [tuples][components]
+    size_t tuples() const { return values.size() / static_cast<size_t>(components); }
+  };
+  std::string file;  // for messages
+  double time = 0;   // [s]
+  std::map<std::string, Array> arrays;
+
+  bool has(const std::string& name) const { return arrays.count(name) > 0; }
+  /// Throws FileError when the frame has no such array, or one of other components or length.
+  /// @param tuples  asked for; -1: any number
+  const Array& at(const std::string& name, int components, long tuples = -1) const;
+};
+
+/// @param name  of the file, for messages
+VtkFrame parse_vtk(const std::string& name, const std::string& text);
+/// Throws FileError when the file is missing, cut off, or not as talus writes it.
+VtkFrame read_vtk(const std::filesystem::path& path);
+
+/// One frame of a series.
+struct SeriesEntry {
+  double time = 0;  // [s]
+  std::filesystem::path file;
+};
+
+/// The frames that a collection (.pvd) names, in its order; none when there is no such file.
+std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd);
+
+}  // namespace talus

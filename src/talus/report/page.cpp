@@ -1,0 +1,292 @@
+#include "talus/report/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "talus/base/error.h"
+#include "talus/base/version.h"
+#include "talus/report/frames.h"
+#include "talus/report/pack.h"
+
+namespace talus::report {
+
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr size_t kContactFrames = 20;     // at most
+constexpr double kContactShare = 0.25;    // of the page, for contact points
+constexpr size_t kTableValues = 1500000;  // of one table, above that rows are left out
+
+// Data as elements of the page; others name them by number.
+class Chunks {
+ public:
+  int add(const std::string& text) {
+    html_ += fmt::format("<script type=\"text/plain\" id=\"talus-{}\">{}</script>\n", count_, text);
+    return count_++;
+  }
+  const std::string& html() const { return html_; }
+
+ private:
+  std::string html_;
+  int count_ = 0;
+};
+
+// `count` of `n` places, spread evenly, the first and the last among them.
+std::vector<size_t> spread(size_t n, size_t count) {
+  std::vector<size_t> out;
+  if (n == 0 || count == 0) return out;
+  if (count >= n) count = n;
+  for (size_t k = 0; k < count; ++k) {
+    const size_t at = count == 1 ? n - 1 : (k * (n - 1) + (count - 1) / 2) / (count - 1);
+    if (out.empty() || out.back() != at) out.push_back(at);
+  }
+  return out;
+}
+
+// A table of numbers; a very long one loses rows evenly, but never the rows of `keep`.
+json table_of(const CsvTable& table, const std::set<size_t>& keep, Chunks& chunks) {
+  if (table.columns.empty()) return nullptr;
+  const size_t rows = table.rows(), wanted = std::max<size_t>(1000, kTableValues / table.columns.size());
+  const size_t every = (rows + wanted - 1) / std::max<size_t>(wanted, 1);
+  std::vector<size_t> chosen;
+  for (size_t r = 0; r < rows; ++r)
+    if (every < 2 || r % every == 0 || r + 1 == rows || keep.count(r)) chosen.push_back(r);
+  json columns = json::array(), data = json::array();
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    std::vector<double> values;
+    for (const size_t r : chosen) values.push_back(table.values[c][r]);
+    Packer p;
+    p.doubles(values);
+    columns.push_back(table.columns[c]);
+    data.push_back(chunks.add(p.text()));
+  }
+  return {{"columns", columns}, {"data", data}, {"rows", chosen.size()}, {"rows_there", rows}};
+}
+
+// Rows of steps.csv with the largest values of some columns.
+std::set<size_t> worst_rows(const CsvTable& steps) {
+  std::set<size_t> out;
+  for (const char* name : {"contact error [m]", "iterations", "drift [m]", "failed steps"}) {
+    const auto it = std::find(steps.columns.begin(), steps.columns.end(), name);
+    if (it == steps.columns.end()) continue;
+    const std::vector<double>& v = steps.values[static_cast<size_t>(it - steps.columns.begin())];
+    std::vector<size_t> order(v.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const size_t count = std::min<size_t>(10, order.size());
+    std::partial_sort(order.begin(), order.begin() + static_cast<long>(count), order.end(),
+                      [&v](size_t a, size_t b) { return v[a] > v[b] || (v[a] == v[b] && a < b); });
+    out.insert(order.begin(), order.begin() + static_cast<long>(count));
+  }
+  return out;
+}
+
+json texts_of(const TextTable& table, size_t most) {
+  if (table.columns.empty()) return nullptr;
+  json rows = json::array();
+  for (size_t r = 0; r < std::min(most, table.rows.size()); ++r) rows.push_back(table.rows[r]);
+  return {{"columns", table.columns}, {"rows", rows}, {"rows_there", table.rows.size()}};
+}
+
+// Rows of the last stage that the table names.
+TextTable of_last_stage(TextTable table) {
+  const int stage = table.find("stage");
+  if (stage < 0 || table.rows.empty()) return table;
+  const auto c = static_cast<size_t>(stage);
+  const std::string last = table.rows.back()[c];
+  std::erase_if(table.rows, [&](const auto& row) { return row[c] != last; });
+  return table;
+}
+
+json blocks_of(const TextTable& table) {
+  if (table.columns.empty()) return nullptr;
+  json out = json::object();
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    json values = json::array();
+    for (const auto& row : table.rows) values.push_back(row[c]);
+    out[table.columns[c]] = values;
+  }
+  return out;
+}
+
+// The stage that time t belongs to: frames at the end of one count as its last.
+int stage_at(const json& summary, double t) {
+  int index = 0, found = 0;
+  for (const json& s : summary.value("stages", json::array())) {
+    if (t > s.value("begin [s]", 0.0)) found = index;
+    ++index;
+  }
+  return found;
+}
+
+size_t blocks_in(const RunFolder& run) {
+  if (!run.blocks.rows.empty()) return run.blocks.rows.size();
+  return run.summary.contains("blocks") ? run.summary["blocks"].value("all", size_t{0}) : 0;
+}
+
+// Four numbers a quantity, with the digits that a legend shows.
+json spans_of(const BlockFrame& frame) {
+  json out = json::array();
+  for (const Span& s : frame.spans())
+    for (const double v : {s.least, s.low, s.high, s.most}) {
+      const double unit =
+          v == 0 || !std::isfinite(v) ? 1 : std::pow(10, 4 - std::floor(std::log10(std::abs(v))));
+      out.push_back(std::isfinite(v) ? std::round(v * unit) / unit : 0.0);
+    }
+  return out;
+}
+
+constexpr double kTag = 60;  // bytes of an element's tags
+
+// Frames of blocks, contact points and bolts, packed; entries name their text by its index.
+struct FramesData {
+  json lists;
+  std::vector<std::string> texts;
+  double size = 0;  // in the page
+};
+
+FramesData pack_frames(const RunFolder& run, const std::vector<size_t>& chosen, size_t contacts,
+                       Vec2 origin) {
+  FramesData data;
+  data.lists = {{"blocks", json::array()}, {"contacts", json::array()}, {"shapes", json::array()}};
+  const auto add = [&data](std::string text) {
+    data.size += static_cast<double>(text.size()) + kTag;
+    data.texts.push_back(std::move(text));
+    return data.texts.size() - 1;
+  };
+  FrameReader reader;
+  for (const size_t i : chosen) {
+    const SeriesEntry& entry = run.block_frames[i];
+    const BlockFrame frame = reader.read(entry.file);
+    json j = {{"t", entry.time},
+              {"stage", stage_at(run.summary, entry.time)},
+              {"shapes", frame.shapes},
+              {"data", add(frame.packed())},
+              {"spans", spans_of(frame)}};
+    if (i < run.bolt_frames.size()) {
+      const BoltPieces bolts = read_bolts(run.bolt_frames[i].file);
+      j["bolts"] = {{"count", bolts.size()}, {"data", add(bolts.packed(origin))}};
+    }
+    data.lists["blocks"].push_back(j);
+  }
+  for (const Shapes& s : reader.shapes())
+    data.lists["shapes"].push_back(
+        {{"blocks", s.id.size()}, {"corners", s.corner.size()}, {"data", add(s.packed())}});
+  // contact points at frames that are shown
+  for (const size_t k : spread(chosen.size(), contacts)) {
+    const size_t i = chosen[k];
+    if (i >= run.contact_frames.size()) continue;
+    const ContactPoints points = read_contacts(run.contact_frames[i].file);
+    data.lists["contacts"].push_back(
+        {{"frame", k}, {"count", points.size()}, {"data", add(points.packed(origin))}});
+  }
+  return data;
+}
+
+// The frames of a run that fit into `room` bytes.
+json frames_of(const RunFolder& run, const PageOptions& options, double room, Chunks& chunks,
+               PageNotes::Run& note) {
+  const size_t there = run.block_frames.size();
+  note.frames_there = there;
+  json out = {
+      {"there", there}, {"blocks", json::array()}, {"contacts", json::array()}, {"shapes", json::array()}};
+  if (there == 0) return out;
+
+  const Vec2 origin = [&] {
+    const VtkFrame first = read_vtk(run.block_frames[0].file);
+    const std::vector<double>& p = first.at("Points", 3).values;
+    return p.size() < 2 ? Vec2{} : Vec2{p[0], p[1]};
+  }();
+  out["origin"] = {origin.x, origin.y};
+  out["quantities"] = kQuantities;
+
+  // what one frame takes, from some spread over the run; the first have hardly moved and pack too well
+  const auto mean_size = [](const std::vector<SeriesEntry>& series, const auto& pack) {
+    double sum = 0;
+    const std::vector<size_t> sample = spread(series.size(), 7);
+    for (const size_t i : sample) sum += static_cast<double>(pack(series[i].file).size()) + kTag;
+    return sample.empty() ? 1.0 : sum / static_cast<double>(sample.size());
+  };
+  const double contact_size =
+      mean_size(run.contact_frames, [&](const auto& file) { return read_contacts(file).packed(origin); });
+  const auto contacts_fit = static_cast<size_t>(std::max(2.0, kContactShare * room / contact_size));
+  const size_t contacts = std::min({kContactFrames, contacts_fit, run.contact_frames.size()});
+  FrameReader sampler;
+  const double block_size =
+      mean_size(run.block_frames, [&](const auto& file) { return sampler.read(file).packed(); });
+  double rest = static_cast<double>(contacts) * contact_size;
+  for (const Shapes& s : sampler.shapes()) rest += static_cast<double>(s.packed().size());
+  size_t count = std::min(there, static_cast<size_t>(std::max(2.0, (room - rest) / block_size)));
+  if (count < there) note.reason = "for the size of the page";
+  if (options.frames > 0 && static_cast<size_t>(options.frames) < count) {
+    count = static_cast<size_t>(options.frames);
+    note.reason = "as asked for";
+  }
+
+  // the sample may have been too small: then once more with fewer
+  FramesData data = pack_frames(run, spread(there, count), contacts, origin);
+  for (int again = 0; data.size > room && count > 2 && again < 5; ++again) {
+    count = std::max<size_t>(2, static_cast<size_t>(static_cast<double>(count) * 0.98 * room / data.size));
+    note.reason = "for the size of the page";
+    data = pack_frames(run, spread(there, count), contacts, origin);
+  }
+  for (const char* list : {"blocks", "contacts", "shapes"}) {
+    for (json& entry : data.lists[list]) {
+      entry["data"] = chunks.add(data.texts[entry["data"].get<size_t>()]);
+      if (entry.contains("bolts"))
+        entry["bolts"]["data"] = chunks.add(data.texts[entry["bolts"]["data"].get<size_t>()]);
+    }
+    out[list] = data.lists[list];
+  }
+  note.frames = count;
+  note.contact_frames = out["contacts"].size();
+  return out;
+}
+
+}  // namespace
+
+std::string report_page(const std::string& page, const std::vector<RunFolder>& runs,
+                        const PageOptions& options, PageNotes& notes) {
+  const size_t place = page.find(kDataPlace);
+  if (place == std::string::npos)
+    throw FileError("the page of the report has no place for data: build talus again");
+  Chunks chunks;
+  json index = {{"program", fmt::format("talus {}", kVersion)}, {"runs", json::array()}};
+  size_t blocks = 0;
+  for (const RunFolder& run : runs) blocks = std::max(blocks, blocks_in(run));
+  const double limit = options.megabytes > 0 ? 1e6 * options.megabytes
+                                             : std::clamp(2e3 * static_cast<double>(blocks), 29e6, 95e6);
+  std::vector<json> tables;
+  for (const RunFolder& run : runs)
+    tables.push_back({{"histories", table_of(run.histories, {}, chunks)},
+                      {"steps", table_of(run.steps, worst_rows(run.steps), chunks)}});
+  constexpr double kRest = 1e6;  // blocks, texts, the page itself
+  const double room =
+      (limit - static_cast<double>(chunks.html().size()) - kRest) / static_cast<double>(runs.size());
+  constexpr size_t kSlips = 200, kBolts = 2000;
+  for (size_t r = 0; r < runs.size(); ++r) {
+    const RunFolder& run = runs[r];
+    PageNotes::Run note;
+    note.name = run.name;
+    json j = {{"name", run.name}, {"summary", run.summary}, {"model", run.model}};
+    j["histories"] = tables[r]["histories"], j["steps"] = tables[r]["steps"];
+    j["slips"] = texts_of(of_last_stage(run.slips), kSlips);
+    j["bolts"] = texts_of(of_last_stage(run.bolts), kBolts);
+    j["blocks"] = blocks_of(run.blocks);
+    j["frames"] = frames_of(run, options, room, chunks, note);
+    if (!note.reason.empty()) j["frames"]["reason"] = note.reason;
+    index["runs"].push_back(j);
+    notes.runs.push_back(note);
+  }
+  const std::string data =
+      fmt::format("{}<script type=\"text/plain\" id=\"talus-index\">{}</script>\n", chunks.html(),
+                  compressed_text(index.dump(-1, ' ', false, json::error_handler_t::replace)));
+  std::string out = page;
+  out.replace(place, std::string_view(kDataPlace).size(), data);
+  return out;
+}
+
+}  // namespace talus::report

@@ -1,0 +1,172 @@
+#include "talus/run/model_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "talus/output/text_table.h"
+
+namespace talus {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+const char* kind_name(BlockKind kind) {
+  switch (kind) {
+    case BlockKind::kDeformable:
+      return "deformable";
+    case BlockKind::kRigid:
+      return "rigid";
+    case BlockKind::kFixed:
+      return "fixed";
+    case BlockKind::kDriven:
+      return "driven";
+    case BlockKind::kRemoved:
+      return "removed";
+  }
+  return "";
+}
+
+ordered_json materials(const Scene& scene) {
+  ordered_json out = ordered_json::array();
+  for (size_t m = 0; m < scene.model.materials.size(); ++m) {
+    const Material& material = scene.model.materials[m];
+    const auto count =
+        std::count(scene.blocks.material.begin(), scene.blocks.material.end(), static_cast<int>(m));
+    ordered_json j = {{"name", material.name}, {"density [kg/m3]", material.density}};
+    if (!std::isnan(material.young)) j["young [Pa]"] = material.young;
+    if (!std::isnan(material.poisson)) j["poisson"] = material.poisson;
+    j["blocks"] = count;
+    out.push_back(j);
+  }
+  return out;
+}
+
+ordered_json joints(const Model& model) {
+  ordered_json out = ordered_json::array();
+  for (const JointProperty& p : model.joints) {
+    ordered_json j = {{"name", p.name}, {"bonded", p.bonded}};
+    if (!p.bonded) {
+      j["friction_angle [deg]"] = p.friction_angle / kDegree;
+      j["friction_angle_after [deg]"] = p.friction_after() / kDegree;
+      j["cohesion [Pa]"] = p.cohesion;
+      j["cohesion_after [Pa]"] = p.residual_cohesion;
+      j["tensile_strength [Pa]"] = p.tensile_strength;
+      j["tensile_strength_after [Pa]"] = p.residual_tensile_strength;
+    }
+    j["normal_stiffness [Pa/m]"] = p.normal_stiffness;  // 0: hard
+    j["shear_stiffness [Pa/m]"] = p.shear_stiffness;
+    if (p.dilation_angle > 0) j["dilation_angle [deg]"] = p.dilation_angle / kDegree;
+    if (p.restitution >= 0) j["restitution"] = p.restitution;
+    out.push_back(j);
+  }
+  return out;
+}
+
+ordered_json boundaries(const Model& model) {
+  static constexpr const char* kKind[] = {"viscous", "free-field", "tied"};
+  ordered_json out = ordered_json::array();
+  for (const BoundaryInput& b : model.boundaries) {
+    ordered_json j = {{"name", b.name}, {"kind", kKind[static_cast<int>(b.kind)]}};
+    const auto motion = [&](const char* key, int history) {
+      if (history >= 0) j[key] = model.histories[static_cast<size_t>(history)].name;
+    };
+    motion("velocity_in_x", b.history_x), motion("velocity_in_y", b.history_y);
+    out.push_back(j);
+  }
+  return out;
+}
+
+ordered_json loads(const Model& model) {
+  ordered_json out = ordered_json::array();
+  for (const LoadInput& l : model.loads) {
+    const char* kind = l.is_body_force()                  ? "acceleration"
+                       : l.pressure >= 0                  ? "pressure"
+                       : l.force_x >= 0 || l.force_y >= 0 ? "force"
+                                                          : "traction";
+    out.push_back({{"name", l.name}, {"kind", kind}});
+  }
+  return out;
+}
+
+ordered_json bolts(const Model& model) {
+  static constexpr const char* kKind[] = {"anchored", "grouted", "superposed"};
+  ordered_json out = ordered_json::array();
+  for (size_t t = 0; t < model.bolt_types.size(); ++t) {
+    const BoltType& type = model.bolt_types[t];
+    const auto count = std::count_if(model.bolts.begin(), model.bolts.end(),
+                                     [t](const BoltInput& b) { return b.type == static_cast<int>(t); });
+    ordered_json j = {{"name", type.name},
+                      {"kind", kKind[static_cast<int>(type.kind)]},
+                      {"count", count},
+                      {"diameter [m]", type.diameter},
+                      {"young [Pa]", type.young},
+                      {"spacing [m]", type.spacing},
+                      {"pretension [N]", type.pretension}};
+    if (std::isfinite(type.yield_force)) j["yield_force [N]"] = type.yield_force;
+    out.push_back(j);
+  }
+  return out;
+}
+
+ordered_json stages(const Model& model) {
+  ordered_json out = ordered_json::array();
+  for (const StageInput& s : model.stages)
+    out.push_back({{"name", s.name},
+                   {"kind", s.kind == StageKind::kStatic ? "static" : "dynamic"},
+                   {"implicit_elasticity", s.implicit},
+                   {"excavate", s.excavate},
+                   {"damping_mass [1/s]", s.damping_mass},
+                   {"damping_stiffness [s]", s.damping_stiffness},
+                   {"damping_local", s.damping_local}});
+  return out;
+}
+
+}  // namespace
+
+std::string blocks_table(const Scene& scene) {
+  const BlockSet& b = scene.blocks;
+  std::string out = "id,name,kind,material,group,area [m2],x [m],y [m]\n";
+  for (int i = 0; i < b.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    const auto& materials = scene.model.materials;
+    const std::string material =
+        b.material[k] < 0 ? std::string() : materials[static_cast<size_t>(b.material[k])].name;
+    const std::string group =
+        b.group[k] < 0 ? std::string() : scene.layout.groups[static_cast<size_t>(b.group[k])];
+    out += fmt::format("{},{},{},{},{},{:.9g},{:.17g},{:.17g}\n", i, table_cell(b.name[k]),
+                       kind_name(b.kind[k]), table_cell(material), table_cell(group),
+                       b.volume[k] / b.thickness, b.centroid[k].x, b.centroid[k].y);
+  }
+  return out;
+}
+
+ordered_json model_in_numbers(const Scene& scene) {
+  const Model& m = scene.model;
+  ordered_json j;
+  j["thickness [m]"] = m.thickness;
+  j["plane"] = m.plane == Plane::kStrain ? "strain" : "stress";
+  j["gravity [m/s2]"] = {m.gravity.x, m.gravity.y};
+  j["materials"] = materials(scene);
+  j["joints"] = joints(m);
+  if (m.default_joint >= 0) j["default_joint"] = m.joints[static_cast<size_t>(m.default_joint)].name;
+  j["boundaries"] = boundaries(m);
+  j["loads"] = loads(m);
+  j["bolts"] = bolts(m);
+  j["supports"] = m.supports.size();
+  j["in_situ_stress"] = m.in_situ.given;
+  j["stages"] = stages(m);
+  j["monitors"] = m.monitors.size();
+  j["contact_tolerance [m]"] = m.solver.tolerance * smallest_size(scene.blocks);
+  j["intervals [s]"] = {{"history", m.output.history_interval},
+                        {"steps", m.output.steps_interval},
+                        {"fields", m.output.field_interval}};
+  return j;
+}
+
+}  // namespace talus

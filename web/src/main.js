@@ -1,0 +1,485 @@
+// The report: puts the picture, the charts and the texts together and reacts to the reader.
+
+import { chunkJson } from "./decode.js";
+import { Run } from "./run.js";
+import { View, contactKey } from "./view.js";
+import { addChart, moveTime, redrawCharts, save, splitColumn } from "./charts.js";
+import { colours, number, palette, quantities, readableUnit, withUnit } from "./quantities.js";
+import { element, tableOf } from "./dom.js";
+import { cardsOf, energyOf, listOf, modelOf, stagesOf, warningsOf, worstSteps } from "./words.js";
+
+const $ = (id) => document.getElementById(id);
+const kindNames = ["contact", "glued face", "support", "boundary", "bolt"];
+const stateNames = ["intact", "slipped", "open", "never in touch"];
+
+let runs = [], run = null, view = null;
+let frameIndex = 0, playing = false, wanted = 0;
+let history = null;  // the chart of what is selected
+const times = [];    // of frames drawn while playing [ms], for the benchmark
+
+async function start() {
+  const index = await chunkJson("index");
+  runs = index.runs.map((r) => new Run(r));
+  $("made").textContent = `Made by ${index.program} from ${runs.map((r) => r.name).join(", ")}. Everything shown is in this file.`;
+  $("notices").textContent = document.getElementById("talus-notices").textContent.trim();
+  view = new View($("canvas"), $("ground"));
+  if (runs.length > 1) {
+    $("run-choice").hidden = false;
+    runs.forEach((r, i) => $("run").append(element("option", { value: String(i) }, r.name)));
+  }
+  listen();
+  await showRun(0);
+  addMonitors();
+  window.talus.ready = true;
+}
+
+// ---- one run ----
+
+async function showRun(i) {
+  stop();
+  run = runs[i];
+  view.run = run;
+  view.selected = null;
+  $("title").textContent = run.title();
+  document.title = `${run.title()} - talus report`;
+  $("subtitle").textContent = run.title() === run.name ? "" : run.name;
+  fill("warnings", warningsOf(run).map((w) => element("p", { class: "warning" }, w)));
+  fill("cards", cardsOf(run).map(([title, value, note]) =>
+    element("div", { class: "card" }, element("span", { class: "name" }, title), element("span", { class: "value" }, value), element("span", { class: "note" }, note))));
+  offerQuantities();
+  $("picture").hidden = run.frames.length === 0;
+  resize();
+  if (run.frames.length) {
+    $("slider").max = String(run.frames.length - 1);
+    $("show-bolts").parentElement.hidden = !run.frames.some((f) => f.bolts && f.bolts.count);
+    await showFrame(run.frames.length - 1, true);
+    window.talus.firstPicture = performance.now();
+  }
+  showInspector();
+  section("stages", [stagesOf(run)]);
+  section("joints", [listOf("Joints that slipped, greatest first, at the end of the last stage", run.slips, ["stage", "time [s]"]),
+    listOf("Bolts at the end of the last stage", run.bolts, ["stage", "t [s]"])]);
+  section("model", modelOf(run));
+  const steps = await run.table("steps");
+  section("health", []);
+  section("energy", [energyOf(run)]);
+  if (steps) {
+    addSteps(steps);
+    $("health").append(worstSteps(steps, run.frames.length ? goToTime : null) || "");
+  }
+}
+
+function fill(id, children) {
+  $(id).replaceChildren(...children);
+}
+
+function section(id, children) {
+  const kept = children.filter(Boolean), place = $(id);
+  const head = place.querySelector("h2");
+  for (const chart of place.charts || []) chart.remove();
+  place.charts = [];
+  place.replaceChildren(head, ...kept);
+  place.hidden = kept.length === 0;
+}
+
+function offerQuantities() {
+  const select = $("quantity"), before = select.value || "displacement";
+  const groups = [["what has moved", ["displacement", "displacement_x", "displacement_y", "velocity", "velocity_x", "velocity_y"]],
+    ["stress (tension > 0)", ["stress_xx", "stress_yy", "stress_xy", "stress_major", "stress_minor", "shear_most"]]];
+  select.replaceChildren(...groups.map(([label, keys]) =>
+    element("optgroup", { label }, ...keys.map((k) => element("option", { value: k }, quantities[k].title)))));
+  if (run.blocks) select.append(element("optgroup", { label: "what they are (joint states stand out)" },
+    ...["material", "group", "kind"].map((k) => element("option", { value: k }, k))));
+  select.value = [...select.options].some((o) => o.value === before) ? before : "displacement";
+  view.quantity = select.value;
+}
+
+// ---- frames ----
+
+async function showFrame(i, fit = false) {
+  wanted = i;
+  const of = run;
+  const [frame, contacts, bolts] = await Promise.all([run.frame(i), run.contactsAt(i), run.boltsAt(i)]);
+  if (wanted !== i || of !== run) return;  // the reader has moved on
+  frameIndex = i;
+  view.frame = frame;
+  view.contacts = contacts;
+  view.bolts = bolts;
+  if (fit) view.fit();
+  setRange();
+  view.draw();
+  $("slider").value = String(i);
+  const entry = run.frames[i], stage = (run.summary.stages || [])[entry.stage];
+  $("clock").textContent = `t = ${entry.t.toFixed(timeDigits())} s · frame ${i + 1} of ${run.frames.length}${stage ? ` · ${stage.name}` : ""}`;
+  $("slider").setAttribute("aria-valuetext", $("clock").textContent);
+  if (!playing) afterFrame();
+  else legend();
+}
+
+function timeDigits() {
+  const end = run.frames[run.frames.length - 1].t;
+  return end > 0 ? Math.max(0, Math.min(9, 4 - Math.floor(Math.log10(end)))) : 3;
+}
+
+// what need not happen thirty times a second
+function afterFrame() {
+  legend();
+  showInspector();
+  moveTime();
+}
+
+function setRange() {
+  const q = run.quantities.indexOf(view.quantity);
+  if (q < 0) return;
+  const span = (entry) => entry.spans.slice(4 * q, 4 * q + 4), mode = $("range").value;
+  let least = Infinity, low = Infinity, high = -Infinity, most = -Infinity;
+  for (const entry of mode === "frame" ? [run.frames[frameIndex]] : run.frames) {
+    const s = span(entry);
+    least = Math.min(least, s[0]), low = Math.min(low, s[1]), high = Math.max(high, s[2]), most = Math.max(most, s[3]);
+  }
+  const trimmed = mode === "run";
+  let from = trimmed ? low : least, to = trimmed ? high : most;
+  if (!(to > from)) from = least, to = most;
+  if (quantities[view.quantity].signed) to = Math.max(Math.abs(from), Math.abs(to)), from = -to;
+  else from = Math.min(0, from);
+  view.range = { low: from, high: to, least, most };
+}
+
+function legend() {
+  const q = quantities[view.quantity];
+  if (!q) {
+    fill("legend", (view.labels || []).map((label, i) =>
+      element("span", { class: "swatch" }, element("i", { style: `background:${palette[i % palette.length]}` }), label || "none")));
+  } else {
+    const { low, high, least, most } = view.range, unit = readableUnit(Math.max(Math.abs(low), Math.abs(high)), q.unit);
+    const text = (v) => number(v / unit.factor, 3);
+    const beyond = [least < low ? `least ${text(least)}` : "", most > high ? `largest ${text(most)}` : ""].filter(Boolean).join(", ");
+    fill("legend", [element("span", { class: "legend-title" }, `${q.title} [${unit.unit}]`), element("span", {}, text(low)),
+      element("span", { class: "bar", style: `background:linear-gradient(90deg,${colours(q.signed).join(",")})`, role: "img", "aria-label": "colours from low to high" }),
+      element("span", {}, text(high)), element("span", { class: "note" }, beyond ? `beyond the colours: ${beyond}` : "")]);
+  }
+  const notes = [], c = view.contacts;
+  if (c && (view.show.joints || view.show.forces)) {
+    if (view.show.joints && c.lines.length) notes.push(view.largestSlip > 0 ? `Slipped joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}; open joints dashed.` : "No joint has slipped.");
+    if (view.show.forces && view.largestForce > 0) notes.push(`Longest arrow: ${withUnit(view.largestForce, "N")}, on the first of the two blocks.`);
+    if (!c.exact) notes.push(`Contacts are those of t = ${number(c.time, 5)} s: this page has them for ${run.contacts.length} frames.`);
+  }
+  if (view.bolts && view.show.bolts) notes.push(`Bolts: tension, dark green ${withUnit(view.largestTension, "N")}, grey in compression, black ruptured.`);
+  $("joint-note").textContent = notes.join(" ");
+}
+
+function goTo(i) {
+  stop();
+  return showFrame(Math.max(0, Math.min(run.frames.length - 1, i)));
+}
+
+function goToTime(t) {
+  let best = 0;
+  run.frames.forEach((f, i) => { if (Math.abs(f.t - t) < Math.abs(run.frames[best].t - t)) best = i; });
+  $("picture").scrollIntoView({ block: "nearest" });
+  return goTo(best);
+}
+
+async function play() {
+  if (playing || run.frames.length < 2) return stop();
+  playing = true;
+  view.still = false;
+  $("play").textContent = "❚❚";
+  $("play").setAttribute("aria-label", "pause");
+  let show = frameIndex === run.frames.length - 1 ? 0 : frameIndex + 1, next = performance.now();
+  for (; playing && show < run.frames.length; ++show) {
+    const begin = performance.now();
+    await showFrame(show);
+    if (show + 1 < run.frames.length) run.frame(show + 1);  // decoded while this one is looked at
+    next = Math.max(next + 1000 / Math.max(1, Number($("speed").value) || 30), performance.now() - 100);
+    await new Promise((resolve) => {
+      const look = () => (performance.now() + 2 >= next || !playing ? resolve() : requestAnimationFrame(look));
+      requestAnimationFrame(look);
+    });
+    times.push(performance.now() - begin);
+  }
+  stop();
+}
+
+function stop() {
+  if (!playing) return;
+  playing = false;
+  view.still = true;
+  view.draw();
+  $("play").textContent = "▶";
+  $("play").setAttribute("aria-label", "play");
+  afterFrame();
+}
+
+// ---- numbers of a block or contact ----
+
+function showInspector() {
+  const place = $("inspector"), chosen = view.selected;
+  if (history && (!chosen || history.key !== JSON.stringify(chosen))) {
+    history.chart.remove();
+    history = null;
+  }
+  const finder = element("form", { class: "finder", onsubmit: (e) => { e.preventDefault(); find(e.target.elements.name.value); } },
+    element("label", {}, "block ", element("input", { name: "name", list: "block-names", placeholder: "name or number", size: "14" })), element("button", { type: "submit" }, "show"));
+  if (!run.frames.length) return place.replaceChildren();
+  if (!chosen) return place.replaceChildren(element("p", { class: "hint" }, "Click a block, or a contact that is drawn, for its numbers and history."), finder);
+  const table = chosen.block !== undefined ? blockNumbers(chosen.block) : contactNumbers(chosen.contact);
+  place.replaceChildren(table, finder);
+  if (history) place.append(history.chart.figure);
+  else place.append(historyButtons(chosen));
+}
+
+function blockNumbers(id) {
+  const f = view.frame, i = f.shapes.place.get(id), b = run.block(id);
+  const rows = [];
+  if (b.kind) rows.push(["kind", b.kind], ["material", b.material], ["group", b.group], ["area", `${number(b.area, 5)} m²`]);
+  rows.push(["number", String(id)]);
+  if (i === undefined || !f.present[i]) rows.push(["", "not there at this time: dug out"]);
+  else {
+    rows.push(["place", `(${number(f.shapes.cx[i] + f.ux[i], 6)}, ${number(f.shapes.cy[i] + f.uy[i], 6)}) m`]);
+    rows.push(["rotation", `${number((Math.atan2(f.hyx[i] - f.hxy[i], 2 + f.hxx[i] + f.hyy[i]) * 180) / Math.PI, 2)}°`]);
+    for (const key of Object.keys(quantities)) {
+      const q = quantities[key];
+      rows.push([q.title, element("span", { "data-quantity": key, "data-value": String(q.of(f, i)) }, withUnit(q.of(f, i), q.unit, 3))]);
+    }
+  }
+  return tableOf(b.name, ["at the centroid", `t = ${number(f.time, 5)} s`], rows);
+}
+
+function contactNumbers(key) {
+  const p = view.contacts, i = view.findContact(key), [kind, a, corner, b, edge] = key.split(":").map(Number);
+  const name = (id) => (id < 0 ? "the ground" : run.block(id).name);
+  const rows = [["between", `${name(a)} and ${name(b)}`]];
+  if (kind === 0) rows.push(["corner on edge", `${corner} of the first on ${edge} of the second`]);
+  if (i < 0) rows.push(["", "carries nothing at this time"]);
+  else {
+    if (p.state[i] < 4) rows.push(["state", stateNames[p.state[i]]]);
+    rows.push(["normal force", element("span", { "data-quantity": "normal_force", "data-value": String(p.normal[i]) }, withUnit(p.normal[i], "N"))]);
+    rows.push(["shear force", withUnit(p.shear[i], "N")], ["force on the first", `(${withUnit(p.fx[i], "N")}, ${withUnit(p.fy[i], "N")})`]);
+    rows.push(["slip", withUnit(p.slip[i], "m")], ["opening", withUnit(p.opening[i], "m")]);
+  }
+  return tableOf(kindNames[kind] || "contact", ["per the model's thickness", p ? `t = ${number(p.time, 5)} s` : ""], rows);
+}
+
+function historyButtons(chosen) {
+  const box = element("p", { class: "history" }, "history of ");
+  const offers = chosen.block !== undefined ? Object.entries(quantities).map(([k, q]) => [k, q.title]) : [["normal", "normal force"], ["shear", "shear force"], ["slip", "slip"], ["opening", "opening"]];
+  const select = element("select", { "aria-label": "history of" }, ...offers.map(([k, t]) => element("option", { value: k }, t)));
+  if (chosen.block !== undefined && quantities[view.quantity]) select.value = view.quantity;
+  box.append(select, element("button", { type: "button", id: "show-history", onclick: () => drawHistory(chosen, select.value) }, "draw"));
+  return box;
+}
+
+async function drawHistory(chosen, what) {
+  const of = run, time = [], value = [], place = $("inspector");
+  const note = element("p", { class: "hint" });
+  place.append(note);
+  let title, unit;
+  if (chosen.block !== undefined) {
+    const q = quantities[what];
+    title = `${run.block(chosen.block).name}: ${q.title}`, unit = q.unit;
+    for (let k = 0; k < run.frames.length; ++k) {
+      const f = await run.frame(k), i = f.shapes.place.get(chosen.block);
+      if (of !== run) return;
+      if (i === undefined || !f.present[i]) continue;
+      time.push(f.time), value.push(q.of(f, i));
+      if (k % 10 === 0) note.textContent = `reading frame ${k + 1} of ${run.frames.length}`;
+    }
+  } else {
+    title = `contact: ${what}`, unit = what === "slip" || what === "opening" ? "m" : "N";
+    for (let k = 0; k < run.contacts.length; ++k) {
+      const p = await run.contactFrame(k);
+      for (let i = 0; i < p.n; ++i) if (contactKey(p, i) === chosen.contact) time.push(p.time), value.push(p[what][i]);
+    }
+  }
+  note.remove();
+  if (JSON.stringify(view.selected) !== JSON.stringify(chosen)) return;
+  const chart = addChart(place, { title, unit, quantity: title.split(": ")[1], series: [{ label: title, time, value }], timeNow: () => run.frames[frameIndex].t, onTime: goToTime });
+  history = { key: JSON.stringify(chosen), chart };
+  chart.draw();
+  showInspector();
+}
+
+function select(chosen) {
+  view.selected = chosen;
+  view.draw();
+  showInspector();
+}
+
+function find(text) {
+  const wantedName = text.trim(), ids = view.frame.shapes.id;
+  for (const id of ids) if (String(id) === wantedName || run.block(id).name === wantedName) return select({ block: id });
+  $("inspector").append(element("p", { class: "hint" }, `There is no block "${wantedName}".`));
+}
+
+// ---- charts ----
+
+// A chart for each quantity, with all monitors of all runs.
+async function addMonitors() {
+  const tables = await Promise.all(runs.map((r) => r.table("histories"))), groups = new Map();
+  tables.forEach((table, r) => {
+    if (!table) return;
+    table.columns.forEach((column, c) => {
+      if (c === 0) return;
+      const { monitor, quantity, unit } = splitColumn(column), key = `${quantity} [${unit}]`;
+      if (!groups.has(key)) groups.set(key, { quantity, unit, series: [] });
+      groups.get(key).series.push({ label: runs.length > 1 ? `${runs[r].name}: ${monitor}` : monitor, time: table.values[0], value: table.values[c] });
+    });
+  });
+  if (!groups.size) {
+    $("charts").append(element("p", {}, "The model has no monitors: give it [[monitor]] to see histories here."));
+    return;
+  }
+  for (const { quantity, unit, series } of groups.values())
+    addChart($("charts"), { title: quantity, quantity, unit, series, timeNow, onTime: goToTime });
+}
+
+function timeNow() {
+  return run.frames.length ? run.frames[frameIndex].t : NaN;
+}
+
+function addSteps(steps) {
+  const series = (name, label = name) => {
+    const c = steps.columns.indexOf(name);
+    return c < 0 ? null : { label, time: steps.values[0], value: steps.values[c] };
+  };
+  const chart = (id, spec) => {
+    const list = spec.series.filter(Boolean).filter((s) => s.value.some((v) => v !== 0));
+    if (!list.length) return;
+    $(id).hidden = false;
+    $(id).charts.push(addChart($(id), { ...spec, series: list, timeNow, onTime: goToTime }));
+  };
+  const energies = steps.columns.filter((c) => /(energy|work) \[J\]$/.test(c) && c !== "energy left over [J]");
+  chart("energy", { title: "energies and work", quantity: "energy, work", unit: "J", series: energies.map((c) => series(c, c.replace(" [J]", ""))) });
+  chart("energy", { title: "energy left over", unit: "J", series: [series("energy left over [J]", "left over")] });
+  chart("health", { title: "contact error", unit: "m", log: true, series: [series("contact error [m]", "contact error")] });
+  chart("health", { title: "iterations a step", series: [series("iterations")] });
+  chart("health", { title: "contacts", series: [series("contacts", "points followed"), series("closed contacts", "closed")] });
+}
+
+// ---- the reader ----
+
+function resize() {
+  const canvas = $("canvas"), ratio = window.devicePixelRatio || 1;
+  const w = Math.round(canvas.clientWidth * ratio), h = Math.round(canvas.clientHeight * ratio);
+  if (canvas.width !== w || canvas.height !== h) canvas.width = w, canvas.height = h;
+}
+
+function redraw() {
+  if (!view.frame) return;
+  setRange();
+  view.draw();
+  if (!playing) legend();
+}
+
+function applyTheme() {
+  const theme = $("theme").value;
+  if (theme === "auto") delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = theme;
+  redraw();
+  redrawCharts();
+}
+
+function listen() {
+  const canvas = $("canvas");
+  $("run").addEventListener("change", () => showRun(Number($("run").value)));
+  $("theme").addEventListener("change", applyTheme);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", applyTheme);
+  $("quantity").addEventListener("change", () => { view.quantity = $("quantity").value; redraw(); });
+  $("range").addEventListener("change", redraw);
+  $("deformation").addEventListener("input", () => {
+    const v = Number($("deformation").value);
+    if (Number.isFinite(v) && v >= 0) view.deformation = v, redraw();
+  });
+  for (const key of ["joints", "forces", "bolts", "outlines"])
+    $(`show-${key}`).addEventListener("change", (e) => { view.show[key] = e.target.checked; redraw(); });
+  $("fit").addEventListener("click", () => { view.fit(); redraw(); });
+  $("zoom-in").addEventListener("click", () => { view.zoom(1.5); redraw(); });
+  $("zoom-out").addEventListener("click", () => { view.zoom(1 / 1.5); redraw(); });
+  $("save-picture").addEventListener("click", savePicture);
+  $("play").addEventListener("click", play);
+  $("back").addEventListener("click", () => goTo(frameIndex - 1));
+  $("forth").addEventListener("click", () => goTo(frameIndex + 1));
+  $("slider").addEventListener("input", () => goTo(Number($("slider").value)));
+
+  let down = null;
+  canvas.addEventListener("pointerdown", (e) => { down = { x: e.offsetX, y: e.offsetY, moved: false }; canvas.setPointerCapture(e.pointerId); });
+  canvas.addEventListener("pointermove", (e) => {
+    if (!down) return;
+    if (!down.moved && Math.hypot(e.offsetX - down.x, e.offsetY - down.y) < 4) return;
+    view.pan(e.offsetX - down.x, e.offsetY - down.y);
+    down = { x: e.offsetX, y: e.offsetY, moved: true };
+    view.draw();
+  });
+  canvas.addEventListener("pointerup", (e) => {
+    const clicked = down && !down.moved;
+    down = null;
+    if (!clicked) return;
+    const contact = view.contactAt(e.offsetX, e.offsetY), block = view.blockAt(e.offsetX, e.offsetY);
+    select(contact ? { contact } : block >= 0 ? { block } : null);
+  });
+  canvas.addEventListener("wheel", (e) => { e.preventDefault(); view.zoom(Math.exp(-e.deltaY / 400), e.offsetX, e.offsetY); view.draw(); }, { passive: false });
+  document.addEventListener("keydown", (e) => {
+    if (e.ctrlKey || e.metaKey || e.altKey || /^(INPUT|SELECT|TEXTAREA|BUTTON|SUMMARY)$/.test(e.target.tagName) || !run.frames.length) return;
+    const act = {
+      " ": play, ArrowLeft: () => goTo(frameIndex - 1), ArrowRight: () => goTo(frameIndex + 1), Home: () => goTo(0), End: () => goTo(run.frames.length - 1),
+      "+": () => { view.zoom(1.5); redraw(); }, "-": () => { view.zoom(1 / 1.5); redraw(); }, 0: () => { view.fit(); redraw(); }, Escape: () => select(null),
+    }[e.key];
+    if (!act) return;
+    e.preventDefault();
+    act();
+  });
+  let waiting = 0;
+  new ResizeObserver(() => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => { resize(); redraw(); }, 50);
+  }).observe(canvas);
+  let width = window.innerWidth;
+  window.addEventListener("resize", () => { if (window.innerWidth !== width) width = window.innerWidth, redrawCharts(); });
+  window.addEventListener("beforeprint", () => { document.querySelectorAll("details").forEach((d) => { d.open = false; }); });
+}
+
+// The picture with what its legend says.
+function savePicture() {
+  const source = $("canvas"), ratio = source.width / source.clientWidth, canvas = document.createElement("canvas");
+  const q = quantities[view.quantity], foot = 46 * ratio;
+  canvas.width = source.width;
+  canvas.height = source.height + foot;
+  const context = canvas.getContext("2d"), style = getComputedStyle(source);
+  context.fillStyle = style.getPropertyValue("--paper");
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  view.draw();  // the ground can be read only in the task that drew it
+  context.drawImage($("ground"), 0, 0, source.width, source.height);
+  context.drawImage(source, 0, 0);
+  context.fillStyle = style.getPropertyValue("--ink");
+  context.font = `${13 * ratio}px sans-serif`;
+  context.textBaseline = "middle";
+  const y = source.height + 14 * ratio;
+  context.fillText(`${run.title()}: ${$("clock").textContent}`, 10 * ratio, y + 20 * ratio);
+  if (q) {
+    const unit = readableUnit(Math.max(Math.abs(view.range.low), Math.abs(view.range.high)), q.unit);
+    const head = `${q.title} [${unit.unit}]   ${number(view.range.low / unit.factor, 3)} `;
+    context.fillText(head, 10 * ratio, y);
+    const from = 10 * ratio + context.measureText(head).width, list = colours(q.signed), step = (200 * ratio) / list.length;
+    list.forEach((colour, k) => { context.fillStyle = colour; context.fillRect(from + k * step, y - 7 * ratio, step + 1, 14 * ratio); });
+    context.fillStyle = style.getPropertyValue("--ink");
+    context.fillText(number(view.range.high / unit.factor, 3), from + 206 * ratio, y);
+  }
+  canvas.toBlob((blob) => save(`${run.name}_t_${run.frames[frameIndex].t.toPrecision(5)}.png`.replace(/[^\w.-]+/g, "_"), blob));
+}
+
+// for tests and the benchmark
+window.talus = {
+  ready: false, firstPicture: NaN, times,
+  state: () => ({ frame: frameIndex, time: run.frames[frameIndex].t, playing, selected: view.selected, drawTime: view.drawTime }),
+  screenOf: (id) => {
+    const s = view.frame.shapes, i = s.place.get(id);
+    return view.toScreen(s.cx[i] + view.deformation * view.frame.ux[i], s.cy[i] + view.deformation * view.frame.uy[i]);
+  },
+  contactPlaces: () => Array.from({ length: view.contacts ? view.contacts.n : 0 }, (_, i) => ({ key: contactKey(view.contacts, i), at: view.contactPlace(i) })),
+};
+
+start().catch((error) => {
+  $("warnings").append(element("p", { class: "warning" }, `The report cannot be shown: ${error.message}`));
+  throw error;
+});

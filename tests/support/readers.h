@@ -18,6 +18,8 @@
 #include "talus/model/read_maps.h"
 #include "talus/model/read_model.h"
 #include "talus/model/toml_source.h"
+#include "talus/output/read_vtk.h"
+#include "talus/output/text_table.h"
 #include "talus/record/history_file.h"
 #include "talus/record/read_record.h"
 #include "talus/run/problem_file.h"
@@ -81,6 +83,8 @@ inline const std::map<std::string, std::function<void(const std::string&)>>& rea
          read_blocks_file(model, findings);
          findings.throw_if_errors();
        }},
+      {"vtk", [](const std::string& text) { parse_vtk("frame.vtu", text); }},
+      {"table", [](const std::string& text) { parse_text_table("table.csv", text); }},
       {"replay",
        [](const std::string& text) {
          SolverInput options;

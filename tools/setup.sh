@@ -59,4 +59,6 @@ build() {
   [ "$talus_maps" = no ] || [ -e "build/$1/modules/libtalus_vector.so" ] || configure=yes
   { { [ $configure = no ] || cmake --preset "$1" ${2:-}; } && cmake --build --preset "$1"; } >"$log" 2>&1 ||
     { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }
+  [ "$talus_report" = no ] || [ -e "build/$1/share/talus/report_page.html" ] ||
+    echo "note: the page of talus report was not built; the reason is in $log"
 }

@@ -104,8 +104,9 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
                        joints.slipped_joints, joints.slipped_joints == 1 ? "" : "s",
                        joints.most_residual.residual_slip(), place_text(scene, joints.most_residual));
   out += fmt::format(
-      "  results         {}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "
-      "(ParaView)\n",
+      "  results         {0}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "
+      "(ParaView)\n"
+      "  next            talus report {0}\n",
       folder);
   return out;
 }

@@ -200,6 +200,10 @@ int plot_command(const PlotArguments& args) {
     throw Error(kExitUsage, "--time and --window need --blocks");
   std::vector<CsvTable> tables;
   for (const std::string& folder : args.folders) {
+    std::error_code ec;
+    if (!fs::is_directory(folder, ec)) throw FileError(fmt::format("{}: there is no such folder", folder));
+    if (!fs::exists(fs::path(folder) / "histories.csv", ec))
+      throw FileError(fmt::format("{}: holds no results of talus run: histories.csv is missing", folder));
     tables.push_back(read_csv(fs::path(folder) / "histories.csv"));
     if (!args.stage.empty()) tables.back() = only_stage(std::move(tables.back()), folder, args.stage);
   }

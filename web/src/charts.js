@@ -78,16 +78,17 @@ function options(chart) {
     width: Math.max(280, chart.box.clientWidth), height: 260,
     cursor: { drag: { x: true, y: false }, sync: { key: "time" } },
     scales: { x: { time: false }, y: { distr: spec.log ? 3 : 1 } },
-    series: [{ label: "t [s]", value: (u, v) => (v === null ? "" : number(v, 6)) }, ...spec.series.map((s, i) => ({
+    series: [{ label: "t [s]", value: (u, v) => (v === null ? "–" : number(v, 6)) }, ...spec.series.map((s, i) => ({
       label: s.label, stroke: kColours[i % kColours.length], width: 1.6, spanGaps: true,
       dash: kDashes[Math.floor(i / kColours.length) % kDashes.length].length ? kDashes[Math.floor(i / kColours.length) % kDashes.length]
         : kDashes[i % kDashes.length],
-      value: (u, v) => (v === null || v === undefined ? "" : number(v, 6)),
+      value: (u, v) => (v === null || v === undefined ? "–" : number(v, 6)),
       points: { show: s.time.length < 40 },
     }))],
     axes: [{ ...axis, label: spec.xLabel || "t [s]", values: (u, v) => v.map((x) => number(x, 6)) },
       { ...axis, label: `${spec.quantity || spec.title}${spec.unit ? ` [${spec.unit}]` : ""}`, values: digits,
         size: (u, values) => 26 + 7 * Math.max(4, ...(values || []).map((v) => v.length)), ...(spec.log ? { splits: decades } : {}) }],
+    legend: { markers: { dash: (u, i) => (u.series[i].dash && u.series[i].dash.length ? "dashed" : "solid") } },
     hooks: { draw: [drawNow(chart)] },
   };
 }
@@ -131,6 +132,11 @@ function draw(chart) {
 function whole(chart) {
   const x = chart.data[0];
   chart.plot.setScale("x", { min: x[0], max: x[x.length - 1] });
+}
+
+/** Draws also the charts that were not in sight yet. */
+export function drawCharts() {
+  for (const chart of live) draw(chart);
 }
 
 /** Draws all charts anew: other colours, another width. */

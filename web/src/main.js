@@ -3,7 +3,7 @@
 import { chunkJson } from "./decode.js";
 import { Run } from "./run.js";
 import { View, contactKey } from "./view.js";
-import { addChart, moveTime, redrawCharts, save, splitColumn } from "./charts.js";
+import { addChart, drawCharts, moveTime, redrawCharts, save, splitColumn } from "./charts.js";
 import { colours, number, palette, quantities, readableUnit, withUnit } from "./quantities.js";
 import { element, tableOf } from "./dom.js";
 import { cardsOf, energyOf, listOf, modelOf, stagesOf, warningsOf, worstSteps } from "./words.js";
@@ -140,9 +140,13 @@ function setRange() {
   const trimmed = mode === "run";
   let from = trimmed ? low : least, to = trimmed ? high : most;
   if (!(to > from)) from = least, to = most;
-  if (quantities[view.quantity].signed) to = Math.max(Math.abs(from), Math.abs(to)), from = -to;
-  else from = Math.min(0, from);
-  view.range = { low: from, high: to, least, most };
+  let side = 0;
+  if (quantities[view.quantity].signed) {
+    const size = Math.max(Math.abs(from), Math.abs(to));
+    side = most <= 0 ? -1 : least >= 0 ? 1 : 0;
+    from = side > 0 ? 0 : -size, to = side < 0 ? 0 : size;
+  } else from = Math.min(0, from);
+  view.range = { low: from, high: to, least, most, side };
 }
 
 function legend() {
@@ -155,12 +159,13 @@ function legend() {
     const text = (v) => number(v / unit.factor, 3);
     const beyond = [least < low ? `least ${text(least)}` : "", most > high ? `largest ${text(most)}` : ""].filter(Boolean).join(", ");
     fill("legend", [element("span", { class: "legend-title" }, `${q.title} [${unit.unit}]`), element("span", {}, text(low)),
-      element("span", { class: "bar", style: `background:linear-gradient(90deg,${colours(q.signed).join(",")})`, role: "img", "aria-label": "colours from low to high" }),
+      element("span", { class: "bar", style: `background:linear-gradient(90deg,${colours(q.signed, view.range.side).join(",")})`, role: "img", "aria-label": "colours from low to high" }),
       element("span", {}, text(high)), element("span", { class: "note" }, beyond ? `beyond the colours: ${beyond}` : "")]);
   }
   const notes = [], c = view.contacts;
   if (c && (view.show.joints || view.show.forces)) {
-    if (view.show.joints && c.lines.length) notes.push(view.largestSlip > 0 ? `Slipped joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}; open joints dashed.` : "No joint has slipped.");
+    if (view.show.joints && c.lines.length) notes.push(view.largestSlip > 0 ? `Slipped joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}.` : "No joint has slipped.");
+    if (view.show.joints && view.largestOpening > 0) notes.push(`Open joints of blocks still near each other dashed, at most ${withUnit(view.largestOpening, "m")}.`);
     if (view.show.forces && view.largestForce > 0) notes.push(`Longest arrow: ${withUnit(view.largestForce, "N")}, on the first of the two blocks.`);
     if (!c.exact) notes.push(`Contacts are those of t = ${number(c.time, 5)} s: this page has them for ${run.contacts.length} frames.`);
   }
@@ -432,11 +437,11 @@ function listen() {
   let waiting = 0;
   new ResizeObserver(() => {
     clearTimeout(waiting);
-    waiting = setTimeout(() => { resize(); redraw(); }, 50);
+    waiting = setTimeout(() => { resize(); if (view.fitted) view.fit(); redraw(); }, 50);
   }).observe(canvas);
   let width = window.innerWidth;
   window.addEventListener("resize", () => { if (window.innerWidth !== width) width = window.innerWidth, redrawCharts(); });
-  window.addEventListener("beforeprint", () => { document.querySelectorAll("details").forEach((d) => { d.open = false; }); });
+  window.addEventListener("beforeprint", () => { drawCharts(); document.querySelectorAll("details").forEach((d) => { d.open = false; }); });
 }
 
 // The picture with what its legend says.
@@ -460,7 +465,7 @@ function savePicture() {
     const unit = readableUnit(Math.max(Math.abs(view.range.low), Math.abs(view.range.high)), q.unit);
     const head = `${q.title} [${unit.unit}]   ${number(view.range.low / unit.factor, 3)} `;
     context.fillText(head, 10 * ratio, y);
-    const from = 10 * ratio + context.measureText(head).width, list = colours(q.signed), step = (200 * ratio) / list.length;
+    const from = 10 * ratio + context.measureText(head).width, list = colours(q.signed, view.range.side), step = (200 * ratio) / list.length;
     list.forEach((colour, k) => { context.fillStyle = colour; context.fillRect(from + k * step, y - 7 * ratio, step + 1, 14 * ratio); });
     context.fillStyle = style.getPropertyValue("--ink");
     context.fillText(number(view.range.high / unit.factor, 3), from + 206 * ratio, y);

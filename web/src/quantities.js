@@ -13,8 +13,8 @@ export const quantities = {
   stress_xx: { ...stress, title: "stress xx", of: (f, i) => f.sxx[i] },
   stress_yy: { ...stress, title: "stress yy", of: (f, i) => f.syy[i] },
   stress_xy: { ...stress, title: "stress xy", of: (f, i) => f.sxy[i] },
-  stress_major: { ...stress, title: "principal stress, largest", of: (f, i) => mean(f, i) + radius(f, i) },
-  stress_minor: { ...stress, title: "principal stress, least", of: (f, i) => mean(f, i) - radius(f, i) },
+  stress_major: { ...stress, title: "largest principal stress", of: (f, i) => mean(f, i) + radius(f, i) },
+  stress_minor: { ...stress, title: "least principal stress", of: (f, i) => mean(f, i) - radius(f, i) },
   shear_most: { title: "largest shear stress", unit: "Pa", of: radius },
 };
 
@@ -35,9 +35,9 @@ const two = [[5, 48, 97], [33, 102, 172], [67, 147, 195], [146, 197, 222], [236,
 
 export const kClasses = 32;
 
-/** kClasses colours. */
-export function colours(signed) {
-  const anchors = signed ? two : one, out = [];
+/** kClasses colours. @param side  of two-sided ones: -1 for negative values alone, 1 for positive ones, 0: both */
+export function colours(signed, side = 0) {
+  const anchors = !signed ? one : side < 0 ? two.slice(0, 5) : side > 0 ? two.slice(4) : two, out = [];
   for (let k = 0; k < kClasses; ++k) {
     const s = (k / (kClasses - 1)) * (anchors.length - 1), i = Math.min(Math.floor(s), anchors.length - 2);
     const mix = anchors[i].map((v, c) => Math.round(v + (s - i) * (anchors[i + 1][c] - v)));

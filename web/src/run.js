@@ -107,7 +107,7 @@ export class Run {
       const u = new Unpacker(await chunk(data));
       const points = {
         n, frame, time: this.frames[frame].t, kind: u.bytes(n), state: u.bytes(n),
-        a: u.integers(n), b: u.integers(n), corner: u.integers(n), edge: u.integers(n),
+        a: u.integers(n), b: u.integers(n), corner: u.integers(n), edge: u.integers(n), partner: u.integers(n),
         x: u.shortFloats(n), y: u.shortFloats(n), direction: u.shortIntegers(n),
         normal: u.halves(n), shear: u.halves(n), slip: u.halves(n), opening: u.halves(n),
       };
@@ -116,7 +116,9 @@ export class Run {
         const size = Math.hypot(points.normal[i], points.shear[i]), angle = (points.direction[i] / 32767) * Math.PI;
         points.fx[i] = size * Math.cos(angle), points.fy[i] = size * Math.sin(angle);
       }
-      points.lines = facesOf(points);
+      const lines = [];
+      for (let i = 0; i < n; ++i) if (points.partner[i] > i) lines.push(i, points.partner[i]);
+      points.lines = Int32Array.from(lines);
       return points;
     });
   }
@@ -143,28 +145,4 @@ export class Run {
       return { columns: t.columns, values, rows: t.rows, rowsThere: t.rows_there };
     });
   }
-}
-
-/** Pairs of contact points that are the two ends of what two blocks share: indices, two by two. */
-function facesOf(p) {
-  const groups = new Map();
-  for (let i = 0; i < p.n; ++i) {
-    if (p.kind[i] > 1 || p.state[i] === 255) continue;
-    const low = Math.min(p.a[i], p.b[i]), high = Math.max(p.a[i], p.b[i]);
-    if (low < 0) continue;
-    const key = low * 1048576 + high;
-    if (!groups.has(key)) groups.set(key, []);
-    groups.get(key).push(i);
-  }
-  const lines = [];
-  for (const group of groups.values()) {
-    if (group.length > 2) {
-      // along the longer extent
-      const width = (v) => Math.max(...group.map((i) => v[i])) - Math.min(...group.map((i) => v[i]));
-      const along = width(p.x) >= width(p.y) ? p.x : p.y;
-      group.sort((i, j) => along[i] - along[j]);
-    }
-    for (let k = 0; k + 1 < group.length; k += 2) lines.push(group[k], group[k + 1]);
-  }
-  return Int32Array.from(lines);
 }

@@ -83,7 +83,7 @@ export class View {
       const c = Math.round((q.of(f, i) - low) * unit);
       this.class_[i] = c < 0 ? 0 : c >= kClasses ? kClasses - 1 : c || 0;
     }
-    return colours(q.signed);
+    return colours(q.signed, this.range.side);
   }
 
   draw() {
@@ -128,9 +128,9 @@ export class View {
 
   paintJoints_(ink) {
     const lines = new Lines(), orange = bytesOf("#e6550d"), dark = bytesOf(ink);
-    this.eachJoint_((px, py, qx, qy, open, share) => {
-      if (open) lines.addDashed(px, py, qx, qy, 2, dark);
-      else lines.add(px, py, qx, qy, share <= kLeastLine ? 0.8 : 1 + 3 * share, orange);
+    this.eachJoint_((px, py, qx, qy, slip, opening) => {
+      if (slip > 0) lines.add(px, py, qx, qy, slip <= kLeastLine ? 0.8 : 1 + 3 * slip, orange);
+      if (opening > kLeastLine) lines.addDashed(px, py, qx, qy, 2, dark);
     });
     this.painter.triangles(new Float32Array(lines.places), new Uint8Array(lines.tints));
   }
@@ -159,18 +159,19 @@ export class View {
     return (this.deformation - 1) * (axis === "x" ? f.ux[k] : f.uy[k]);
   }
 
-  // Joints in sight that slipped or stand open: ends, whether open, share of the largest slip.
+  // Joints in sight that slipped or stand open: ends, share of the largest slip and of the largest opening.
   eachJoint_(draw) {
     const p = this.contacts, w = this.canvas.clientWidth, h = this.canvas.clientHeight;
-    let slip = 0;
-    for (let i = 0; i < p.n; ++i) if (p.state[i] === 1 || p.state[i] === 2) slip = Math.max(slip, p.slip[i]);
-    this.largestSlip = slip;
+    const slipOf = (i) => (p.state[i] === 1 || p.state[i] === 2 ? p.slip[i] : 0), openOf = (i) => (p.state[i] === 2 ? p.opening[i] : 0);
+    let slip = 0, opening = 0;
+    for (const i of p.lines) slip = Math.max(slip, slipOf(i)), opening = Math.max(opening, openOf(i));
+    this.largestSlip = slip, this.largestOpening = opening;
     for (let k = 0; k < p.lines.length; k += 2) {
-      const i = p.lines[k], j = p.lines[k + 1], open = p.state[i] === 2 || p.state[j] === 2;
-      if (!open && p.state[i] !== 1 && p.state[j] !== 1) continue;
+      const i = p.lines[k], j = p.lines[k + 1], s = Math.max(slipOf(i), slipOf(j)), o = Math.max(openOf(i), openOf(j));
+      if (s === 0 && o === 0) continue;
       const [px, py] = this.contactPlace(i), [qx, qy] = this.contactPlace(j);
       if (Math.max(px, qx) < 0 || Math.max(py, qy) < 0 || Math.min(px, qx) > w || Math.min(py, qy) > h) continue;
-      draw(px, py, qx, qy, open, slip > 0 ? Math.max(p.slip[i], p.slip[j]) / slip : 0);
+      draw(px, py, qx, qy, slip > 0 ? s / slip : 0, opening > 0 ? o / opening : 0);
     }
   }
 
@@ -269,6 +270,7 @@ export class View {
     }
     if (!(right > left)) return;
     this.centre = [(left + right) / 2, (low + high) / 2];
+    this.fitted = true;
     this.scale = Math.min((this.canvas.clientWidth - 2 * kMargin) / (right - left),
       (this.canvas.clientHeight - 2 * kMargin) / Math.max(high - low, 1e-9));
   }
@@ -276,12 +278,14 @@ export class View {
   /** Zooms by `factor` and keeps what is under (px, py). */
   zoom(factor, px = this.canvas.clientWidth / 2, py = this.canvas.clientHeight / 2) {
     const [x, y] = this.toWorld(px, py);
+    this.fitted = false;
     this.scale *= factor;
     const [nx, ny] = this.toWorld(px, py);
     this.centre = [this.centre[0] + x - nx, this.centre[1] + y - ny];
   }
 
   pan(dx, dy) {
+    this.fitted = false;
     this.centre = [this.centre[0] - dx / this.scale, this.centre[1] + dy / this.scale];
   }
 

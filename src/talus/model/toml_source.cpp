@@ -125,9 +125,12 @@ TomlSource parse_toml(const std::string& text, const std::vector<std::string>& o
     const auto at = e.source().begin;
     const std::string_view text_of = e.description();
     const bool open_text = text_of.find("unescaped control characters") != std::string_view::npos;
+    const bool bare_unit = text_of.find("expected a comment or whitespace") != std::string_view::npos;
     findings.error({static_cast<int>(at.line), static_cast<int>(at.column), ""}, "",
                    fmt::format("syntax: {}", text_of),
-                   open_text ? "a closing quote is missing before the end of the line" : "");
+                   open_text   ? "a closing quote is missing before the end of the line"
+                   : bare_unit ? "texts, and values with a unit, stand in quotes: \"10 GPa\""
+                               : "");
     return source;
   }
   for (const std::string& item : overrides) apply_override(item, source, findings);

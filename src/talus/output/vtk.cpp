@@ -46,10 +46,10 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
 std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time) {
   std::vector<double> points, force, normal, shear, gap, slip, opening;
   std::vector<int64_t> kind, state, connectivity, offsets;
-  std::vector<int32_t> block_a, block_b, corner, edge;
+  std::vector<int32_t> block_a, block_b, corner, edge, partner;
   for (const ContactFrame& c : contacts) {
     block_a.push_back(c.block_a), block_b.push_back(c.block_b);
-    corner.push_back(c.corner), edge.push_back(c.edge);
+    corner.push_back(c.corner), edge.push_back(c.edge), partner.push_back(c.partner);
     push3(points, c.point);
     push3(force, c.force);
     normal.push_back(c.normal_force), shear.push_back(c.shear_force), gap.push_back(c.gap);
@@ -69,7 +69,8 @@ std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time)
          doubles("shear force [N]", 1, shear) + doubles("gap [m]", 1, gap) + doubles("slip [m]", 1, slip) +
          doubles("opening [m]", 1, opening) + integers("kind", kind) + integers("state", state) +
          data_array("Int32", "block a", 1, block_a) + data_array("Int32", "block b", 1, block_b) +
-         data_array("Int32", "corner", 1, corner) + data_array("Int32", "edge", 1, edge) + "</PointData>\n";
+         data_array("Int32", "corner", 1, corner) + data_array("Int32", "edge", 1, edge) +
+         data_array("Int32", "partner", 1, partner) + "</PointData>\n";
   return out + "</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 

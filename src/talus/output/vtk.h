@@ -21,6 +21,7 @@ struct ContactFrame {
   // of a contact the corner of block_a and the edge of block_b; else the index of the point and 0: the same
   // point has the same numbers in every frame
   int corner = 0, edge = 0;
+  int partner = -1;  // index in the frame of the other end of what the two blocks share, -1: none
 };
 
 /// The deformed blocks: displacement and velocity at corners; stress (sxx, syy, sxy), block id, kind,

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "talus/base/error.h"
 #include "talus/output/files.h"
@@ -122,6 +121,7 @@ struct Scenery {
   std::vector<BoltSegment> bolts;
   double slip = 0, opening = 0, tension = 0, pressed = 0;
   double low = 0, high = 1, least = 0, most = 0;  // of the colours; of all values
+  int side = 0;  // -1: all values are negative, 1: positive, and have one half of the two-sided colours
   const Quantity* quantity = nullptr;
 };
 
@@ -153,45 +153,27 @@ void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
   }
 }
 
-// Points of two blocks as the ends of what they share of a joint.
+// Joints from end to end.
 void take_joints(const VtkFrame& f, Scenery& s) {
   const auto& points = f.at("Points", 3);
   const auto n = static_cast<long>(points.tuples());
-  if (!f.has("block a")) return;  // written before contacts had the numbers of their blocks
-  const auto& a = f.at("block a", 1, n);
-  const auto& b = f.at("block b", 1, n);
-  const auto& kind = f.at("kind", 1, n);
+  if (!f.has("partner")) return;  // written before ends knew each other
+  const auto& partner = f.at("partner", 1, n);
   const auto& state = f.at("state", 1, n);
   const auto& slip = f.at("slip [m]", 1, n);
   const auto& opening = f.at("opening [m]", 1, n);
-  std::map<std::pair<double, double>, std::vector<size_t>> groups;
-  for (size_t i = 0; i < points.tuples(); ++i)
-    if (kind.values[i] <= 1 && state.values[i] >= 0)
-      groups[std::minmax(a.values[i], b.values[i])].push_back(i);
-  for (auto& [pair, group] : groups) {
-    Box box{point_at(points, group[0]), point_at(points, group[0])};
-    for (const size_t i : group) {
-      const Vec2 p = point_at(points, i);
-      box = {{std::min(box.min.x, p.x), std::min(box.min.y, p.y)},
-             {std::max(box.max.x, p.x), std::max(box.max.y, p.y)}};
+  for (size_t i = 0; i < points.tuples(); ++i) {
+    if (!(partner.values[i] > static_cast<double>(i) && partner.values[i] < static_cast<double>(n))) continue;
+    const auto j = static_cast<size_t>(partner.values[i]);
+    JointSegment joint{point_at(points, i), point_at(points, j), 0, 0};
+    for (const size_t e : {i, j}) {
+      const double condition = state.values[e];
+      if (condition == 1 || condition == 2) joint.slip = std::max(joint.slip, slip.values[e]);
+      if (condition == 2) joint.opening = std::max(joint.opening, opening.values[e]);
     }
-    const bool level = box.max.x - box.min.x >= box.max.y - box.min.y;
-    std::sort(group.begin(), group.end(), [&](size_t i, size_t j) {
-      const Vec2 p = point_at(points, i), q = point_at(points, j);
-      return level ? p.x < q.x : p.y < q.y;
-    });
-    for (size_t k = 0; k + 1 < group.size(); k += 2) {
-      const size_t i = group[k], j = group[k + 1];
-      JointSegment joint{point_at(points, i), point_at(points, j), 0, 0};
-      for (const size_t e : {i, j}) {
-        const double condition = state.values[e];
-        if (condition == 1 || condition == 2) joint.slip = std::max(joint.slip, slip.values[e]);
-        if (condition == 2) joint.opening = std::max(joint.opening, opening.values[e]);
-      }
-      if (joint.slip == 0 && joint.opening == 0) continue;
-      s.slip = std::max(s.slip, joint.slip), s.opening = std::max(s.opening, joint.opening);
-      s.joints.push_back(joint);
-    }
+    if (joint.slip == 0 && joint.opening == 0) continue;
+    s.slip = std::max(s.slip, joint.slip), s.opening = std::max(s.opening, joint.opening);
+    s.joints.push_back(joint);
   }
 }
 
@@ -223,8 +205,9 @@ void set_range(const Box& box, Scenery& s) {
   s.least = values.front(), s.most = values.back();
   s.low = values[cut], s.high = values[values.size() - 1 - cut];
   if (s.quantity->signed_values) {
-    s.high = std::max(std::abs(s.low), std::abs(s.high));
-    s.low = -s.high;
+    s.side = s.most <= 0 ? -1 : s.least >= 0 ? 1 : 0;
+    const double size = std::max(std::abs(s.low), std::abs(s.high));
+    s.low = s.side > 0 ? 0 : -size, s.high = s.side < 0 ? 0 : size;
   } else {
     s.low = std::min(0.0, s.low);
   }
@@ -274,9 +257,15 @@ void trace(cairo_t* cr, const View& view, const Polygon& polygon) {
   cairo_close_path(cr);
 }
 
+// @param share  of the range of the colours
+Color color_at(const Scenery& s, double share) {
+  if (!s.quantity->signed_values) return mix(kOneSided, share);
+  const double t = std::clamp(share, 0.0, 1.0);
+  return mix(kTwoSided, s.side == 0 ? t : s.side < 0 ? 0.5 * t : 0.5 + 0.5 * t);
+}
+
 Color color_of(const Scenery& s, double value) {
-  if (!s.quantity) return kPale;
-  return mix(s.quantity->signed_values ? kTwoSided : kOneSided, (value - s.low) / (s.high - s.low));
+  return s.quantity ? color_at(s, (value - s.low) / (s.high - s.low)) : kPale;
 }
 
 void segment(cairo_t* cr, const View& view, Vec2 from, Vec2 to, const Pen& pen) {
@@ -348,7 +337,7 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
     const double from = x + text_width(cr, low) + 8;
     constexpr int kSteps = 64;
     for (int k = 0; k < kSteps; ++k) {
-      set_color(cr, mix(s.quantity->signed_values ? kTwoSided : kOneSided, (k + 0.5) / kSteps));
+      set_color(cr, color_at(s, (k + 0.5) / kSteps));
       cairo_rectangle(cr, from + k * kBarWidth / kSteps, y - kBarHeight / 2, kBarWidth / kSteps + 0.5,
                       kBarHeight);
       cairo_fill(cr);
@@ -369,7 +358,7 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
   }
   if (s.opening > 0) {
     line(open_pen());
-    text("open joints, at most " + with_unit(s.opening, "m"), x + sample);
+    text("open joints of blocks still near each other, at most " + with_unit(s.opening, "m"), x + sample);
     y += kRow;
   }
   if (!s.bolts.empty()) {
@@ -400,6 +389,10 @@ void write_block_picture(const BlockPicture& picture, const std::filesystem::pat
   if (picture.contacts) take_joints(*picture.contacts, scenery);
   if (picture.bolts) take_bolts(*picture.bolts, scenery);
   const Box box = box_of(picture, scenery);
+  if (std::none_of(scenery.shapes.begin(), scenery.shapes.end(),
+                   [&box](const Shape& shape) { return in_window(shape.polygon, box); }))
+    throw Error(kExitUsage, fmt::format("no block lies in the window ({:g}, {:g}) to ({:g}, {:g})", box.min.x,
+                                        box.min.y, box.max.x, box.max.y));
   if (scenery.quantity) set_range(box, scenery);
   const Sheet sheet = make_sheet(make_measuring_context().get(), box, scenery);
   const auto draw_all = [&](cairo_t* cr) {

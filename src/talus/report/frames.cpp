@@ -228,11 +228,19 @@ ContactPoints read_contacts(const std::filesystem::path& file) {
     return vtk.has(name) ? whole(vtk.at(name, 1, n)) : std::vector<int>(point.size(), -1);
   };
   const std::vector<int> a = numbers("block a"), b = numbers("block b"), corner = numbers("corner"),
-                         edge = numbers("edge");
+                         edge = numbers("edge"), partner = numbers("partner");
+  std::vector<int> place(point.size(), -1);  // of the points that are kept
+  const auto says_something = [&](size_t i) {
+    const bool of_joint = state[i] == 1 || state[i] == 2;  // slipped, open
+    return of_joint || !(force[i] == Vec2{}) || normal[i] != 0 || shear[i] != 0;
+  };
   ContactPoints out;
   for (size_t i = 0; i < point.size(); ++i) {
-    const bool of_joint = state[i] == 1 || state[i] == 2;  // slipped, open
-    if (!of_joint && force[i] == Vec2{} && normal[i] == 0 && shear[i] == 0) continue;
+    const bool other = partner[i] >= 0 && static_cast<size_t>(partner[i]) < point.size() &&
+                       says_something(static_cast<size_t>(partner[i]));
+    if (!says_something(i) && !other) continue;
+    place[i] = static_cast<int>(out.size());
+    out.partner.push_back(partner[i]);
     out.block_a.push_back(a[i]), out.block_b.push_back(b[i]);
     out.corner.push_back(corner[i]), out.edge.push_back(edge[i]);
     out.kind.push_back(kind[i]), out.state.push_back(state[i]);
@@ -240,6 +248,8 @@ ContactPoints read_contacts(const std::filesystem::path& file) {
     out.normal_force.push_back(normal[i]), out.shear_force.push_back(shear[i]);
     out.slip.push_back(slip[i]), out.opening.push_back(opening[i]);
   }
+  for (int& other : out.partner)
+    other = other < 0 || static_cast<size_t>(other) >= place.size() ? -1 : place[static_cast<size_t>(other)];
   return out;
 }
 
@@ -248,7 +258,7 @@ std::string ContactPoints::packed(Vec2 origin) const {
   std::vector<Vec2> at;
   for (const Vec2& q : point) at.push_back(q - origin);
   p.bytes(kind), p.bytes(state);
-  p.integers(block_a), p.integers(block_b), p.integers(corner), p.integers(edge);
+  p.integers(block_a), p.integers(block_b), p.integers(corner), p.integers(edge), p.integers(partner);
   p.short_floats(component(at, &Vec2::x)), p.short_floats(component(at, &Vec2::y));
   // normal and shear force give its size
   std::vector<int> direction;

@@ -60,9 +60,10 @@ class FrameReader {
   std::map<int, size_t> place_;  // of a block in the last shapes
 };
 
-/// Contact points of one frame: those that carry a force, have slipped or stand open.
+/// Contact points of one frame: those that carry a force, have slipped or stand open, and their other ends.
 struct ContactPoints {
   std::vector<int> block_a, block_b, corner, edge;
+  std::vector<int> partner;          // the other end of a joint, -1: none
   std::vector<uint8_t> kind, state;  // as in contacts_*.vtp; state 255: no joint
   std::vector<Vec2> point, force;    // [m], [N]
   std::vector<double> normal_force, shear_force, slip, opening;

@@ -100,9 +100,36 @@ function decades(u, axis, least, most) {
   return out;
 }
 
+// thin lines where stages begin, with their names as far as there is room
+function drawStages(u, stages) {
+  const { ctx } = u, ratio = window.devicePixelRatio || 1;
+  ctx.save();
+  ctx.strokeStyle = ctx.fillStyle = css("--quiet");
+  ctx.globalAlpha = 0.7;
+  ctx.setLineDash([1, 3]);
+  ctx.font = `${11 * ratio}px sans-serif`;
+  ctx.textBaseline = "top";
+  ctx.textAlign = "left";
+  stages.forEach((stage, k) => {
+    const { min, max } = u.scales.x, begin = Math.max(stage.begin, min), end = Math.min(k + 1 < stages.length ? stages[k + 1].begin : max, max);
+    if (!(end > begin)) return;
+    const x = u.valToPos(begin, "x", true), room = u.valToPos(end, "x", true) - x - 8 * ratio;
+    if (stage.begin > min) {
+      ctx.beginPath();
+      ctx.moveTo(x, u.bbox.top);
+      ctx.lineTo(x, u.bbox.top + u.bbox.height);
+      ctx.stroke();
+    }
+    if (ctx.measureText(stage.name).width < room) ctx.fillText(stage.name, x + 4 * ratio, u.bbox.top + 3 * ratio);
+  });
+  ctx.restore();
+}
+
 // a line at the time of the picture
 function drawNow(chart) {
   return (u) => {
+    const stages = chart.spec.stages ? chart.spec.stages() : [];
+    if (stages.length > 1) drawStages(u, stages);
     const t = chart.spec.timeNow ? chart.spec.timeNow() : NaN;
     if (!(t >= u.scales.x.min && t <= u.scales.x.max)) return;
     const x = u.valToPos(t, "x", true);

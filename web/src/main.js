@@ -336,7 +336,12 @@ async function addMonitors() {
     return;
   }
   for (const { quantity, unit, series } of groups.values())
-    addChart($("charts"), { title: quantity, quantity, unit, series, timeNow, onTime: goToTime });
+    addChart($("charts"), { title: quantity, quantity, unit, series, timeNow, stages: stagesNow, onTime: goToTime });
+}
+
+// of the run that is shown
+function stagesNow() {
+  return (run.summary.stages || []).map((s) => ({ name: s.name, begin: s["begin [s]"] }));
 }
 
 function timeNow() {
@@ -352,7 +357,7 @@ function addSteps(steps) {
     const list = spec.series.filter(Boolean).filter((s) => s.value.some((v) => v !== 0));
     if (!list.length) return;
     $(id).hidden = false;
-    $(id).charts.push(addChart($(id), { ...spec, series: list, timeNow, onTime: goToTime }));
+    $(id).charts.push(addChart($(id), { ...spec, series: list, timeNow, stages: stagesNow, onTime: goToTime }));
   };
   const energies = steps.columns.filter((c) => /(energy|work) \[J\]$/.test(c) && c !== "energy left over [J]");
   chart("energy", { title: "energies and work", quantity: "energy, work", unit: "J", series: energies.map((c) => series(c, c.replace(" [J]", ""))) });

@@ -135,5 +135,6 @@ export function listOf(caption, table, leaveOut = []) {
   const kept = table.columns.map((c, i) => i).filter((i) => !leaveOut.includes(table.columns[i]));
   const short = (text) => (text !== "" && /[.e]/.test(text) && Number.isFinite(Number(text)) ? number(Number(text), 5) : text);
   const more = table.rows_there > table.rows.length ? ` (the first ${table.rows.length} of ${table.rows_there})` : "";
-  return tableOf(caption + more, kept.map((i) => table.columns[i]), table.rows.map((row) => kept.map((i) => short(row[i]))));
+  const title = (c) => c.replace(/_/g, " ");
+  return tableOf(caption + more, kept.map((i) => title(table.columns[i])), table.rows.map((row) => kept.map((i) => short(row[i]))));
 }

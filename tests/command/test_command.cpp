@@ -225,7 +225,7 @@ TEST_CASE("command: plot draws a column, several runs, and names what is missing
   const Outcome wrong = shell(f, fmt::format("$talus plot {} -c impact.nothing -o {}/x", out, out));
   CHECK(wrong.code == 4);
   has(wrong.text, "there is no column \"impact.nothing\"; there is t [s], impact.force_x [N]");
-  has(shell(f, "$talus plot nowhere").text, "nowhere/histories.csv: cannot be read");
+  has(shell(f, "$talus plot nowhere").text, "nowhere: there is no such folder");
 }
 
 TEST_CASE("command: one step is dumped and replayed by either solver") {

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Runs examples/bolted_slope, makes its report and drives it in a browser. Exit 77: there is no browser.
+# Runs examples/bolted_slope, makes its report and drives it in a browser. Exit 77: there is no browser, driver or page.
 # Usage: tests/browser/run.sh BUILD_DIR
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -8,7 +8,14 @@ out=$build/browser_test
 if [ ! -e "$build/browser/node_modules/playwright-core" ]; then
   mkdir -p "$build/browser"
   cp "$here/package.json" "$here/package-lock.json" "$here/.npmrc" "$build/browser"
-  (cd "$build/browser" && npm ci --ignore-scripts --loglevel=error)
+  (cd "$build/browser" && npm ci --ignore-scripts --loglevel=error) || {
+    echo "skipped: the driver of the browser (npm, playwright-core) could not be fetched"
+    exit 77
+  }
+fi
+if [ ! -e "$build/share/talus/report_page.html" ]; then
+  echo "skipped: the page of the report was not built"
+  exit 77
 fi
 rm -rf "$out"
 mkdir -p "$out"

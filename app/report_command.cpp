@@ -58,7 +58,7 @@ int report_command(const ReportArguments& args) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
   write_file(file, html);
   for (const auto& run : notes.runs)
-    fmt::print("{}: {} of {} frames{}, contact points of {}\n", run.name, run.frames, run.frames_there,
+    fmt::print("{}: {} of {} frames{}, contact points of {} frames\n", run.name, run.frames, run.frames_there,
                run.reason.empty() ? "" : " (" + run.reason + ")", run.contact_frames);
   fmt::print("{}: {}\n", file.string(), readable_bytes(static_cast<double>(html.size())));
   return kExitOk;

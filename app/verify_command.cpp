@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
+#include "talus/base/program.h"
 
 namespace talus::app {
 
@@ -20,7 +21,7 @@ namespace {
 // Where a build and an installation put the cases, from the program.
 fs::path cases_program() {
   std::error_code ec;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ec).parent_path();
+  const fs::path program = program_folder();
   for (const char* place : {"../tests/verification", "../lib/talus/verification"})
     if (fs::exists(program / place, ec)) return (program / place).lexically_normal();
   throw FileError(

@@ -95,6 +95,7 @@ test("a clicked block shows the displacement that histories.csv has", async () =
   const csv = readCsv(`${folder}/histories.csv`), column = csv["middle.displacement_x [m]"];
   assert.ok(column, `columns: ${Object.keys(csv)}`);
   const expected = column[column.length - 1], value = Number(await shown("displacement_x").getAttribute("data-value"));
+  // the page holds displacements with 15 bits of mantissa, half of the last one is 2^-17; twice that for the centroid
   assert.ok(Math.abs(value - expected) <= 2e-5 * Math.abs(expected), `${value} in the page, ${expected} in the table`);
 });
 

@@ -18,6 +18,7 @@ let history = null;  // the chart of what is selected
 const times = [];    // of frames drawn while playing [ms], for the benchmark
 
 async function start() {
+  setTheme();
   const index = await chunkJson("index");
   runs = index.runs.map((r) => new Run(r));
   $("made").textContent = `Made by ${index.program} from ${runs.map((r) => r.name).join(", ")}. Everything shown is in this file.`;
@@ -382,10 +383,15 @@ function redraw() {
   if (!playing) legend();
 }
 
+const systemDark = matchMedia("(prefers-color-scheme: dark)");
+
+function setTheme() {
+  const chosen = $("theme").value;
+  document.documentElement.dataset.theme = chosen !== "auto" ? chosen : systemDark.matches ? "dark" : "light";
+}
+
 function applyTheme() {
-  const theme = $("theme").value;
-  if (theme === "auto") delete document.documentElement.dataset.theme;
-  else document.documentElement.dataset.theme = theme;
+  setTheme();
   redraw();
   redrawCharts();
 }
@@ -394,7 +400,7 @@ function listen() {
   const canvas = $("canvas");
   $("run").addEventListener("change", () => showRun(Number($("run").value)));
   $("theme").addEventListener("change", applyTheme);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", applyTheme);
+  systemDark.addEventListener("change", applyTheme);
   $("quantity").addEventListener("change", () => { view.quantity = $("quantity").value; redraw(); });
   $("range").addEventListener("change", redraw);
   $("deformation").addEventListener("input", () => {

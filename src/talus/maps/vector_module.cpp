@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
+#include "talus/base/program.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/maps/dxf_scan.h"
@@ -22,8 +23,7 @@ constexpr const char* kModuleFile = "libtalus_vector.so";
 
 // Beside the program, where a build puts it, and where an installation does.
 std::vector<std::filesystem::path> places() {
-  std::error_code ignored;
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const auto folder = program_folder();
   return {folder / kModuleFile, folder / "../modules" / kModuleFile, folder / "../lib/talus" / kModuleFile};
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/output/block_quantity.h"
 #include "talus/output/files.h"
 #include "talus/plot/axes.h"
 #include "talus/plot/sheet.h"
@@ -55,35 +56,6 @@ Color mix(const Anchors& anchors, double share) {
   return {part(0), part(1), part(2)};
 }
 
-struct Quantity {
-  const char* name;
-  const char* title;
-  const char* unit;
-  bool signed_values;
-};
-
-constexpr std::array<Quantity, 12> kQuantities{
-    {{"displacement", "displacement", "m", false},
-     {"displacement_x", "displacement x", "m", true},
-     {"displacement_y", "displacement y", "m", true},
-     {"velocity", "velocity", "m/s", false},
-     {"velocity_x", "velocity x", "m/s", true},
-     {"velocity_y", "velocity y", "m/s", true},
-     {"stress_xx", "stress xx (tension > 0)", "Pa", true},
-     {"stress_yy", "stress yy (tension > 0)", "Pa", true},
-     {"stress_xy", "stress xy", "Pa", true},
-     {"stress_major", "largest principal stress (tension > 0)", "Pa", true},
-     {"stress_minor", "least principal stress (tension > 0)", "Pa", true},
-     {"shear_most", "largest shear stress", "Pa", false}}};
-
-// Value of quantity q from the mean displacement and velocity of the corners and the stress (xx, yy, xy).
-double value_of(size_t q, Vec2 u, Vec2 v, const double* s) {
-  const double mean = 0.5 * (s[0] + s[1]), radius = std::hypot(0.5 * (s[0] - s[1]), s[2]);
-  const double all[] = {norm(u), u.x,  u.y,  norm(v),       v.x,           v.y,
-                        s[0],    s[1], s[2], mean + radius, mean - radius, radius};
-  return all[q];
-}
-
 struct Prefix {
   double factor = 1;
   std::string unit;
@@ -122,7 +94,7 @@ struct Scenery {
   double slip = 0, opening = 0, tension = 0, pressed = 0;
   double low = 0, high = 1, least = 0, most = 0;  // of the colours; of all values
   int side = 0;  // -1: all values are negative, 1: positive, and have one half of the two-sided colours
-  const Quantity* quantity = nullptr;
+  const BlockQuantity* quantity = nullptr;
 };
 
 Vec2 point_at(const VtkFrame::Array& a, size_t i) { return {a.values[3 * i], a.values[3 * i + 1]}; }
@@ -148,7 +120,8 @@ void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
     }
     if (v - begin < 3) throw FileError(f.file + ": a block has less than three corners");
     const auto n = static_cast<double>(v - begin);
-    if (s.quantity) shape.value = value_of(quantity, u / n, rate / n, &stress.values[3 * b]);
+    const double* t = &stress.values[3 * b];
+    if (s.quantity) shape.value = block_quantities_of(u / n, rate / n, {t[0], t[2], t[2], t[1]})[quantity];
     s.shapes.push_back(std::move(shape));
   }
 }
@@ -374,7 +347,7 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
 const std::vector<std::string>& block_quantities() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (const Quantity& q : kQuantities) list.emplace_back(q.name);
+    for (const BlockQuantity& q : kBlockQuantities) list.emplace_back(q.name);
     return list;
   }();
   return names;
@@ -383,8 +356,8 @@ const std::vector<std::string>& block_quantities() {
 void write_block_picture(const BlockPicture& picture, const std::filesystem::path& stem) {
   Scenery scenery;
   size_t quantity = 0;
-  for (size_t q = 0; q < kQuantities.size(); ++q)
-    if (picture.quantity == kQuantities[q].name) scenery.quantity = &kQuantities[quantity = q];
+  for (size_t q = 0; q < kBlockQuantities.size(); ++q)
+    if (picture.quantity == kBlockQuantities[q].name) scenery.quantity = &kBlockQuantities[quantity = q];
   take_blocks(picture, quantity, scenery);
   if (picture.contacts) take_joints(*picture.contacts, scenery);
   if (picture.bolts) take_bolts(*picture.bolts, scenery);

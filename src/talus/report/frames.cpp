@@ -8,6 +8,7 @@
 
 #include "talus/base/error.h"
 #include "talus/geometry/polygon.h"
+#include "talus/output/block_quantity.h"
 #include "talus/report/pack.h"
 
 namespace talus::report {
@@ -116,14 +117,10 @@ std::string BlockFrame::packed() const {
 }
 
 std::vector<Span> BlockFrame::spans() const {
-  std::vector<std::vector<double>> values(std::size(kQuantities));
+  std::vector<std::vector<double>> values(kBlockQuantities.size());
   for (size_t i = 0; i < present.size(); ++i) {
     if (!present[i]) continue;
-    const Vec2 u = displacement[i], v = velocity[i];
-    const Mat2& s = stress[i];
-    const double mean = 0.5 * (s.xx + s.yy), radius = std::hypot(0.5 * (s.xx - s.yy), s.xy);
-    const double all[] = {norm(u), u.x,  u.y,  norm(v),       v.x,           v.y,
-                          s.xx,    s.yy, s.xy, mean + radius, mean - radius, radius};
+    const auto all = block_quantities_of(displacement[i], velocity[i], stress[i]);
     for (size_t q = 0; q < values.size(); ++q) values[q].push_back(all[q]);
   }
   std::vector<Span> out;

@@ -20,7 +20,7 @@ struct Shapes {
   std::vector<Vec2> corner;  // [m]
   std::vector<Vec2> centre;  // [n] centroid [m]
 
-  std::string packed() const;  // order: see web/src/decode.js
+  std::string packed() const;  // read again, in the same order, by web/src/run.js
 };
 
 /// A quantity that colours blocks, over the blocks of one frame.
@@ -38,14 +38,9 @@ struct BlockFrame {
   std::vector<Mat2> stress;        // [n] Cauchy [Pa], tension > 0
 
   std::string packed() const;
-  /// One for each of kQuantities.
+  /// One for each of kBlockQuantities.
   std::vector<Span> spans() const;
 };
-
-/// What blocks may be coloured by; the page knows them by these names.
-inline constexpr const char* kQuantities[] = {
-    "displacement", "displacement_x", "displacement_y", "velocity",     "velocity_x",   "velocity_y",
-    "stress_xx",    "stress_yy",      "stress_xy",      "stress_major", "stress_minor", "shear_most"};
 
 /// Reads frames in the order of time. Where displacements were set to zero in between, or blocks appear, the
 /// frames from there on have shapes of their own.

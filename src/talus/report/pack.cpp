@@ -62,13 +62,11 @@ void Packer::floats(const std::vector<double>& values) {
   planes(std::vector<float>(values.begin(), values.end()));
 }
 
-void Packer::short_floats(const std::vector<double>& values, int bits) {
-  const uint32_t dropped = 1u << (23 - bits);  // lowest bit that stays
+void Packer::short_floats(const std::vector<double>& values) {
   std::vector<uint32_t> raw;
   raw.reserve(values.size());
-  // to the nearest; a carry into the exponent is right
-  for (const double v : values)
-    raw.push_back((std::bit_cast<uint32_t>(static_cast<float>(v)) + dropped / 2) & ~(dropped - 1));
+  // to the nearest of what the three highest bytes hold; a carry into the exponent is right
+  for (const double v : values) raw.push_back(std::bit_cast<uint32_t>(static_cast<float>(v)) + 0x80u);
   planes(raw, 1);
 }
 

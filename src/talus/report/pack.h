@@ -19,8 +19,8 @@ class Packer {
   void short_integers(const std::vector<int>& values);
   /// Single precision: 7 digits, in 4 bytes.
   void floats(const std::vector<double>& values);
-  /// Single precision in 3 bytes, with `bits` of mantissa: 15 are nearly 5 digits, 12 nearly 4.
-  void short_floats(const std::vector<double>& values, int bits = 15);
+  /// Single precision with 15 bits of mantissa: nearly 5 digits (2^-17 at most), in 3 bytes.
+  void short_floats(const std::vector<double>& values);
   /// Half precision of value / scale, behind the scale (4 bytes): 3 digits down to 1e-9 of the largest, in 2
   /// bytes.
   void halves(const std::vector<double>& values);

@@ -8,6 +8,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/version.h"
+#include "talus/output/block_quantity.h"
 #include "talus/report/frames.h"
 #include "talus/report/pack.h"
 
@@ -201,7 +202,7 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
     return p.size() < 2 ? Vec2{} : Vec2{p[0], p[1]};
   }();
   out["origin"] = {origin.x, origin.y};
-  out["quantities"] = kQuantities;
+  for (const BlockQuantity& q : kBlockQuantities) out["quantities"].push_back(q.name);
 
   // what one frame takes, from some spread over the run; the first have hardly moved and pack too well
   const auto mean_size = [](const std::vector<SeriesEntry>& series, const auto& pack) {

@@ -73,6 +73,21 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size
   return out;
 }
 
+std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
+  std::vector<std::pair<size_t, size_t>> out;
+  for (size_t r = 0; r + 1 < i.work.first_contact; r += 2)
+    out.emplace_back(r, r + 1);  // the two ends of a face
+  for (const ContactPair& pair : i.state.pairs) {
+    for (int k = 0; k < pair.count; ++k) {
+      const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
+      if (partner > k)
+        out.emplace_back(i.work.first_contact + static_cast<size_t>(pair.begin + k),
+                         i.work.first_contact + static_cast<size_t>(pair.begin + partner));
+    }
+  }
+  return out;
+}
+
 std::vector<JointLine> joint_lines(const Scene& scene, const Instant& i) {
   std::vector<JointLine> lines;
   const auto add = [&](size_t row, size_t other) {
@@ -88,15 +103,7 @@ std::vector<JointLine> joint_lines(const Scene& scene, const Instant& i) {
     line.from = p->point, line.to = q->point;
     lines.push_back(std::move(line));
   };
-  for (size_t r = 0; r + 1 < i.work.first_contact; r += 2) add(r, r + 1);  // the two ends of a face
-  for (const ContactPair& pair : i.state.pairs) {
-    for (int k = 0; k < pair.count; ++k) {
-      const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
-      if (partner > k)
-        add(i.work.first_contact + static_cast<size_t>(pair.begin + k),
-            i.work.first_contact + static_cast<size_t>(pair.begin + partner));
-    }
-  }
+  for (const auto& [row, other] : joint_ends(i)) add(row, other);
   return lines;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "talus/contact/joint_state.h"
 #include "talus/output/archive.h"
@@ -35,6 +37,10 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant
 
 /// Where a point of rows is now [m].
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
+
+/// Rows of the two ends of everything that two blocks share: of glued faces, and of contacts that know their
+/// other end.
+std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& instant);
 
 /// The joints of an instant that slipped or stand open, from end to end.
 std::vector<JointLine> joint_lines(const Scene& scene, const Instant& instant);

@@ -61,18 +61,10 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     }
     frames.push_back(f);
   }
-  const auto join = [&frames](size_t r, size_t other) {
-    if (std::max(r, other) >= frames.size()) return;
-    frames[r].partner = static_cast<int>(other), frames[other].partner = static_cast<int>(r);
-  };
-  for (size_t r = 0; r + 1 < i.work.first_contact; r += 2) join(r, r + 1);  // the two ends of a face
-  for (const ContactPair& pair : i.state.pairs)
-    for (int k = 0; k < pair.count; ++k) {
-      const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
-      if (partner > k)
-        join(i.work.first_contact + static_cast<size_t>(pair.begin + k),
-             i.work.first_contact + static_cast<size_t>(pair.begin + partner));
-    }
+  for (const auto& [row, other] : joint_ends(i)) {
+    if (std::max(row, other) >= frames.size()) continue;
+    frames[row].partner = static_cast<int>(other), frames[other].partner = static_cast<int>(row);
+  }
   return frames;
 }
 

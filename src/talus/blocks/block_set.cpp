@@ -83,6 +83,7 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
       set.arm.push_back(p - m.centroid);
       set.radius.back() = std::max(set.radius.back(), norm(set.arm.back()));
     }
+    set.thinness.push_back(m.area / (2 * set.radius.back()));
     set.vertex_begin.push_back(static_cast<int>(set.arm.size()));
   }
   return set;

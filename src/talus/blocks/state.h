@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "talus/base/vec2.h"
@@ -47,7 +48,17 @@ struct ContactKey {
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 
-/// One contact point and what it carries to the next step. A corner that passed on to another edge keeps its
+/// An interface is two antiparallel sides in touch; each of its two ends is one place, whichever block's corner
+/// lies there now. Sides are named by their first edges.
+struct FaceEnd {
+  int side_lo = -1, side_hi = -1;  // of the lower and the higher block id; -1: no end of an interface
+  int end = 0;                     // 0: the first one along the lower block's side
+
+  friend bool operator==(const FaceEnd&, const FaceEnd&) = default;
+};
+
+/// One contact point and what it carries to the next step. Its memory belongs to its place: the end of an
+/// interface keeps it when another corner comes to lie there. A corner that passed on to another edge keeps its
 /// force but not its anchor.
 struct Contact {
   ContactKey key;
@@ -57,6 +68,8 @@ struct Contact {
   int16_t partner = -1;  // the other end of its face: its place in the list of the pair, -1: none
   Memory memory = kNone;
   bool touched = false;           // the two have been in touch here
+  FaceEnd face;
+  double allowed = 0;  // [m] overlap it was born with and may keep for now, as a gap it is counted from
   double length = 0;              // [m] half that face
   std::array<double, 2> force{};  // normal, tangential [N]
   double stretch = 0;             // elastic slip [m]
@@ -74,16 +87,33 @@ struct ContactPair {
   // Joints carry the stress of the ground between blocks that share a face since the first step, and where
   // blocks that were near each other then come to share one.
   bool from_start = false, shares_face = false;
-  double reuse = -1;  // [m]; < 0: not sought yet
-  Vec2 arm;           // reference arm, on the larger block, of the centroid of the smaller one then
-  Mat2 turn;          // F of the larger block, inverted, times F of the smaller one then
+  double reuse = -1;   // [m]; < 0: not sought yet
+  double margin = 0;   // [m] gaps up to which they were sought
+  Vec2 arm;            // reference arm, on the larger block, of the centroid of the smaller one then
+  Mat2 turn;           // F of the larger block, inverted, times F of the smaller one then
+  // third blocks that cover sides of the two, and how they lay beside block a then; -1: none
+  std::array<int, 2> cover{-1, -1};
+  std::array<Vec2, 2> cover_place{};
+  std::array<Mat2, 2> cover_turn{};
+};
+
+/// Blocks near each block, those that are glued to it or do not move among them: [begin[i], begin[i + 1]).
+struct Neighbours {
+  std::vector<int> begin, block;
+
+  std::span<const int> of(int i) const {
+    if (begin.empty()) return {};
+    const auto k = static_cast<size_t>(i);
+    return {block.data() + begin[k], static_cast<size_t>(begin[k + 1] - begin[k])};
+  }
 };
 
 /// Where the blocks were when the list of pairs was made.
 struct CandidateList {
   std::vector<Vec2> displacement;
   std::vector<Mat2> strain_part;
-  double skin = 0, margin = -1;  // [m]
+  std::vector<double> skin, reach;  // [count] how far a block may move, and look, before a new list is due [m]
+  Neighbours neighbours;
   int rebuilds = 0;
 };
 

@@ -10,12 +10,21 @@ namespace talus {
 
 namespace {
 
-// Tributary length of a contact that is no end of a face, as share of the smaller block: what a rounded
-// corner has.
+// Tributary length of a hard contact with shear stiffness that is no end of a face, as share of the smaller block.
 constexpr double kCornerLength = 0.02;
+
+// Least closed part, as share of an interface or of the smaller block: a row with no stiffness at all has no meaning.
+constexpr double kLeastShare = 1e-9;
 
 // Contacts to a chunk.
 constexpr size_t kGrain = 1024;
+
+// What an overlap that a point was born with loses in a step: a thousandth of it, at most this share of the smaller
+// block. Pushed out at once it would leave with the speed of overlap over time step.
+constexpr double kPushedOut = 1e-3, kMostPushedOut = 1e-7;
+
+// What is left of it and forgotten, as share of the smaller block.
+constexpr double kLeastAllowed = 1e-12;
 
 // Bias of a hard normal row: it may close the gap and not more; an overlap is pushed back except for the
 // slop.
@@ -40,6 +49,237 @@ double off_anchor(const Contact& c, double slip) {
   return anew ? c.stretch : slip - c.anchor;
 }
 
+// A contact point of a pair on its way to a row.
+struct Point {
+  CornerEdge over;
+  Vec2 b0, edge;         // of the edge, reference
+  double slip = 0;       // coordinate along the tangent
+  Vec2 closure;          // by the stress of the ground
+  double gap = 0;        // less the rise [m]
+  std::array<double, 2> u{};  // velocity half a step ago, normal and tangential
+};
+
+// The part of an interface that is closed, or is going to be in this step: from one end on, as share of its length.
+// 1: all of it, or nothing yet.
+double closed_share(double gap, double other, double gap_then, double other_then) {
+  if (gap >= 0 && other >= 0) gap = gap_then, other = other_then;
+  if ((gap < 0) == (other < 0)) return 1;
+  const double least = std::min(gap, other), most = std::max(gap, other);
+  return std::max(-least / (most - least), kLeastShare);
+}
+
+// The closed part of a corner that has gone into an edge: Winkler's foundation under its two sides (theory 4.6).
+struct Toe {
+  double length = 0;   // closed, along the edge [m]
+  double closure = 0;  // mean of it [m]
+  double shift = 0;    // of the resultant from the corner, along the edge [m]
+};
+
+class ContactRows {
+ public:
+  ContactRows(const BlockSet& blocks, const Model& model, const State& state,
+              const std::vector<BlockRate>& before, const RowTiming& timing, size_t first, RowSet& rows,
+              std::vector<ContactPlace>& place)
+      : blocks_(blocks), model_(model), state_(state), before_(before), timing_(timing), first_(first),
+        rows_(rows), place_(place), joints_(model.joints) {
+    joints_.emplace_back();  // the last: neither friction nor stiffness
+    for (const JointProperty& j : joints_) friction_.push_back(std::tan(j.friction_after()));
+  }
+
+  void add(const ContactPair& pair, std::vector<Point>& points) const {
+    const auto at = static_cast<size_t>(pair.begin), count = static_cast<size_t>(pair.count);
+    points.resize(count);
+    for (size_t k = 0; k < count; ++k) look(pair, at + k, points[k]);
+    for (size_t k = 0; k < count; ++k) write(pair, at, k, points);
+    for (size_t k = 0; k < count; ++k) {
+      const PointRows& p = rows_.points[first_ + at + k];
+      const size_t other = p.partner < 0 ? k : static_cast<size_t>(p.partner) - first_ - at;
+      if (other < k) continue;
+      const size_t i = first_ + at + k, j = first_ + at + other;
+      guess_compliant({&p, &rows_.points[j]}, {points[k].u, points[other].u}, {&rows_.impulse[i], &rows_.impulse[j]});
+    }
+  }
+
+ private:
+  size_t joint_of(const Contact& c) const {
+    return c.joint < 0 ? joints_.size() - 1 : static_cast<size_t>(c.joint);
+  }
+  double size_of(const ContactPair& pair) const {
+    return std::min(blocks_.size[static_cast<size_t>(pair.a)], blocks_.size[static_cast<size_t>(pair.b)]);
+  }
+  // The other end of a compliant face of one joint; -1: none.
+  int partner_of(const ContactPair& pair, size_t at, size_t k) const {
+    const Contact& c = state_.contacts[at + k];
+    if (c.partner < 0) return -1;
+    // two ends with different joints close on their own
+    return state_.contacts[static_cast<size_t>(pair.begin + c.partner)].joint == c.joint ? c.partner : -1;
+  }
+
+  void look(const ContactPair& pair, size_t i, Point& p) const {
+    const Contact& c = state_.contacts[i];
+    const auto b = static_cast<size_t>(c.key.block_b);
+    const size_t joint = joint_of(c);
+    const JointProperty& property = joints_[joint];
+    p.over = corner_over_edge(blocks_, state_, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+    const int next = c.key.edge + 1 == blocks_.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
+    p.b0 = blocks_.corner(c.key.block_b, c.key.edge), p.edge = blocks_.corner(c.key.block_b, next) - p.b0;
+    p.slip = -p.over.along * norm(p.edge);
+    p.closure = {};
+    const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
+    if (carries && model_.in_situ.given && c.joint >= 0) {
+      const double height = blocks_.centroid[b].y + p.b0.y + std::clamp(p.over.along, 0.0, 1.0) * p.edge.y;
+      p.closure = in_situ_closure(property, in_situ_stress(model_.in_situ, model_.gravity, height),
+                                  turn_right(p.edge) / norm(p.edge));
+    }
+    p.gap = p.over.gap - dilation_rise(property, c.slip);
+  }
+
+  void write(const ContactPair& pair, size_t at, size_t k, std::vector<Point>& points) const {
+    const size_t i = at + k;
+    Point& q = points[k];
+    const Contact& c = state_.contacts[i];
+    const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
+    const size_t joint = joint_of(c);
+    const JointProperty& property = joints_[joint];
+    // only what was never disturbed sticks with the stress of the ground
+    const double elastic = state_.step == 0 ? q.closure.y : 0;
+    place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair)};
+
+    PointRows p;
+    p.block_a = c.key.block_a, p.block_b = c.key.block_b;
+    p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.block_a, c.key.vertex));
+    p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
+    p.normal = q.over.normal;
+    p.friction = friction_[joint];
+    p.lower = 0, p.cohesion = 0;
+    const bool soft = property.normal_stiffness > 0, springs = soft || property.shear_stiffness > 0;
+    const double size = size_of(pair), slop = model_.contact.slop * size;
+    p.row[0].bias = soft ? (q.gap + q.closure.x) / timing_.dt : hard_bias(q.gap + c.allowed, slop, timing_.dt);
+    // what a broken face keeps, end by end, while it is in touch
+    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b)) {
+      const double impulse = c.length * blocks_.thickness * timing_.dt_kick;
+      p.lower = -property.residual_tensile_strength * impulse;
+      p.cohesion = property.residual_cohesion * impulse;
+    }
+
+    Impulse guess{};
+    if (c.memory == Contact::kNone) {
+      p.row[1].bias = elastic / timing_.dt;
+    } else {
+      guess = {c.force[0] * timing_.dt_kick, c.force[1] * timing_.dt_kick};
+      const double off = off_anchor(c, q.slip);
+      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing_.dt;
+    }
+    if (property.restitution >= 0 || springs) {
+      q.u = relative_velocity(p, before_);
+      if (property.restitution >= 0 && q.gap + timing_.dt * q.u[0] <= 0 && q.u[0] < 0)
+        p.row[0].bias = std::min(p.row[0].bias, property.restitution * q.u[0]);
+    }
+    if (springs) {
+      const int partner = partner_of(pair, at, k);
+      double length = c.length;
+      if (partner >= 0) {
+        p.partner = static_cast<int>(first_) + pair.begin + partner;
+        if (soft && p.lower == 0) length *= close_face(q, points[static_cast<size_t>(partner)], c, state_.contacts[at + static_cast<size_t>(partner)], p);
+      } else if (soft && p.lower == 0 && c.length == 0) {
+        length = close_corner(q, c, size, p);
+      } else if (c.length == 0) {
+        length = kCornerLength * size;
+      }
+      add_compliance(property, length * blocks_.thickness, partner >= 0, timing_, q.u, p);
+    }
+    rows_.points[first_ + i] = p;
+    rows_.impulse[first_ + i] = guess;
+  }
+
+  // Where only one end of an interface is closed the other end of its row couple is the end of the closed part:
+  // W = kn t/2 times the integral of closure^2 has the slope and the tangent of that part. Returns its share.
+  double close_face(Point& q, const Point& other, const Contact& c, const Contact& far, PointRows& p) const {
+    const double gap = q.gap + q.closure.x, away = other.gap + other.closure.x;
+    const PointRows there = arms_of(other, far);
+    const double share = closed_share(gap, away, gap + timing_.dt * q.u[0],
+                                      away + timing_.dt * relative_velocity(there, before_)[0]);
+    if (share == 1) return 1;
+    const bool open = (gap >= 0 && away >= 0) ? gap + timing_.dt * q.u[0] >= 0 : gap >= 0;
+    if (!open) return share;
+    // this end goes to the end of the closed part
+    const bool same = far.key.block_a == c.key.block_a;
+    const Vec2 far_a = same ? there.arm_a : there.arm_b, far_b = same ? there.arm_b : there.arm_a;
+    p.arm_a = far_a + share * (p.arm_a - far_a);
+    p.arm_b = far_b + share * (p.arm_b - far_b);
+    const double here = away + share * (gap - away);
+    p.row[0].bias = here / timing_.dt;
+    q.u = relative_velocity(p, before_);
+    return share;
+  }
+
+  PointRows arms_of(const Point& q, const Contact& c) const {
+    PointRows p;
+    p.block_a = c.key.block_a, p.block_b = c.key.block_b;
+    p.arm_a = acting_arm(blocks_, state_, static_cast<size_t>(p.block_a), blocks_.corner(p.block_a, c.key.vertex));
+    p.arm_b = acting_arm(blocks_, state_, static_cast<size_t>(p.block_b),
+                         q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
+    p.normal = q.over.normal;
+    return p;
+  }
+
+  // A corner alone: the part of its two sides that has gone into the edge.
+  double close_corner(Point& q, const Contact& c, double size, PointRows& p) const {
+    const double gap = q.gap + q.closure.x, then = gap + timing_.dt * q.u[0];
+    const Toe toe = toe_of(q, c, -(gap < 0 ? gap : then));
+    if (gap < 0 && toe.length > 0) {
+      p.row[0].bias = -toe.closure / timing_.dt;
+      shift_arms(q, c, toe.shift, p);
+      q.u = relative_velocity(p, before_);
+    }
+    return std::max(toe.length, kLeastShare * size);
+  }
+
+  Toe toe_of(const Point& q, const Contact& c, double depth) const {
+    Toe toe;
+    if (depth <= 0) return toe;
+    const int n = blocks_.vertex_count(c.key.block_a), v = c.key.vertex;
+    const auto a = static_cast<size_t>(c.key.block_a);
+    const Vec2 X = blocks_.corner(c.key.block_a, v), along = turn_left(q.over.normal);
+    const double on_edge = q.over.along * q.over.length;  // the edge runs along turn_left(normal)
+    double force = 0, moment = 0;
+    for (const int neighbour : {v + 1 == n ? 0 : v + 1, v == 0 ? n - 1 : v - 1}) {
+      const Vec2 E = blocks_.corner(c.key.block_a, neighbour) - X, side = E + state_.strain_part[a] * E;
+      const double up = dot(side, q.over.normal), run = dot(side, along);
+      const double room = std::min(std::abs(run), run > 0 ? q.over.length - on_edge : on_edge);
+      if (room <= 0) continue;
+      const double wedge = up > 0 ? depth * std::abs(run) / up : room, length = std::min(wedge, room);
+      // closure falls from depth to depth (1 - length/wedge) over the length
+      const double left = up > 0 ? 1 - length / wedge : 1, mean = 0.5 * (1 + left) * depth;
+      const double centre = length * (1 + 2 * left) / (3 * (1 + left));
+      toe.length += length, force += mean * length;
+      moment += (run > 0 ? 1 : -1) * mean * length * centre;
+    }
+    if (toe.length > 0) toe.closure = force / toe.length, toe.shift = moment / force;
+    return toe;
+  }
+
+  void shift_arms(const Point& q, const Contact& c, double shift, PointRows& p) const {
+    const Vec2 by = shift * turn_left(q.over.normal);
+    const auto move = [&](int block, Vec2& arm) {
+      const auto k = static_cast<size_t>(block);
+      arm += blocks_.kind[k] == BlockKind::kDeformable ? inverse(kIdentity + state_.strain_part[k]) * by : by;
+    };
+    move(c.key.block_a, p.arm_a), move(c.key.block_b, p.arm_b);
+  }
+
+  const BlockSet& blocks_;
+  const Model& model_;
+  const State& state_;
+  const std::vector<BlockRate>& before_;
+  const RowTiming& timing_;
+  const size_t first_;
+  RowSet& rows_;
+  std::vector<ContactPlace>& place_;
+  std::vector<JointProperty> joints_;
+  std::vector<double> friction_;
+};
+
 }  // namespace
 
 void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
@@ -47,92 +287,10 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const State& s
                       RowSet& rows, std::vector<ContactPlace>& place) {
   const size_t first = rows.add_more(state.contacts.size());
   resize_sparingly(place, state.contacts.size());
-  // the last: neither friction nor stiffness
-  std::vector<JointProperty> joints = model.joints;
-  joints.emplace_back();
-  std::vector<double> friction;
-  for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_after()));
-  const size_t plain = joints.size() - 1;
-
-  using Velocity = std::array<double, 2>;
-  const auto add = [&](const ContactPair& pair, size_t i, Velocity& u) {
-    const Contact& c = state.contacts[i];
-    const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
-    const size_t joint = c.joint < 0 ? plain : static_cast<size_t>(c.joint);
-    const JointProperty& property = joints[joint];
-    const CornerEdge over =
-        corner_over_edge(blocks, state, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
-    const int next = c.key.edge + 1 == blocks.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
-    const Vec2 b0 = blocks.corner(c.key.block_b, c.key.edge), edge = blocks.corner(c.key.block_b, next) - b0;
-    const double slip = -over.along * norm(edge);
-    Vec2 closure;
-    const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
-    if (carries && model.in_situ.given && joint != plain) {
-      const double height = blocks.centroid[b].y + b0.y + std::clamp(over.along, 0.0, 1.0) * edge.y;
-      closure = in_situ_closure(property, in_situ_stress(model.in_situ, model.gravity, height),
-                                turn_right(edge) / norm(edge));
-    }
-    // only what was never disturbed sticks with the stress of the ground
-    const double elastic = state.step == 0 ? closure.y : 0;
-    const double rise = dilation_rise(property, c.slip), gap = over.gap - rise;
-    place[i] = {over.gap, c.memory == Contact::kNone ? slip - elastic : slip};
-
-    PointRows p;
-    p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a = acting_arm(blocks, state, a, blocks.corner(c.key.block_a, c.key.vertex));
-    p.arm_b = acting_arm(blocks, state, b, b0 + std::clamp(over.along, 0.0, 1.0) * edge);
-    p.normal = over.normal;
-    p.friction = friction[joint];
-    p.lower = 0, p.cohesion = 0;
-    const bool soft = property.normal_stiffness > 0;
-    const double size = std::min(blocks.size[a], blocks.size[b]), slop = model.contact.slop * size;
-    p.row[0].bias = soft ? (gap + closure.x) / timing.dt : hard_bias(gap, slop, timing.dt);
-    // what a broken face keeps, end by end, while it is in touch
-    if (pair.face >= 0 && gap <= noticeable(blocks, a, b)) {
-      const double impulse = c.length * blocks.thickness * timing.dt_kick;
-      p.lower = -property.residual_tensile_strength * impulse;
-      p.cohesion = property.residual_cohesion * impulse;
-    }
-
-    Impulse guess{};
-    if (c.memory == Contact::kNone) {
-      p.row[1].bias = elastic / timing.dt;
-    } else {
-      guess = {c.force[0] * timing.dt_kick, c.force[1] * timing.dt_kick};
-      const double off = off_anchor(c, slip);
-      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing.dt;
-    }
-    if (property.restitution >= 0 || soft || property.shear_stiffness > 0) {
-      u = relative_velocity(p, before);
-      if (property.restitution >= 0 && gap + timing.dt * u[0] <= 0 && u[0] < 0)
-        p.row[0].bias = std::min(p.row[0].bias, property.restitution * u[0]);
-      if (soft || property.shear_stiffness > 0) {
-        // two ends with different joints close on their own
-        const bool in_face =
-            c.partner >= 0 && state.contacts[static_cast<size_t>(pair.begin + c.partner)].joint == c.joint;
-        const double length = c.length > 0 ? c.length : kCornerLength * size;
-        add_compliance(property, length * blocks.thickness, in_face, timing, u, p);
-        if (in_face) p.partner = static_cast<int>(first) + pair.begin + c.partner;
-      }
-    }
-    rows.points[first + i] = p;
-    rows.impulse[first + i] = guess;
-  };
+  const ContactRows contact_rows(blocks, model, state, before, timing, first, rows, place);
   workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
-    std::vector<Velocity> u;
-    for (size_t q = begin; q < end; ++q) {
-      const ContactPair& pair = state.pairs[q];
-      const auto at = static_cast<size_t>(pair.begin), count = static_cast<size_t>(pair.count);
-      u.resize(count);
-      for (size_t k = 0; k < count; ++k) add(pair, at + k, u[k]);
-      for (size_t k = 0; k < count; ++k) {
-        const PointRows& p = rows.points[first + at + k];
-        const size_t other = p.partner < 0 ? k : static_cast<size_t>(p.partner) - first - at;
-        if (other < k) continue;
-        const size_t i = first + at + k, j = first + at + other;
-        guess_compliant({&p, &rows.points[j]}, {u[k], u[other]}, {&rows.impulse[i], &rows.impulse[j]});
-      }
-    }
+    std::vector<Point> points;
+    for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);
   });
 }
 
@@ -158,6 +316,11 @@ void remember_contacts(const RowSet& rows, size_t first, const std::vector<Conta
       else if (!anchored)
         c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
       c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+      if (c.allowed > 0) {
+        c.allowed = std::min(c.allowed, -place[i].gap);
+        c.allowed -= std::min(kPushedOut * c.allowed, kMostPushedOut * place[i].size);
+        if (!(c.allowed > kLeastAllowed * place[i].size)) c.allowed = 0;
+      }
       c.stretch = elastic;
       c.memory = Contact::kWhole;
     }

@@ -13,6 +13,7 @@ struct ContactPlace {
   double gap = 0;   // [m] > 0 apart
   double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge; of a new
                     // contact less the elastic slip by the stress of the ground
+  double size = 0;  // of the smaller block [m]
 };
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has

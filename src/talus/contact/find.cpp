@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/geometry/polygon.h"
+
 namespace talus {
 
 namespace {
@@ -17,6 +19,13 @@ constexpr double kEntrance = 0.02;
 // A corner that turns by less than this (sine) lies on a straight side: a joint ends there on the other side,
 // or the side belongs to two sources. It enters nothing; the corner across does.
 constexpr double kFlat = 1e-4;
+
+// Stretches of two sides longer than this many times the size of one place, and this many times the overlap, are
+// interfaces whatever lies beside them.
+constexpr double kLongStretch = 100, kLongerThanDeep = 20;
+
+// Gaps beside a side up to the depth of the overlap are none, but never wider than this share of the smaller block.
+constexpr double kMostReach = 0.05;
 
 }  // namespace
 
@@ -43,6 +52,26 @@ void ContactSearch::Outline::take(const BlockSet& blocks, const State& state, in
 int ContactSearch::Outline::side_of(int e) const {
   for (int steps = 0; steps < count && flat[static_cast<size_t>(e)]; ++steps) e = before(e);
   return e;
+}
+
+// The last edge of the straight side that an edge belongs to.
+int ContactSearch::Outline::last_of(int e) const {
+  for (int steps = 0; steps < count && flat[static_cast<size_t>(after(e))]; ++steps) e = after(e);
+  return e;
+}
+
+// Whether a place (an offset from the block's centroid) lies inside, or outside by no more than `tolerance`.
+bool ContactSearch::Outline::holds(Vec2 place, double tolerance) const {
+  bool inside = false;
+  for (int k = 0; k < count; ++k) {
+    const auto v = static_cast<size_t>(k), w = static_cast<size_t>(after(k));
+    const Vec2 p = corner[v], q = corner[w];
+    if (tolerance > 0 && distance_to_segment(place, p, q) <= tolerance) return true;
+    if ((p.y > place.y) != (q.y > place.y) &&
+        place.x < p.x + (place.y - p.y) / (q.y - p.y) * (q.x - p.x))
+      inside = !inside;
+  }
+  return inside;
 }
 
 // The edge of the straight side from `first` on that has `place` (an offset from the block's centroid) beside
@@ -103,20 +132,101 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
     const Vec2 r = place - b.corner[k];
     const double along = std::clamp(dot(r, b.edge[k]) / (b.length[k] * b.length[k]), 0.0, 1.0);
     const double left = depth - same_ - norm(r - along * b.edge[k]);
-    clearance_ = std::min(clearance_, std::abs(left));
+    found_.clearance = std::min(found_.clearance, std::abs(left));
     nearer = nearer || left > 0;
   }
   return nearer;
 }
 
-// Whether x is the way out rather than y: larger gap, or nearly equal ones by what is coming.
+// Whether x is the way out rather than y: what was in touch before, else the larger gap, or of nearly equal ones
+// what is coming.
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
-  clearance_ = std::min(clearance_, std::abs(std::abs(x.point.gap - y.point.gap) - same_));
+  if (x.held != y.held) return x.held;
+  found_.clearance = std::min(found_.clearance, std::abs(std::abs(x.point.gap - y.point.gap) - same_));
   if (std::abs(x.point.gap - y.point.gap) > same_) return x.point.gap > y.point.gap;
-  clearance_ = 0;
+  found_.clearance = 0;
   const double tie = 1e-3 * same_;
   if (std::abs(x.expected - y.expected) > tie) return x.expected > y.expected;
   return x.point.key < y.point.key;
+}
+
+// Whether corner v of a bore on the straight side of b's edge e before, with a force or an overlap that it keeps.
+bool ContactSearch::was_in_touch(const Outline& a, int v, const Outline& b, int e) const {
+  for (const Contact& c : range_.known) {
+    if (c.key.block_a != a.block || c.key.vertex != v || c.memory == Contact::kNone) continue;
+    if ((c.force[0] > 0 || c.allowed > 0) && b.side_of(c.key.edge) == b.side_of(e)) return true;
+  }
+  return false;
+}
+
+ContactSearch::Stretch ContactSearch::stretch_of(const Outline& a, int v, const Outline& b, int e,
+                                                 Vec2 shift) const {
+  Stretch out;
+  const auto ke = static_cast<size_t>(e);
+  const Vec2 along = b.edge[ke] / b.length[ke];
+  for (const int f : {v, a.before(v)}) {
+    const auto kf = static_cast<size_t>(f);
+    if (dot(a.edge[kf], along) > 0 || std::abs(cross(a.edge[kf], along)) > kParallel * a.length[kf]) continue;
+    const int first_a = a.side_of(f), first_b = b.side_of(e);
+    const Vec2 a0 = shift + a.corner[static_cast<size_t>(first_a)],
+               a1 = shift + a.corner[static_cast<size_t>(a.after(a.last_of(f)))];
+    const Vec2 b0 = b.corner[static_cast<size_t>(first_b)],
+               b1 = b.corner[static_cast<size_t>(b.after(b.last_of(e)))];
+    const double from = std::max(dot(along, b0), dot(along, a1)),
+                 to = std::min(dot(along, b1), dot(along, a0));
+    if (out.edge_a >= 0 && to - from <= out.length) continue;
+    out = {std::max(to - from, 0.0), 0.5 * (from + to) - dot(along, b.corner[ke]), f};
+  }
+  return out;
+}
+
+// Whether a place (an offset from the centroid of `block`) lies in a third block, which is then noted.
+bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int block, int other, Vec2 place) {
+  if (range_.neighbours == nullptr) return false;
+  const auto ib = static_cast<size_t>(block);
+  for (const int third : range_.neighbours->of(block)) {
+    if (third == other || blocks.removed(third)) continue;
+    const auto ic = static_cast<size_t>(third);
+    const Vec2 at = place - (blocks.centroid[ic] - blocks.centroid[ib]) - s.displacement[ic];
+    const Mat2& h = s.strain_part[ic];
+    if (norm(at) > blocks.radius[ic] * (1 + std::sqrt(contract(h, h)))) continue;
+    outline_.clear();
+    for (int k = 0; k < blocks.vertex_count(third); ++k) {
+      const Vec2 X = blocks.corner(third, k);
+      outline_.push_back(X + h * X);
+    }
+    if (!contains(outline_, at)) continue;
+    if (std::find(found_.cover.begin(), found_.cover.end(), third) == found_.cover.end())
+      found_.cover.push_back(third);
+    return true;
+  }
+  return false;
+}
+
+// Whether a third block fills the place through which a hit would be pushed out: beside the side of b, or beside
+// the antiparallel side of a, at the middle of the stretch that they share. Gaps narrower than `reach` hide
+// nothing.
+bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Outline& a, const Outline& b,
+                               Vec2 shift, const Hit& h, double reach) {
+  if (range_.neighbours == nullptr) return false;
+  const ContactKey& key = h.point.key;
+  const Stretch stretch = stretch_of(a, key.vertex, b, key.edge, shift);
+  // two sides with an interface as good as any
+  if (stretch.length > std::max(kLongStretch * same_, kLongerThanDeep * reach)) return false;
+  const auto ke = static_cast<size_t>(key.edge);
+  const double length = b.length[ke];
+  const Vec2 along = b.edge[ke] / length, n = h.point.normal;
+  const double foot = dot(along, shift + a.corner[static_cast<size_t>(key.vertex)] - b.corner[ke]);
+  const double inward = std::min(2 * same_, 0.5 * length);
+  const double middle = stretch.length > 0 ? stretch.middle : foot;
+  const Vec2 on_b = b.corner[ke] + std::clamp(middle, inward, length - inward) * along;
+  if (lies_in_third(blocks, s, b.block, a.block, on_b + reach * n)) return true;
+  if (stretch.length == 0) return false;
+  const auto kf = static_cast<size_t>(stretch.edge_a);
+  const Vec2 a0 = shift + a.corner[kf], ea = a.edge[kf] / a.length[kf];
+  const double in_a = std::min(2 * same_, 0.5 * a.length[kf]);
+  const double at = std::clamp(dot(ea, b.corner[ke] + middle * along - a0), in_a, a.length[kf] - in_a);
+  return lies_in_third(blocks, s, a.block, b.block, a0 + at * ea - shift + reach * turn_right(ea));
 }
 
 // All corner-edge pairs of corners of a over edges of b. `shift` leads from the centroid of b to that of a.
@@ -130,30 +240,33 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
     for (int e = 0; e < b.count; ++e) {
       const auto ke = static_cast<size_t>(e);
       // far from the line of the edge, as most are
-      const Vec2 r = place - b.corner[ke];
-      if (std::abs(cross(b.edge[ke], r)) > (margin_ + same_) * b.length[ke]) continue;
+      const double off = -cross(b.edge[ke], place - b.corner[ke]);
+      if (off > (range_.margin + same_) * b.length[ke] || off < -(range_.depth + same_) * b.length[ke]) continue;
       const CornerEdge c = corner_over_edge(blocks, s, a.block, v, b.block, e);
-      if (std::abs(c.gap) > margin_) continue;
+      if (c.gap > range_.margin || c.gap < -range_.depth) continue;
       // beyond a convex end lies free space; beyond an end in a notch lies the block itself, and a corner
       // that has gone slightly into both sides of the notch is still held by both
-      const double before = b.convex[ke] ? same_ : margin_;
-      const double beyond = b.convex[static_cast<size_t>(b.after(e))] ? same_ : margin_;
+      const double before = b.convex[ke] ? same_ : range_.margin;
+      const double beyond = b.convex[static_cast<size_t>(b.after(e))] ? same_ : range_.margin;
       const Vec2 b0 = blocks.corner(b.block, e), b1 = blocks.corner(b.block, b.after(e));
       const double along = std::clamp(c.along, 0.0, 1.0);
       const Vec2 foot = b0 + along * (b1 - b0);
       const Vec2 u = velocity_at(s.rate[ia], acting_arm(blocks, s, ia, blocks.corner(a.block, v))) -
                      velocity_at(s.rate[ib], acting_arm(blocks, s, ib, foot));
-      const double expected = c.gap + look_ahead_ * dot(c.normal, u);
+      const double expected = c.gap + range_.look_ahead * dot(c.normal, u);
       const double in_front = c.along * c.length + before, behind = beyond - (c.along - 1) * c.length;
       const bool above = in_front >= 0 && behind >= 0;
-      clearance_ = std::min({clearance_, std::abs(in_front), std::abs(behind)});
+      found_.clearance = std::min({found_.clearance, std::abs(in_front), std::abs(behind)});
       // a corner that comes past the end of an edge and would be inside the block after the
       // look-ahead: corner runs into corner
-      const double along_then = c.along + look_ahead_ * dot(turn_left(c.normal), u) / c.length;
+      const double along_then = c.along + range_.look_ahead * dot(turn_left(c.normal), u) / c.length;
       const bool comes_in = c.gap > -same_ && expected < 0 && along_then >= 0 && along_then <= 1;
       if (!above && !comes_in) continue;
       if (!a.may_enter(v, c.normal)) continue;
-      by_velocity_ = by_velocity_ || !above;
+      const bool held = was_in_touch(a, v, b, e);
+      // behind the line of an edge, and yet not in the block: beyond another of its sides
+      if (!held && c.gap < -range_.margin && !b.holds(place, same_)) continue;
+      found_.by_velocity = found_.by_velocity || !above;
       Hit hit;
       hit.point.key = {a.block, v, b.block, e};
       hit.point.normal = c.normal;
@@ -163,14 +276,21 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
       hit.expected = expected;
       hit.coming = !above;
+      hit.held = held;
       if (c.along * c.length < same_) hit.at_corner = e;
       if ((1 - c.along) * c.length < same_) hit.at_corner = b.after(e);
-      if (hit.at_corner >= 0) clearance_ = 0;
+      if (hit.at_corner >= 0) found_.clearance = 0;
       hit.apart = hit.at_corner >= 0 && c.gap > same_ && is_flush(blocks, s, a, v, b, e, hit.at_corner);
       hits_.push_back(hit);
     }
+    double reach = same_;
+    for (size_t i = first; i < hits_.size(); ++i) reach = std::max(reach, -hits_[i].point.gap);
+    reach = std::min(reach, kMostReach / kSamePlace * same_);
     hits_.erase(std::remove_if(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
-                               [&](const Hit& h) { return is_elsewhere(a, v, place, b, h); }),
+                               [&](const Hit& h) {
+                                 return !h.held && (is_elsewhere(a, v, place, b, h) ||
+                                                    is_covered(blocks, s, a, b, shift, h, reach));
+                               }),
                 hits_.end());
     // where b is convex the corner obeys one edge, the one it is least behind
     for (size_t i = first; i < hits_.size(); ++i) {
@@ -260,6 +380,9 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         if (both) {
           x.partner = static_cast<int>(j), y.partner = static_cast<int>(i);
           x.length = y.length = 0.5 * length;
+          const bool first = dot(lo.edge[static_cast<size_t>(span.side_lo)], py - px) > 0;
+          x.face = {span.side_lo, span.side_hi, first ? 0 : 1};
+          y.face = {span.side_lo, span.side_hi, first ? 1 : 0};
         } else if (x.partner < 0 || y.partner < 0) {
           (x.partner < 0 ? x : y).length += 0.5 * length;
         }
@@ -289,14 +412,14 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int a, i
   return {dot(n, r), dot(r, e) / (length * length), length, n};
 }
 
-const std::vector<ContactPoint>& ContactSearch::touch(const BlockSet& blocks, const State& state, int a,
-                                                      int b, double margin, double look_ahead,
-                                                      double& clearance) {
+const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, int a, int b,
+                                  const SearchRange& range) {
   const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
-  margin_ = margin, look_ahead_ = look_ahead;
+  range_ = range;
   same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);
-  clearance_ = margin;
-  by_velocity_ = false;
+  found_.points.clear(), found_.cover.clear();
+  found_.clearance = range.margin;
+  found_.by_velocity = false;
   hits_.clear();
   first_.take(blocks, state, a);
   second_.take(blocks, state, b);
@@ -308,16 +431,16 @@ const std::vector<ContactPoint>& ContactSearch::touch(const BlockSet& blocks, co
   std::erase_if(hits_, [](const Hit& h) { return h.apart; });
   std::sort(hits_.begin(), hits_.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });
   share_faces(first_, second_, shift);
-  found_.clear();
-  for (const Hit& h : hits_) found_.push_back(h.point);
-  clearance = by_velocity_ ? -1 : clearance_;
+  for (const Hit& h : hits_) found_.points.push_back(h.point);
   return found_;
 }
 
 void touch_blocks(const BlockSet& blocks, const State& state, int a, int b, double margin,
                   std::vector<ContactPoint>& out, double look_ahead) {
-  double clearance = 0;
-  const auto points = ContactSearch().touch(blocks, state, a, b, margin, look_ahead, clearance);
+  SearchRange range;
+  range.margin = range.depth = margin, range.look_ahead = look_ahead;
+  ContactSearch search;
+  const auto& points = search.touch(blocks, state, a, b, range).points;
   out.insert(out.end(), points.begin(), points.end());
 }
 

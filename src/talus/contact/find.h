@@ -2,6 +2,8 @@
 // Which corners of two simple polygons touch which edges. Geometry only. Theory: docs/theory.md section 3,
 // with sketches.
 
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "talus/blocks/state.h"
@@ -18,6 +20,7 @@ struct ContactPoint {
   double length = 0;  // [m] tributary length: half the face it ends, 0 for a corner alone
   int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of that face; -1: none
   int partner = -1;  // the other end of that face: its place in the list; each is the other's; -1: none
+  FaceEnd face;      // which end of which interface, where it has a partner
 };
 
 /// Gap and foot of a corner over an edge; digits are kept however far both are from the origin.
@@ -31,22 +34,38 @@ struct CornerEdge {
 CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int block_a, int vertex, int block_b,
                             int edge);
 
+/// How far, how deep and in whose company the points of a pair are sought.
+struct SearchRange {
+  double margin = 0;      // gaps up to this are seen [m]
+  double depth = 0;       // overlaps up to this are seen [m]
+  double look_ahead = 0;  // [s] what comes together within this time is seen before it does
+  const Neighbours* neighbours = nullptr;  // none: the two are alone
+  std::span<const Contact> known;          // contact points of the pair before
+};
+
+/// What a search found, and what could change it.
+struct Found {
+  std::vector<ContactPoint> points;  // in the order of their keys
+  double clearance = 0;    // the least distance, along an edge or between gaps, to another outcome [m]
+  bool by_velocity = false;  // velocities had a say: the outcome holds for this step only
+  std::vector<int> cover;    // third blocks that cover a side here: were they to leave, there would be more points
+};
+
 /// Looks for contact points; keeps its memory from pair to pair.
 class ContactSearch {
  public:
-  /// The contact points of two blocks that are closer than `margin` [m], in the order of their keys.
-  ///  - a corner acts on an edge only above the edge itself (never its extension), and only where its own two
-  ///    edges do not lie behind the edge (entrance condition);
-  ///  - a flat corner (turning by less than 1e-4) enters nothing: the edges beside it are one straight side;
-  ///  - a corner near a convex corner of the other block obeys one edge: the one with the larger gap;
-  ///  - two corners at one place make one contact: again the larger gap; gaps that are equal by what they
-  ///  come
-  ///    to within `look_ahead` [s] at the rates of the state (a block that slides over a flush joint must not
-  ///    be caught by the side of the next block), then by the lower key.
-  /// @param clearance  the least distance, along an edge or between gaps, to another outcome [m]; -1 when
-  ///                   velocities had a say: it holds for this step only
-  const std::vector<ContactPoint>& touch(const BlockSet& blocks, const State& state, int block_a, int block_b,
-                                         double margin, double look_ahead, double& clearance);
+  /// The contact points of two blocks (theory 3.2 and 3.3).
+  ///  - A corner acts on an edge only above the edge itself (never its extension), and only where its own two
+  ///    edges do not lie behind the edge (entrance condition).
+  ///  - A flat corner (turning by less than 1e-4) enters nothing: the edges beside it are one straight side.
+  ///  - A side that a third block covers is no way out: neither a corner alone nor a stretch of two sides that
+  ///    is not much longer than the overlap bears there.
+  ///  - What was in touch before stays on its side until it opens or passes the end.
+  ///  - Else a corner near a convex corner of the other block obeys one edge: the one with the larger gap;
+  ///    equal gaps by what they come to within `look_ahead`, then by the lower key.
+  ///  - Two corners at one place make one contact, by the same rule.
+  const Found& touch(const BlockSet& blocks, const State& state, int block_a, int block_b,
+                     const SearchRange& range);
 
  private:
   // A block as it lies now, seen from its reference centroid.
@@ -60,8 +79,10 @@ class ContactSearch {
     int before(int k) const { return k == 0 ? count - 1 : k - 1; }
     int after(int k) const { return k + 1 == count ? 0 : k + 1; }
     int side_of(int edge) const;
+    int last_of(int edge) const;
     int edge_beside(int first, Vec2 place) const;
     bool may_enter(int corner, Vec2 normal) const;
+    bool holds(Vec2 place, double tolerance) const;
     bool on_convex_chain(int edge_1, int edge_2) const;
   };
   struct Hit {
@@ -70,6 +91,12 @@ class ContactSearch {
     double expected = 0;  // gap after the look-ahead
     bool apart = false;   // by the side of b, over which a slides flush
     bool coming = false;  // beside the edge still; over it after the look-ahead
+    bool held = false;    // in touch on this side before
+  };
+  // The length over which two antiparallel sides lie beside each other, along an edge of the second block.
+  struct Stretch {
+    double length = 0, middle = 0;  // [m] the middle from the first corner of that edge
+    int edge_a = -1;                // of the first block; -1: none is antiparallel
   };
   struct Span {
     int side_lo, side_hi;  // straight sides of the lower and the higher block id
@@ -82,19 +109,25 @@ class ContactSearch {
   bool is_better(const Hit& x, const Hit& y);
   void corners_over_edges(const BlockSet& blocks, const State& state, const Outline& a, const Outline& b,
                           Vec2 shift);
+  bool was_in_touch(const Outline& a, int corner, const Outline& b, int edge) const;
+  Stretch stretch_of(const Outline& a, int corner, const Outline& b, int edge, Vec2 shift) const;
+  bool is_covered(const BlockSet& blocks, const State& state, const Outline& a, const Outline& b, Vec2 shift,
+                  const Hit& hit, double reach);
+  bool lies_in_third(const BlockSet& blocks, const State& state, int block, int other, Vec2 place);
   void merge_corner_pairs(const Outline& a, const Outline& b);
   void share_faces(const Outline& a, const Outline& b, Vec2 shift);
   void spans_of(const Outline& a, const Outline& b, const Hit& h, std::vector<Span>& list) const;
 
-  double margin_ = 0, look_ahead_ = 0, same_ = 0, clearance_ = 0;
-  bool by_velocity_ = false;
+  SearchRange range_;
+  double same_ = 0;
   Outline first_, second_;
   std::vector<Hit> hits_;
   std::vector<std::vector<Span>> spans_;
-  std::vector<ContactPoint> found_;
+  std::vector<Vec2> outline_;  // of a third block
+  Found found_;
 };
 
-/// The same for one pair, appended to `out`.
+/// The same for one pair that is alone, appended to `out`.
 void touch_blocks(const BlockSet& blocks, const State& state, int block_a, int block_b, double margin,
                   std::vector<ContactPoint>& out, double look_ahead = 0);
 

@@ -2,17 +2,6 @@
 
 namespace talus {
 
-double largest_rise(const Model& model, const State& state) {
-  if (std::all_of(model.joints.begin(), model.joints.end(),
-                  [](const JointProperty& j) { return j.dilation_angle == 0; }))
-    return 0;
-  double rise = 0;
-  for (const Contact& c : state.contacts)
-    if (c.joint >= 0)
-      rise = std::max(rise, dilation_rise(model.joints[static_cast<size_t>(c.joint)], c.slip));
-  return rise;
-}
-
 const char* state_name(JointState state) {
   constexpr const char* kName[] = {"intact", "slipped", "open", "apart"};
   return kName[static_cast<int>(state)];

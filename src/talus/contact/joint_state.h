@@ -20,9 +20,6 @@ inline double dilation_rise(const JointProperty& joint, double slip) {
   return std::tan(joint.dilation_angle) * std::min(slip, joint.dilation_slip);
 }
 
-/// The largest rise of all contacts [m]; 0, at no cost, where no joint dilates.
-double largest_rise(const Model& model, const State& state);
-
 /// kApart: near each other, but never in touch.
 enum class JointState { kIntact, kSlipped, kOpen, kApart };
 const char* state_name(JointState state);

@@ -8,13 +8,21 @@
 
 #include "talus/base/error.h"
 #include "talus/contact/hand_over.h"
+#include "talus/contact/joint_state.h"
 
 namespace talus {
 
 namespace {
 
-// Skin of the list of pairs, as share of the smallest block.
+// Skin of a block in the list of pairs, as share of its size, or of the median one where that is smaller.
 constexpr double kSkin = 0.1;
+
+// Contact points are sought this far ahead, as share of the smaller block; a point further away than the two come
+// together in one step has no force and costs only its row.
+constexpr double kMarginShare = 0.02;
+
+// Overlaps up to this share of the thinner of two blocks are seen.
+constexpr double kDepthShare = 0.5;
 
 // Contact points of a pair are followed, not sought, while the two have moved against each other by less than
 // half of what could change them, at most this share of the smaller block: faces stay faces and normals turn
@@ -32,13 +40,42 @@ double moved_since(const BlockSet& blocks, const State& state, const CandidateLi
   return norm(state.displacement[i] - list.displacement[i]) + std::sqrt(contract(h, h)) * blocks.radius[i];
 }
 
-bool list_holds(const BlockSet& blocks, const State& state, double margin, const Workers& workers) {
+// How fast places of a block move at most [m/s].
+double speed_of(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t i) {
+  return norm(rate[i].a) + std::sqrt(contract(rate[i].G, rate[i].G)) * blocks.radius[i];
+}
+
+// How fast places of one block come towards those of another at most [m/s].
+double closing_speed(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t a, size_t b) {
+  return norm(rate[a].a - rate[b].a) + std::sqrt(contract(rate[a].G, rate[a].G)) * blocks.radius[a] +
+         std::sqrt(contract(rate[b].G, rate[b].G)) * blocks.radius[b];
+}
+
+// Faces that rode up over their roughness are that far apart and in touch: the most that joints can rise [m].
+double highest_rise(const std::vector<JointProperty>& joints, const State& state) {
+  if (std::all_of(joints.begin(), joints.end(), [](const JointProperty& j) { return j.dilation_angle == 0; }))
+    return 0;
+  double rise = 0;
+  for (const Contact& c : state.contacts)
+    if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints[static_cast<size_t>(c.joint)], c.slip));
+  return rise;
+}
+
+// How far block i has to look ahead: with the same of the other block at least the margin of their pair [m].
+double reach_of(const BlockSet& blocks, const LookAhead& ahead, size_t i) {
+  return std::max(0.5 * kMarginShare * blocks.size[i], 4 * ahead.dt * speed_of(blocks, *ahead.before, i));
+}
+
+bool list_holds(const BlockSet& blocks, const State& state, const LookAhead& ahead, double rise,
+                const Workers& workers) {
   const CandidateList& list = state.candidates;
-  if (list.margin != margin || list.displacement.size() != static_cast<size_t>(blocks.count)) return false;
+  if (list.reach.size() != static_cast<size_t>(blocks.count)) return false;
   std::atomic<bool> holds{true};
   workers.for_chunks(list.displacement.size(), 2048, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end && holds.load(std::memory_order_relaxed); ++i)
-      if (!(moved_since(blocks, state, list, i) < 0.5 * list.skin)) holds = false;
+      if (!(moved_since(blocks, state, list, i) < 0.5 * list.skin[i]) ||
+          !(reach_of(blocks, ahead, i) + rise <= list.reach[i]))
+        holds = false;
   });
   return holds;
 }
@@ -98,6 +135,33 @@ double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p)
   return norm(off) + std::sqrt(contract(turn, turn)) * blocks.radius[small];
 }
 
+// The blocks that cover sides of a pair, and how they lie beside block a.
+void keep_cover(const State& s, const std::vector<int>& cover, ContactPair& p) {
+  const auto a = static_cast<size_t>(p.a);
+  for (size_t k = 0; k < p.cover.size(); ++k) {
+    p.cover[k] = k < cover.size() ? cover[k] : -1;
+    if (p.cover[k] < 0) continue;
+    const auto c = static_cast<size_t>(p.cover[k]);
+    p.cover_place[k] = s.displacement[c] - s.displacement[a];
+    p.cover_turn[k] = s.strain_part[c] - s.strain_part[a];
+  }
+}
+
+// Whether a block that covers sides of the pair has gone, or moved by more than `most` [m].
+bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p, double most) {
+  const auto a = static_cast<size_t>(p.a);
+  for (size_t k = 0; k < p.cover.size() && p.cover[k] >= 0; ++k) {
+    const auto c = static_cast<size_t>(p.cover[k]);
+    if (blocks.removed(p.cover[k])) return true;
+    const Mat2 turn = s.strain_part[c] - s.strain_part[a] - p.cover_turn[k];
+    if (norm(s.displacement[c] - s.displacement[a] - p.cover_place[k]) +
+            std::sqrt(contract(turn, turn)) * blocks.radius[c] >
+        most)
+      return true;
+  }
+  return false;
+}
+
 void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
   const auto [small, large] = by_size(blocks, p);
   const Vec2 now =
@@ -107,32 +171,118 @@ void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
   p.turn = back * (kIdentity + s.strain_part[small]);
 }
 
+// Where the corner of a contact lies now, seen from the reference centroid of block a of its pair.
+Vec2 place_of(const BlockSet& blocks, const State& s, int from, const ContactKey& key) {
+  const auto k = static_cast<size_t>(key.block_a);
+  return (blocks.centroid[k] - blocks.centroid[static_cast<size_t>(from)]) +
+         offset_now(s, k, blocks.corner(key.block_a, key.vertex));
+}
+
+// How far a known contact is now from where it sticks, along its tangent [m]; NaN where it slid.
+double off_now(const BlockSet& blocks, const State& s, const Contact& c) {
+  const ContactKey& k = c.key;
+  const CornerEdge over = corner_over_edge(blocks, s, k.block_a, k.vertex, k.block_b, k.edge);
+  const int next = k.edge + 1 == blocks.vertex_count(k.block_b) ? 0 : k.edge + 1;
+  return -over.along * norm(blocks.corner(k.block_b, next) - blocks.corner(k.block_b, k.edge)) - c.anchor;
+}
+
+// Which known contact a found point goes on from: the one with its key, else the one at its end of the same
+// interface, else the one of the same corner that has passed on from another edge, else one at the same place.
+struct Origin {
+  const Contact* contact = nullptr;
+  enum Kind { kNothing, kKey, kPlace, kPassed } kind = kNothing;
+};
+
+class Memory {
+ public:
+  Memory(const BlockSet& blocks, const State& s, const ContactPair& pair, const std::vector<ContactPoint>& found)
+      : blocks_(blocks),
+        state_(s),
+        pair_(pair),
+        found_(found),
+        known_(s.contacts.data() + pair.begin, static_cast<size_t>(pair.count)),
+        same_(2 * kSamePlace *
+              std::min(blocks.size[static_cast<size_t>(pair.a)], blocks.size[static_cast<size_t>(pair.b)])) {}
+
+  Origin of(const ContactPoint& point) const {
+    for (const Contact& c : known_)
+      if (c.key == point.key) return {c.memory == Contact::kNone ? nullptr : &c, Origin::kKey};
+    if (point.face.side_lo >= 0)
+      for (const Contact& c : known_)
+        if (c.memory != Contact::kNone && c.face == point.face && !stays(c)) return {&c, Origin::kPlace};
+    for (const Contact& c : known_)
+      if (c.memory != Contact::kNone && c.key.block_a == point.key.block_a && c.key.vertex == point.key.vertex &&
+          !stays(c))
+        return {&c, Origin::kPassed};
+    const Vec2 place = place_of(blocks_, state_, pair_.a, point.key);
+    for (const Contact& c : known_)
+      if (c.memory != Contact::kNone && c.key.block_a != point.key.block_a && !stays(c) &&
+          norm(place_of(blocks_, state_, pair_.a, c.key) - place) <= same_)
+        return {&c, Origin::kPlace};
+    return {};
+  }
+
+ private:
+  // a corner that keeps its edge beside the new one has not passed on
+  bool stays(const Contact& c) const {
+    return std::any_of(found_.begin(), found_.end(), [&](const ContactPoint& p) { return p.key == c.key; });
+  }
+
+  const BlockSet& blocks_;
+  const State& state_;
+  const ContactPair& pair_;
+  const std::vector<ContactPoint>& found_;
+  const std::span<const Contact> known_;
+  const double same_;
+};
+
 // A found point with what a known one at the same place remembers.
-Contact contact_of(const ContactPoint& point, const std::vector<ContactPoint>& all, const Layout& joints_of,
-                   const Contact* known, int n_known) {
+Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& point, const Memory& memory,
+                   const Layout& joints_of) {
   Contact c;
   c.key = point.key;
-  c.partner = static_cast<int16_t>(point.partner), c.length = point.length;
+  c.partner = static_cast<int16_t>(point.partner), c.length = point.length, c.face = point.face;
   const ContactKey& key = point.key;
   c.joint = point.face_edge_b >= 0
                 ? joints_of.joint_at(key.block_a, point.face_edge_a, key.block_b, point.face_edge_b)
                 : joints_of.joint_at_corner(key.block_a, key.vertex, key.block_b, key.edge);
-  const Contact* from = nullptr;
-  for (int i = 0; i < n_known && !(from && from->key == c.key); ++i) {
-    const ContactKey& k = known[i].key;
-    if (k.block_a != c.key.block_a || k.vertex != c.key.vertex || known[i].memory == Contact::kNone) continue;
-    // a corner that keeps its edge beside the new one has not passed on
-    const bool stays = !(k == c.key) &&
-                       std::any_of(all.begin(), all.end(), [&](const ContactPoint& p) { return p.key == k; });
-    if ((!from && !stays) || k == c.key) from = &known[i];
+  const auto [from, kind] = memory.of(point);
+  if (!from) {
+    if (kind == Origin::kNothing) c.allowed = std::max(0.0, -point.gap);
+    return c;
   }
-  if (!from) return c;
-  const bool same = from->key == c.key;
   c.force = from->force, c.stretch = from->stretch;
   c.slip = from->slip, c.slip_signed = from->slip_signed, c.touched = from->touched;
-  c.anchor = same ? from->anchor : 0;
-  c.memory = same ? from->memory : Contact::kPassed;
+  c.allowed = from->allowed;
+  c.anchor = 0, c.memory = Contact::kPassed;
+  if (kind == Origin::kKey) {
+    c.anchor = from->anchor, c.memory = from->memory;
+  } else if (kind == Origin::kPlace && from->memory == Contact::kWhole) {
+    // counted from another corner now, and as far from where it sticks as before; the same number from either block
+    c.anchor = point.slip - off_now(blocks, s, *from), c.memory = Contact::kWhole;
+  }
   return c;
+}
+
+double median_size(const BlockSet& blocks) {
+  std::vector<double> size = blocks.size;
+  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
+  std::nth_element(size.begin(), middle, size.end());
+  return *middle;
+}
+
+// Who is near whom, blocks that have been taken out left aside.
+void list_neighbours(const BlockSet& blocks, const std::vector<std::pair<int, int>>& close, Neighbours& out) {
+  out.begin.assign(static_cast<size_t>(blocks.count) + 1, 0);
+  const auto both = [&](const auto& use) {
+    for (const auto& [a, b] : close)
+      if (!blocks.removed(a) && !blocks.removed(b)) use(a, b), use(b, a);
+  };
+  both([&](int i, int) { ++out.begin[static_cast<size_t>(i) + 1]; });
+  for (size_t i = 1; i < out.begin.size(); ++i) out.begin[i] += out.begin[i - 1];
+  out.block.resize(static_cast<size_t>(out.begin.back()));
+  std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
+  both([&](int i, int j) { out.block[static_cast<size_t>(next[static_cast<size_t>(i)]++)] = j; });
 }
 
 // New lists of contact points of pairs whose number changed, found by one chunk.
@@ -143,13 +293,15 @@ struct Changed {
 
 class Updater {
  public:
-  Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of, double margin,
-          double look_ahead, State& state)
+  Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
+          const std::vector<JointProperty>& joints, const LookAhead& ahead, State& state)
       : blocks_(blocks),
         bonds_(bonds),
         joints_of_(joints_of),
-        margin_(margin),
-        look_ahead_(look_ahead),
+        joints_(joints),
+        ahead_(ahead),
+        dilates_(std::any_of(joints.begin(), joints.end(),
+                             [](const JointProperty& j) { return j.dilation_angle != 0; })),
         state_(state) {}
 
   SearchReport run(const Workers& workers) {
@@ -168,6 +320,18 @@ class Updater {
   }
 
  private:
+  // How far ahead the points of a pair have to be sought in this step [m].
+  double needed(const ContactPair& pair) const {
+    double rise = 0;
+    for (int k = 0; dilates_ && k < pair.count; ++k) {
+      const Contact& c = state_.contacts[static_cast<size_t>(pair.begin + k)];
+      if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints_[static_cast<size_t>(c.joint)], c.slip));
+    }
+    return 2 * ahead_.dt *
+               closing_speed(blocks_, *ahead_.before, static_cast<size_t>(pair.a), static_cast<size_t>(pair.b)) +
+           2 * rise;
+  }
+
   void look_at(size_t begin, size_t end) {
     Changed& changed = changed_[begin / kGrain];
     ContactSearch search;
@@ -176,28 +340,41 @@ class Updater {
       ContactPair& pair = state_.pairs[i];
       if (held_by_faces(bonds_, s, pair))
         continue;  // and so since it was made: intact faces have no contacts
-      if (pair.reuse >= 0 && moved_apart(blocks_, s, pair) <= pair.reuse) continue;
+      const double need = needed(pair);
+      if (pair.reuse >= 0 && need <= pair.margin && moved_apart(blocks_, s, pair) <= pair.reuse &&
+          !uncovered(blocks_, s, pair, pair.reuse))
+        continue;
       ++searched_[begin / kGrain];
-      double clearance = 0;
-      const auto& found = search.touch(blocks_, s, pair.a, pair.b, margin_, look_ahead_, clearance);
-      keep_pose(blocks_, s, pair);
       const auto [small, large] = by_size(blocks_, pair);
       const double size = std::min(blocks_.size[small], blocks_.size[large]);
+      // a power of two times the share: small changes of speed are no reason to seek anew
+      pair.margin = kMarginShare * size;
+      while (pair.margin < need) pair.margin *= 2;
+      SearchRange range;
+      range.margin = pair.margin;
+      range.depth = kDepthShare * std::min(blocks_.thinness[small], blocks_.thinness[large]);
+      range.look_ahead = ahead_.dt;
+      range.neighbours = &s.candidates.neighbours;
+      range.known = {s.contacts.data() + pair.begin, static_cast<size_t>(pair.count)};
+      const Found& sought = search.touch(blocks_, s, pair.a, pair.b, range);
+      const auto& found = sought.points;
+      const Memory memory(blocks_, s, pair, found);
+      keep_pose(blocks_, s, pair);
+      keep_cover(s, sought.cover, pair);
       // what velocities decided is asked again in the next step
-      pair.reuse = clearance < 0
+      pair.reuse = sought.by_velocity || sought.cover.size() > pair.cover.size()
                        ? -1
-                       : std::min(0.25 * margin_, std::max(0.5 * kSamePlace * size,
-                                                           std::min(0.5 * clearance, kReuse * size)));
+                       : std::min(0.25 * pair.margin, std::max(0.5 * kSamePlace * size,
+                                                               std::min(0.5 * sought.clearance, kReuse * size)));
       if (found.size() > kMostPoints)
         throw NumericalError(
             fmt::format("blocks \"{}\" and \"{}\" touch at {} points at t = {:.9g} s; at most {} can "
                         "be followed: give them fewer corners",
                         blocks_.name[static_cast<size_t>(pair.a)], blocks_.name[static_cast<size_t>(pair.b)],
                         found.size(), s.time, kMostPoints));
-      const Contact* known = state_.contacts.data() + pair.begin;
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
-        changed.contact.push_back(contact_of(p, found, joints_of_, known, pair.count));
+        changed.contact.push_back(contact_of(blocks_, s, p, memory, joints_of_));
       if (pair.from_start && s.step == 0)
         pair.shares_face =
             std::any_of(found.begin(), found.end(), [](const ContactPoint& p) { return p.length > 0; });
@@ -283,7 +460,9 @@ class Updater {
   const BlockSet& blocks_;
   const BondSet& bonds_;
   const Layout& joints_of_;
-  const double margin_, look_ahead_;
+  const std::vector<JointProperty>& joints_;
+  const LookAhead& ahead_;
+  const bool dilates_;
   State& state_;
   std::vector<Changed> changed_;
   std::vector<int> searched_;
@@ -291,31 +470,41 @@ class Updater {
 
 }  // namespace
 
-bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, const Workers& workers,
-                 State& state) {
-  if (blocks.count == 0 || list_holds(blocks, state, margin, workers)) return false;
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+                 const LookAhead& ahead, const Workers& workers, State& state) {
+  const double rise = highest_rise(joints, state);
+  if (blocks.count == 0 || list_holds(blocks, state, ahead, rise, workers)) return false;
   CandidateList& list = state.candidates;
-  const bool same_margin = list.margin == margin;
   ++list.rebuilds;
-  list.margin = margin;
   list.displacement = state.displacement;
   list.strain_part = state.strain_part;
-  list.skin = kSkin * smallest_size(blocks);
+  const double median = median_size(blocks);
+  const auto n = static_cast<size_t>(blocks.count);
+  list.skin.resize(n), list.reach.resize(n);
+  std::vector<Box> boxes = boxes_now(blocks, state);
+  for (size_t i = 0; i < n; ++i) {
+    list.skin[i] = kSkin * std::min(blocks.size[i], median);
+    // twice what is needed now, where it is speed that asks for it, so that the list holds for a while
+    const double now = reach_of(blocks, ahead, i), rest = 0.5 * kMarginShare * blocks.size[i];
+    list.reach[i] = (now > rest ? 2 * now : rest) + 2 * rise;
+    const double wider = list.reach[i] + 0.5 * list.skin[i];
+    boxes[i] = {boxes[i].min - Vec2{wider, wider}, boxes[i].max + Vec2{wider, wider}};
+  }
 
   const std::vector<ContactPair> before = std::move(state.pairs);
   std::vector<ContactPair> now;
   std::vector<Contact> contacts;
   contacts.reserve(state.contacts.size() + state.contacts.size() / 32);
   auto known = before.begin();
-  for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin + list.skin)) {
+  const std::vector<std::pair<int, int>> close = close_pairs(boxes, 0);
+  list_neighbours(blocks, close, list.neighbours);
+  for (const auto& [a, b] : close) {
     if (!blocks.interact(a, b)) continue;
     if (std::binary_search(bonds.tied.begin(), bonds.tied.end(), std::pair(a, b))) continue;
     while (known != before.end() && std::pair(known->a, known->b) < std::pair(a, b)) ++known;
     ContactPair pair;
     if (known != before.end() && known->a == a && known->b == b) {
       pair = *known;
-      // another margin may find other points
-      if (!same_margin) pair.reuse = -1;
     } else {
       pair.a = a, pair.b = b;
       pair.from_start = state.step == 0;
@@ -334,18 +523,25 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, double margin, co
 }
 
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             double margin, double look_ahead, const Workers& workers, State& state) {
-  return Updater(blocks, bonds, joints_of, margin, look_ahead, state).run(workers);
+                             const std::vector<JointProperty>& joints, const LookAhead& ahead,
+                             const Workers& workers, State& state) {
+  return Updater(blocks, bonds, joints_of, joints, ahead, state).run(workers);
 }
 
 std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& bonds, const State& state,
                                         double margin, double look_ahead) {
   std::vector<ContactPoint> contacts;
   ContactSearch search;
-  for (const auto& [a, b] : close_pairs(boxes_now(blocks, state), margin)) {
+  Neighbours neighbours;
+  const std::vector<std::pair<int, int>> close = close_pairs(boxes_now(blocks, state), margin);
+  list_neighbours(blocks, close, neighbours);
+  for (const auto& [a, b] : close) {
     if (!blocks.interact(a, b) || is_tied(bonds, state, a, b)) continue;
-    double clearance = 0;
-    const auto& found = search.touch(blocks, state, a, b, margin, look_ahead, clearance);
+    SearchRange range;
+    range.margin = range.depth = margin;
+    range.look_ahead = look_ahead;
+    range.neighbours = &neighbours;
+    const auto& found = search.touch(blocks, state, a, b, range).points;
     contacts.insert(contacts.end(), found.begin(), found.end());
   }
   return contacts;

@@ -10,8 +10,8 @@ namespace talus {
 namespace {
 
 // A field that is added to one of these and not saved would be lost: whoever adds one comes by here.
-static_assert(sizeof(Contact) == 80 && sizeof(ContactPair) == 80 && sizeof(FaceState) == 80 &&
-                  sizeof(WorkDone) == 80 && sizeof(State) == 736 && sizeof(BoltNode) == 56 &&
+static_assert(sizeof(Contact) == 104 && sizeof(ContactPair) == 192 && sizeof(FaceState) == 80 &&
+                  sizeof(WorkDone) == 80 && sizeof(State) == 816 && sizeof(BoltNode) == 56 &&
                   sizeof(BoltSegment) == 72 && sizeof(BoltCrossing) == 120 && sizeof(Bolt) == 96,
               "a field was added: save it in exchange_state(), then correct the size here");
 
@@ -19,19 +19,23 @@ void exchange_contacts(Exchange& x, State& s) {
   x("state.candidates.displacement", s.candidates.displacement);
   x("state.candidates.strain_part", s.candidates.strain_part);
   x("state.candidates.skin", s.candidates.skin);
-  x("state.candidates.margin", s.candidates.margin);
+  x("state.candidates.reach", s.candidates.reach);
+  x("state.candidates.neighbours.begin", s.candidates.neighbours.begin);
+  x("state.candidates.neighbours.block", s.candidates.neighbours.block);
   x("state.candidates.rebuilds", s.candidates.rebuilds);
   x.each("state.pairs", s.pairs, [](auto& field, ContactPair& p) {
     field("a", p.a), field("b", p.b), field("begin", p.begin), field("count", p.count);
     field("face", p.face), field("from_start", p.from_start), field("shares_face", p.shares_face),
         field("reuse", p.reuse);
-    field("arm", p.arm), field("turn", p.turn);
+    field("margin", p.margin), field("arm", p.arm), field("turn", p.turn);
+    field("cover_0", p.cover[0]), field("cover_1", p.cover[1]), field("cover_place", p.cover_place), field("cover_turn", p.cover_turn);
   });
   x.each("state.contacts", s.contacts, [](auto& field, Contact& c) {
     field("block_a", c.key.block_a), field("vertex", c.key.vertex);
     field("block_b", c.key.block_b), field("edge", c.key.edge);
     field("joint", c.joint), field("partner", c.partner), field("memory", c.memory);
-    field("length", c.length), field("force", c.force);
+    field("length", c.length), field("force", c.force), field("allowed", c.allowed);
+    field("side_lo", c.face.side_lo), field("side_hi", c.face.side_hi), field("face_end", c.face.end);
     field("stretch", c.stretch), field("anchor", c.anchor);
     field("slip", c.slip), field("slip_signed", c.slip_signed), field("touched", c.touched);
   });

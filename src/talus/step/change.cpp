@@ -129,7 +129,7 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
         displacement_at(state, static_cast<size_t>(p.block), p.arm) - Vec2{prescribed(s.x), prescribed(s.y)};
   }
   // pairs with blocks that have gone leave the list, others may have come to matter
-  if (before.kind != now.kind) state.candidates.margin = -1;
+  if (before.kind != now.kind) state.candidates.reach.clear();
 }
 
 double ledger_energy(const Scene& scene, const State& state) {

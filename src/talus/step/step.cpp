@@ -13,10 +13,6 @@ namespace talus {
 
 namespace {
 
-// Contact points are sought this far ahead, as share of the smaller block; a point further away than a block
-// can come in one step has no force and costs only its row.
-constexpr double kMarginShare = 0.02;
-
 // Blocks and rows to a chunk. Sums are taken chunk by chunk: these numbers are part of the result's last
 // bits.
 constexpr size_t kBlocks = 512, kRows = 1024;
@@ -31,26 +27,18 @@ constexpr int kSweepsBeforeNewton = 500;
 // Travel of a block in one step, as share of its radius, at which a run ends: contacts could not be followed.
 constexpr double kMostTravel = 10;
 
-double contact_margin(const Scene& scene, const State& state, double dt) {
-  const BlockSet& blocks = scene.blocks;
-  double fastest = 0;
+// Every pair would be a close one before the blow-up shows in a block turned inside out.
+void check_travel(const BlockSet& blocks, const State& state, double dt) {
   for (size_t i = 0; i < state.rate.size(); ++i) {
     const double spread = std::sqrt(contract(state.rate[i].G, state.rate[i].G)) * blocks.size[i];
     const double speed = norm(state.rate[i].a) + spread;
-    // every pair would be a close one before the blow-up shows in a block turned inside out
     if (!(speed * dt <= kMostTravel * blocks.radius[i]))
       throw NumericalError(
           fmt::format("block \"{}\" moves {:.3g} times its own radius in one step at t = {:.9g} s, step {}: "
                       "the motion has "
                       "blown up, or the time step is far too long",
                       blocks.name[i], speed * dt / blocks.radius[i], state.time, state.step));
-    fastest = std::max(fastest, speed);
   }
-  // rounded up to a power of two times the share, so that the candidate list survives small changes of speed
-  double margin = kMarginShare * smallest_size(blocks);
-  const double rise = largest_rise(scene.model, state);  // faces that rode up are that far apart and in touch
-  while (margin < 4 * fastest * dt + 2 * rise) margin *= 2;
-  return margin;
 }
 
 // Norm of a generalised force as a force on the block's mass, sqrt(m F M^-1 F) [N]; the same in every frame.
@@ -130,10 +118,12 @@ class Kick {
     }
     {
       const Timed timed(work_.profile.seconds[Profile::kDetect]);
-      const double margin = contact_margin(scene_, state_, dt_);
-      renew_pairs(blocks_, scene_.bonds, margin, work_.workers, state_);
+      check_travel(blocks_, state_, dt_);
+      const std::vector<JointProperty>& joints = scene_.model.joints;
+      const LookAhead ahead{dt_, &work_.rate_before};
+      renew_pairs(blocks_, scene_.bonds, joints, ahead, work_.workers, state_);
       report_.searched =
-          update_contacts(blocks_, scene_.bonds, scene_.layout, margin, dt_, work_.workers, state_).searched;
+          update_contacts(blocks_, scene_.bonds, scene_.layout, joints, ahead, work_.workers, state_).searched;
     }
     {
       const Timed timed(work_.profile.seconds[Profile::kSetUp]);

@@ -63,7 +63,7 @@ Vec2 place_of(const Scene& s, const ContactPoint& c) {
 }
 
 // Pairs whose bounding boxes, as they lie now, are closer than the margin.
-std::vector<std::pair<int, int>> close_now(const BlockSet& blocks, const State& state) {
+std::vector<std::pair<int, int>> close_now(const BlockSet& blocks, const State& state, double margin) {
   std::vector<Box> boxes;
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
@@ -72,7 +72,7 @@ std::vector<std::pair<int, int>> close_now(const BlockSet& blocks, const State& 
       corners.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner(i, v)));
     boxes.push_back(bounding_box(corners));
   }
-  return close_pairs(boxes, kMargin);
+  return close_pairs(boxes, margin);
 }
 
 // Sums of a few numbers of order 1.
@@ -268,8 +268,8 @@ TEST_CASE("a corner over the edge of a turned and strained block") {
   CHECK(norm(contacts[0].normal - normal) <= kRound);
 }
 
-std::vector<std::pair<int, int>> renewed(const Scene& s, double margin, State& state) {
-  renew_pairs(s.blocks, s.bonds, margin, Workers(), state);
+std::vector<std::pair<int, int>> renewed(const Scene& s, State& state) {
+  renew_pairs(s.blocks, s.bonds, s.model.joints, {1e-3, &state.rate}, Workers(), state);
   std::vector<std::pair<int, int>> pairs;
   for (const ContactPair& p : state.pairs) pairs.emplace_back(p.a, p.b);
   return pairs;
@@ -280,7 +280,7 @@ TEST_CASE("renew_pairs misses no close pair while the blocks move") {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<Polygon> polygons;
   for (int i = 0; i < 100; ++i) {
-    const double width = i % 7 == 0 ? 0.53 : 0.5;  // gaps of 0.07 and 0.04; the skin is 0.05
+    const double width = i % 7 == 0 ? 0.565 : 0.53;  // gaps of 0.04 and 0.005; the skin is 0.053, the margin 0.011
     const Vec2 at{0.57 * (i % 10), 0.57 * (i / 10)};
     polygons.push_back({at, at + Vec2{width, 0}, at + Vec2{width, width}, at + Vec2{0, width}});
   }
@@ -300,8 +300,8 @@ TEST_CASE("renew_pairs misses no close pair while the blocks move") {
         state.displacement[i] += stride.shift * Vec2{unit(random), unit(random)};
         state.strain_part[i] += stride.strain * Mat2{unit(random), unit(random), unit(random), unit(random)};
       }
-      const auto pairs = renewed(s, kMargin, state);
-      const auto expected = close_now(s.blocks, state);
+      const auto pairs = renewed(s, state);
+      const auto expected = close_now(s.blocks, state, 0.0106);
       met += expected.size();
       CHECK(std::is_sorted(pairs.begin(), pairs.end()));
       CHECK(std::includes(pairs.begin(), pairs.end(), expected.begin(), expected.end()));
@@ -312,16 +312,17 @@ TEST_CASE("renew_pairs misses no close pair while the blocks move") {
   }
 }
 
-TEST_CASE("renew_pairs leaves out pairs that cannot move and renews for another margin") {
+TEST_CASE("renew_pairs leaves out pairs that cannot move and looks ahead as far as its blocks are fast") {
   Scene s = scene_of({kSquare, moved(kSquare, {1.04, 0}), moved(kSquare, {2.04, 0})});
   s.blocks.kind[0] = BlockKind::kFixed;
   s.blocks.kind[1] = BlockKind::kDriven;
   State state = start_state(s);
   using Pairs = std::vector<std::pair<int, int>>;
-  CHECK(renewed(s, kMargin, state) == Pairs{{1, 2}});
-  CHECK(renewed(s, kMargin, state) == Pairs{{1, 2}});
+  CHECK(renewed(s, state) == Pairs{{1, 2}});
+  CHECK(renewed(s, state) == Pairs{{1, 2}});
   CHECK(state.candidates.rebuilds == 1);
-  CHECK(renewed(s, 1.5, state) == Pairs{{0, 2}, {1, 2}});
+  state.rate[2].a = {300, 0};  // 0.3 m in a step
+  CHECK(renewed(s, state) == Pairs{{0, 2}, {1, 2}});
   CHECK(state.candidates.rebuilds == 2);
 }
 

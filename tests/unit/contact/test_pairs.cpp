@@ -61,9 +61,11 @@ Scene small_pile(unsigned seed) {
   return scene_of(stones);
 }
 
-int update(const Scene& scene, State& state, double margin = kMargin) {
-  renew_pairs(scene.blocks, scene.bonds, margin, Workers(), state);
-  return update_contacts(scene.blocks, scene.bonds, scene.layout, margin, 1e-3, Workers(), state).searched;
+int update(const Scene& scene, State& state) {
+  const LookAhead ahead{1e-3, &state.rate};
+  renew_pairs(scene.blocks, scene.bonds, scene.model.joints, ahead, Workers(), state);
+  return update_contacts(scene.blocks, scene.bonds, scene.layout, scene.model.joints, ahead, Workers(), state)
+      .searched;
 }
 
 // The same with nothing known before.
@@ -234,7 +236,7 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   CHECK(all == static_cast<int>(state.pairs.size()));
   const auto first = keys_of(state.contacts);
   CHECK(update(scene, state) == 0);
-  CHECK_FALSE(renew_pairs(scene.blocks, scene.bonds, kMargin, Workers(), state));
+  CHECK_FALSE(renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state));
   for (Vec2& d : state.displacement) d += Vec2{0.25, -0.5};
   CHECK(update(scene, state) == 0);
   CHECK(keys_of(state.contacts) == first);
@@ -247,13 +249,18 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   CHECK(its_own >= 3);
 }
 
-TEST_CASE("another margin seeks everything and keeps memory") {
+TEST_CASE("a pair that comes together faster than it looks ahead is sought anew, and keeps its memory") {
   const Scene scene = small_wall(5, 4);
   State state = start_state(scene);
   update(scene, state);
   remember_all(state);
   const State before = state;
-  CHECK(update(scene, state, 2 * kMargin) == static_cast<int>(state.pairs.size()));
+  const size_t fast = static_cast<size_t>(scene.blocks.count) - 2;
+  state.rate[fast].a = {0, 20};  // 20 mm in a step, the margin is 14 mm
+  int its_own = 0;
+  for (const ContactPair& p : state.pairs)
+    its_own += static_cast<size_t>(p.a) == fast || static_cast<size_t>(p.b) == fast;
+  CHECK(update(scene, state) == its_own);
   REQUIRE(keys_of(state.contacts) == keys_of(before.contacts));
   for (size_t i = 0; i < state.contacts.size(); ++i) {
     CHECK(state.contacts[i].force == before.contacts[i].force);
@@ -261,21 +268,32 @@ TEST_CASE("another margin seeks everything and keeps memory") {
   }
 }
 
+TEST_CASE("how far a pair looks ahead is a matter of its two blocks") {
+  const Scene scene = small_wall(5, 4);
+  State state = start_state(scene);
+  const size_t bullet = 3;
+  state.rate[bullet].a = {100, 0};
+  update(scene, state);
+  int others = 0;
+  for (const ContactPair& p : state.pairs) {
+    const bool its_own = static_cast<size_t>(p.a) == bullet || static_cast<size_t>(p.b) == bullet;
+    const double rest = 0.02 * std::min(scene.blocks.size[static_cast<size_t>(p.a)],
+                                        scene.blocks.size[static_cast<size_t>(p.b)]);
+    CHECK((its_own ? p.margin > 10 * rest : p.margin == rest));
+    others += !its_own;
+  }
+  CHECK(others > 20);
+}
+
 TEST_CASE("`reuse` is never more than a quarter of the margin") {
-  for (const double margin : {1e-3, 4e-3, 0.05}) {
-    CAPTURE(margin);
-    for (const bool wall : {true, false}) {
-      const Scene scene = wall ? small_wall(5, 4) : small_pile(2);
-      State state = start_state(scene);
-      std::mt19937 random(4);
-      for (int step = 0; step < 10; ++step) {
-        update(scene, state, margin);
-        for (const ContactPair& p : state.pairs) {
-          CHECK(p.reuse >= 0);
-          CHECK(p.reuse <= 0.25 * margin);
-        }
-        move_at_random(random, 1e-3, state);
-      }
+  for (const bool wall : {true, false}) {
+    const Scene scene = wall ? small_wall(5, 4) : small_pile(2);
+    State state = start_state(scene);
+    std::mt19937 random(4);
+    for (int step = 0; step < 10; ++step) {
+      update(scene, state);
+      for (const ContactPair& p : state.pairs) CHECK(p.reuse <= 0.25 * p.margin);
+      move_at_random(random, 1e-3, state);
     }
   }
 }
@@ -378,10 +396,11 @@ TEST_CASE("the list holds all pairs that are closer than the margin, however blo
   State state = start_state(scene);
   int rebuilds = 0;
   for (int step = 0; step < 60; ++step) {
-    rebuilds += renew_pairs(scene.blocks, scene.bonds, kMargin, Workers(), state);
+    rebuilds += renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state);
     std::vector<Box> boxes;
     for (int i = 0; i < scene.blocks.count; ++i) boxes.push_back(bounding_box(corners_now(scene, state, i)));
-    for (const auto& [a, b] : close_pairs(boxes, kMargin)) CHECK(pair_of(state, a, b) != nullptr);
+    // of stones, which all are as large as each other
+    for (const auto& [a, b] : close_pairs(boxes, 0.015)) CHECK(pair_of(state, a, b) != nullptr);
     move_at_random(random, 5e-3, state);
   }
   CHECK(rebuilds == state.candidates.rebuilds);

@@ -19,20 +19,32 @@ void each_field(ContactKey& k, auto& f) {
   f(block_a), f(vertex), f(block_b), f(edge);
 }
 
+void each_field(FaceEnd& e, auto& f) {
+  auto& [side_lo, side_hi, end] = e;
+  f(side_lo), f(side_hi), f(end);
+}
+
 void each_field(Contact& c, auto& f) {
-  auto& [key, joint, partner, memory, length, force, stretch, anchor, slip, slip_signed, touched] = c;
+  auto& [key, joint, partner, memory, touched, face, allowed, length, force, stretch, anchor, slip, slip_signed] = c;
   f(key), f(joint), f(partner), f(memory), f(length), f(force), f(stretch), f(anchor), f(slip);
-  f(slip_signed), f(touched);
+  f(slip_signed), f(touched), f(face), f(allowed);
 }
 
 void each_field(ContactPair& p, auto& f) {
-  auto& [a, b, begin, count, face, from_start, shares_face, reuse, arm, turn] = p;
+  auto& [a, b, begin, count, face, from_start, shares_face, reuse, margin, arm, turn, cover, cover_place,
+         cover_turn] = p;
   f(a), f(b), f(begin), f(count), f(face), f(from_start), f(shares_face), f(reuse), f(arm), f(turn);
+  f(margin), f(cover), f(cover_place), f(cover_turn);
+}
+
+void each_field(Neighbours& n, auto& f) {
+  auto& [begin, block] = n;
+  f(begin), f(block);
 }
 
 void each_field(CandidateList& c, auto& f) {
-  auto& [displacement, strain_part, skin, margin, rebuilds] = c;
-  f(displacement), f(strain_part), f(skin), f(margin), f(rebuilds);
+  auto& [displacement, strain_part, skin, reach, neighbours, rebuilds] = c;
+  f(displacement), f(strain_part), f(skin), f(reach), f(neighbours), f(rebuilds);
 }
 
 void each_field(FaceState& s, auto& f) {
@@ -89,7 +101,7 @@ struct EachNumber {
     } else if constexpr (requires { value.resize(2); }) {
       if (value.empty()) value.resize(2);
       for (auto& element : value) (*this)(element);
-    } else if constexpr (std::is_array_v<T>) {
+    } else if constexpr (std::is_array_v<T> || requires { value.fill(value[0]); }) {
       for (auto& element : value) (*this)(element);
     } else {
       static_assert(std::is_trivially_copyable_v<T> && alignof(T) == alignof(double));

@@ -35,8 +35,8 @@ struct BlockSet {
   std::vector<double> polar_inertia;  // [count] trace of S0: moment of inertia of a rigid block [kg m2]
   std::vector<PlaneModuli> moduli;    // [count]
   std::vector<double> size;           // [count] square root of the area [m]
-  std::vector<double> thinness;       // [count] mean thickness across the longest extent: area / (2 radius) [m]
-  std::vector<double> radius;         // [count] distance of the farthest corner from the centroid [m]
+  std::vector<double> thinness;  // [count] mean thickness across the longest extent: area / (2 radius) [m]
+  std::vector<double> radius;    // [count] distance of the farthest corner from the centroid [m]
 
   std::vector<int> vertex_begin;  // [count + 1]
   std::vector<Vec2> arm;          // [n_vertices] reference arms X from the centroid, counter-clockwise [m]

@@ -48,8 +48,8 @@ struct ContactKey {
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 
-/// An interface is two antiparallel sides in touch; each of its two ends is one place, whichever block's corner
-/// lies there now. Sides are named by their first edges.
+/// An interface is two antiparallel sides in touch; each of its two ends is one place, whichever block's
+/// corner lies there now. Sides are named by their first edges.
 struct FaceEnd {
   int side_lo = -1, side_hi = -1;  // of the lower and the higher block id; -1: no end of an interface
   int end = 0;                     // 0: the first one along the lower block's side
@@ -58,8 +58,8 @@ struct FaceEnd {
 };
 
 /// One contact point and what it carries to the next step. Its memory belongs to its place: the end of an
-/// interface keeps it when another corner comes to lie there. A corner that passed on to another edge keeps its
-/// force but not its anchor.
+/// interface keeps it when another corner comes to lie there. A corner that passed on to another edge keeps
+/// its force but not its anchor.
 struct Contact {
   ContactKey key;
   enum Memory : char { kNone, kPassed, kWhole };
@@ -67,10 +67,10 @@ struct Contact {
   int joint = -1;        // -1: hard and frictionless
   int16_t partner = -1;  // the other end of its face: its place in the list of the pair, -1: none
   Memory memory = kNone;
-  bool touched = false;           // the two have been in touch here
+  bool touched = false;  // the two have been in touch here
   FaceEnd face;
   double allowed = 0;  // [m] overlap it was born with and may keep for now, as a gap it is counted from
-  double length = 0;              // [m] half that face
+  double length = 0;   // [m] half that face
   std::array<double, 2> force{};  // normal, tangential [N]
   double stretch = 0;             // elastic slip [m]
   double anchor = 0;              // slip coordinate at which it sticks [m]; NaN: it slid
@@ -87,10 +87,10 @@ struct ContactPair {
   // Joints carry the stress of the ground between blocks that share a face since the first step, and where
   // blocks that were near each other then come to share one.
   bool from_start = false, shares_face = false;
-  double reuse = -1;   // [m]; < 0: not sought yet
-  double margin = 0;   // [m] gaps up to which they were sought
-  Vec2 arm;            // reference arm, on the larger block, of the centroid of the smaller one then
-  Mat2 turn;           // F of the larger block, inverted, times F of the smaller one then
+  double reuse = -1;  // [m]; < 0: not sought yet
+  double margin = 0;  // [m] gaps up to which they were sought
+  Vec2 arm;           // reference arm, on the larger block, of the centroid of the smaller one then
+  Mat2 turn;          // F of the larger block, inverted, times F of the smaller one then
   // third blocks that cover sides of the two, and how they lay beside block a then; -1: none
   std::array<int, 2> cover{-1, -1};
   std::array<Vec2, 2> cover_place{};
@@ -112,7 +112,8 @@ struct Neighbours {
 struct CandidateList {
   std::vector<Vec2> displacement;
   std::vector<Mat2> strain_part;
-  std::vector<double> skin, reach;  // [count] how far a block may move, and look, before a new list is due [m]
+  std::vector<double> skin,
+      reach;  // [count] how far a block may move, and look, before a new list is due [m]
   Neighbours neighbours;
   int rebuilds = 0;
 };
@@ -144,6 +145,16 @@ struct WorkDone {
     return loads + supports + boundary + bonds + joints + contact_closing + friction + damping + bolts +
            implicit;
   }
+};
+
+/// How a static stage comes to rest, looked at every 250 steps.
+struct RestWatch {
+  int64_t steps = 0;  // since the stage began
+  double best =
+      0;  // least unbalanced or velocity left, over what is asked for, since the last look; 0: none yet
+  double before = 0;   // the same up to the last look
+  double sharper = 1;  // share of the solver's tolerance to which steps are solved
+  int stuck = 0;       // looks in a row, at the sharpest, without any progress
 };
 
 struct State {
@@ -183,6 +194,7 @@ struct State {
   WorkDone work;               // through the middle of the step before
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
   double largest_kinetic = 0;  // since the start of the stage [J]
+  RestWatch rest;
 };
 
 /// T0 of block i [Pa].

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/joint_state.h"
@@ -10,17 +11,22 @@ namespace talus {
 
 namespace {
 
-// Tributary length of a hard contact with shear stiffness that is no end of a face, as share of the smaller block.
+// Tributary length of a hard contact with shear stiffness that is no end of a face, as share of the smaller
+// block.
 constexpr double kCornerLength = 0.02;
 
-// Least closed part, as share of an interface or of the smaller block: a row with no stiffness at all has no meaning.
+// Least closed part, as share of an interface or of the smaller block: a row with no stiffness at all has no
+// meaning.
 constexpr double kLeastShare = 1e-9;
+
+// Overlaps below this share of the thinner block are not measured against it.
+constexpr double kNoticed = 0.01;
 
 // Contacts to a chunk.
 constexpr size_t kGrain = 1024;
 
-// What an overlap that a point was born with loses in a step: a thousandth of it, at most this share of the smaller
-// block. Pushed out at once it would leave with the speed of overlap over time step.
+// What an overlap that a point was born with loses in a step: a thousandth of it, at most this share of the
+// smaller block. Pushed out at once it would leave with the speed of overlap over time step.
 constexpr double kPushedOut = 1e-3, kMostPushedOut = 1e-7;
 
 // What is left of it and forgotten, as share of the smaller block.
@@ -52,15 +58,15 @@ double off_anchor(const Contact& c, double slip) {
 // A contact point of a pair on its way to a row.
 struct Point {
   CornerEdge over;
-  Vec2 b0, edge;         // of the edge, reference
-  double slip = 0;       // coordinate along the tangent
-  Vec2 closure;          // by the stress of the ground
-  double gap = 0;        // less the rise [m]
+  Vec2 b0, edge;              // of the edge, reference
+  double slip = 0;            // coordinate along the tangent
+  Vec2 closure;               // by the stress of the ground
+  double gap = 0;             // less the rise [m]
   std::array<double, 2> u{};  // velocity half a step ago, normal and tangential
 };
 
-// The part of an interface that is closed, or is going to be in this step: from one end on, as share of its length.
-// 1: all of it, or nothing yet.
+// The part of an interface that is closed, or is going to be in this step: from one end on, as share of its
+// length. 1: all of it, or nothing yet.
 double closed_share(double gap, double other, double gap_then, double other_then) {
   if (gap >= 0 && other >= 0) gap = gap_then, other = other_then;
   if ((gap < 0) == (other < 0)) return 1;
@@ -68,7 +74,8 @@ double closed_share(double gap, double other, double gap_then, double other_then
   return std::max(-least / (most - least), kLeastShare);
 }
 
-// The closed part of a corner that has gone into an edge: Winkler's foundation under its two sides (theory 4.6).
+// The closed part of a corner that has gone into an edge: Winkler's foundation under its two sides
+// (theory 4.6).
 struct Toe {
   double length = 0;   // closed, along the edge [m]
   double closure = 0;  // mean of it [m]
@@ -80,8 +87,15 @@ class ContactRows {
   ContactRows(const BlockSet& blocks, const Model& model, const State& state,
               const std::vector<BlockRate>& before, const RowTiming& timing, size_t first, RowSet& rows,
               std::vector<ContactPlace>& place)
-      : blocks_(blocks), model_(model), state_(state), before_(before), timing_(timing), first_(first),
-        rows_(rows), place_(place), joints_(model.joints) {
+      : blocks_(blocks),
+        model_(model),
+        state_(state),
+        before_(before),
+        timing_(timing),
+        first_(first),
+        rows_(rows),
+        place_(place),
+        joints_(model.joints) {
     joints_.emplace_back();  // the last: neither friction nor stiffness
     for (const JointProperty& j : joints_) friction_.push_back(std::tan(j.friction_after()));
   }
@@ -96,7 +110,8 @@ class ContactRows {
       const size_t other = p.partner < 0 ? k : static_cast<size_t>(p.partner) - first_ - at;
       if (other < k) continue;
       const size_t i = first_ + at + k, j = first_ + at + other;
-      guess_compliant({&p, &rows_.points[j]}, {points[k].u, points[other].u}, {&rows_.impulse[i], &rows_.impulse[j]});
+      guess_compliant({&p, &rows_.points[j]}, {points[k].u, points[other].u},
+                      {&rows_.impulse[i], &rows_.impulse[j]});
     }
   }
 
@@ -143,7 +158,8 @@ class ContactRows {
     const JointProperty& property = joints_[joint];
     // only what was never disturbed sticks with the stress of the ground
     const double elastic = state_.step == 0 ? q.closure.y : 0;
-    place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair)};
+    place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair),
+                 closed_part(pair, q)};
 
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
@@ -154,7 +170,8 @@ class ContactRows {
     p.lower = 0, p.cohesion = 0;
     const bool soft = property.normal_stiffness > 0, springs = soft || property.shear_stiffness > 0;
     const double size = size_of(pair), slop = model_.contact.slop * size;
-    p.row[0].bias = soft ? (q.gap + q.closure.x) / timing_.dt : hard_bias(q.gap + c.allowed, slop, timing_.dt);
+    p.row[0].bias =
+        soft ? (q.gap + q.closure.x) / timing_.dt : hard_bias(q.gap + c.allowed, slop, timing_.dt);
     // what a broken face keeps, end by end, while it is in touch
     if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b)) {
       const double impulse = c.length * blocks_.thickness * timing_.dt_kick;
@@ -180,7 +197,9 @@ class ContactRows {
       double length = c.length;
       if (partner >= 0) {
         p.partner = static_cast<int>(first_) + pair.begin + partner;
-        if (soft && p.lower == 0) length *= close_face(q, points[static_cast<size_t>(partner)], c, state_.contacts[at + static_cast<size_t>(partner)], p);
+        if (soft && p.lower == 0)
+          length *= close_face(q, points[static_cast<size_t>(partner)], c,
+                               state_.contacts[at + static_cast<size_t>(partner)], p);
       } else if (soft && p.lower == 0 && c.length == 0) {
         length = close_corner(q, c, size, p);
       } else if (c.length == 0) {
@@ -192,8 +211,32 @@ class ContactRows {
     rows_.impulse[first_ + i] = guess;
   }
 
-  // Where only one end of an interface is closed the other end of its row couple is the end of the closed part:
-  // W = kn t/2 times the integral of closure^2 has the slope and the tangent of that part. Returns its share.
+  double closed_part(const ContactPair& pair, const Point& q) const {
+    double share = 0;
+    for (const int block : {pair.a, pair.b}) {
+      const auto k = static_cast<size_t>(block);
+      // below this nobody asks: the thinnest there can be
+      if (-q.gap > kNoticed * blocks_.thinness[k])
+        share = std::max(share, -q.gap / thickness_along(block, q.over.normal));
+    }
+    return share;
+  }
+
+  // Mean thickness of a block: its area over its extent across `normal` [m].
+  double thickness_along(int block, Vec2 normal) const {
+    const auto k = static_cast<size_t>(block);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int v = 0; v < blocks_.vertex_count(block); ++v) {
+      const Vec2 X = blocks_.corner(block, v);
+      const double at = cross(normal, X + state_.strain_part[k] * X);
+      least = std::min(least, at), most = std::max(most, at);
+    }
+    return blocks_.size[k] * blocks_.size[k] / (most - least);
+  }
+
+  // Where only one end of an interface is closed the other end of its row couple is the end of the closed
+  // part: W = kn t/2 times the integral of closure^2 has the slope and the tangent of that part. Returns its
+  // share.
   double close_face(Point& q, const Point& other, const Contact& c, const Contact& far, PointRows& p) const {
     const double gap = q.gap + q.closure.x, away = other.gap + other.closure.x;
     const PointRows there = arms_of(other, far);
@@ -216,7 +259,8 @@ class ContactRows {
   PointRows arms_of(const Point& q, const Contact& c) const {
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a = acting_arm(blocks_, state_, static_cast<size_t>(p.block_a), blocks_.corner(p.block_a, c.key.vertex));
+    p.arm_a =
+        acting_arm(blocks_, state_, static_cast<size_t>(p.block_a), blocks_.corner(p.block_a, c.key.vertex));
     p.arm_b = acting_arm(blocks_, state_, static_cast<size_t>(p.block_b),
                          q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
     p.normal = q.over.normal;

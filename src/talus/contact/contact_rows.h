@@ -14,6 +14,8 @@ struct ContactPlace {
   double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge; of a new
                     // contact less the elastic slip by the stress of the ground
   double size = 0;  // of the smaller block [m]
+  double closed =
+      0;  // overlap less the rise as share of the mean thickness, along the normal, of the thinner block
 };
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has

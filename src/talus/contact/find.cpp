@@ -20,11 +20,12 @@ constexpr double kEntrance = 0.02;
 // or the side belongs to two sources. It enters nothing; the corner across does.
 constexpr double kFlat = 1e-4;
 
-// Stretches of two sides longer than this many times the size of one place, and this many times the overlap, are
-// interfaces whatever lies beside them.
+// Stretches of two sides longer than this many times the size of one place, and this many times the overlap,
+// are interfaces whatever lies beside them.
 constexpr double kLongStretch = 100, kLongerThanDeep = 20;
 
-// Gaps beside a side up to the depth of the overlap are none, but never wider than this share of the smaller block.
+// Gaps beside a side up to the depth of the overlap are none, but never wider than this share of the smaller
+// block.
 constexpr double kMostReach = 0.05;
 
 }  // namespace
@@ -67,8 +68,7 @@ bool ContactSearch::Outline::holds(Vec2 place, double tolerance) const {
     const auto v = static_cast<size_t>(k), w = static_cast<size_t>(after(k));
     const Vec2 p = corner[v], q = corner[w];
     if (tolerance > 0 && distance_to_segment(place, p, q) <= tolerance) return true;
-    if ((p.y > place.y) != (q.y > place.y) &&
-        place.x < p.x + (place.y - p.y) / (q.y - p.y) * (q.x - p.x))
+    if ((p.y > place.y) != (q.y > place.y) && place.x < p.x + (place.y - p.y) / (q.y - p.y) * (q.x - p.x))
       inside = !inside;
   }
   return inside;
@@ -138,8 +138,8 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
   return nearer;
 }
 
-// Whether x is the way out rather than y: what was in touch before, else the larger gap, or of nearly equal ones
-// what is coming.
+// Whether x is the way out rather than y: what was in touch before, else the larger gap, or of nearly equal
+// ones what is coming.
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
   if (x.held != y.held) return x.held;
   found_.clearance = std::min(found_.clearance, std::abs(std::abs(x.point.gap - y.point.gap) - same_));
@@ -150,7 +150,8 @@ bool ContactSearch::is_better(const Hit& x, const Hit& y) {
   return x.point.key < y.point.key;
 }
 
-// Whether corner v of a bore on the straight side of b's edge e before, with a force or an overlap that it keeps.
+// Whether corner v of a bore on the straight side of b's edge e before, with a force or an overlap that it
+// keeps.
 bool ContactSearch::was_in_touch(const Outline& a, int v, const Outline& b, int e) const {
   for (const Contact& c : range_.known) {
     if (c.key.block_a != a.block || c.key.vertex != v || c.memory == Contact::kNone) continue;
@@ -203,9 +204,9 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
   return false;
 }
 
-// Whether a third block fills the place through which a hit would be pushed out: beside the side of b, or beside
-// the antiparallel side of a, at the middle of the stretch that they share. Gaps narrower than `reach` hide
-// nothing.
+// Whether a third block fills the place through which a hit would be pushed out: beside the side of b, or
+// beside the antiparallel side of a, at the middle of the stretch that they share. Gaps narrower than `reach`
+// hide nothing.
 bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Outline& a, const Outline& b,
                                Vec2 shift, const Hit& h, double reach) {
   if (range_.neighbours == nullptr) return false;
@@ -241,7 +242,8 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const auto ke = static_cast<size_t>(e);
       // far from the line of the edge, as most are
       const double off = -cross(b.edge[ke], place - b.corner[ke]);
-      if (off > (range_.margin + same_) * b.length[ke] || off < -(range_.depth + same_) * b.length[ke]) continue;
+      if (off > (range_.margin + same_) * b.length[ke] || off < -(range_.depth + same_) * b.length[ke])
+        continue;
       const CornerEdge c = corner_over_edge(blocks, s, a.block, v, b.block, e);
       if (c.gap > range_.margin || c.gap < -range_.depth) continue;
       // beyond a convex end lies free space; beyond an end in a notch lies the block itself, and a corner

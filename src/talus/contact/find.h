@@ -36,9 +36,9 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int bloc
 
 /// How far, how deep and in whose company the points of a pair are sought.
 struct SearchRange {
-  double margin = 0;      // gaps up to this are seen [m]
-  double depth = 0;       // overlaps up to this are seen [m]
-  double look_ahead = 0;  // [s] what comes together within this time is seen before it does
+  double margin = 0;                       // gaps up to this are seen [m]
+  double depth = 0;                        // overlaps up to this are seen [m]
+  double look_ahead = 0;                   // [s] what comes together within this time is seen before it does
   const Neighbours* neighbours = nullptr;  // none: the two are alone
   std::span<const Contact> known;          // contact points of the pair before
 };
@@ -46,9 +46,10 @@ struct SearchRange {
 /// What a search found, and what could change it.
 struct Found {
   std::vector<ContactPoint> points;  // in the order of their keys
-  double clearance = 0;    // the least distance, along an edge or between gaps, to another outcome [m]
+  double clearance = 0;      // the least distance, along an edge or between gaps, to another outcome [m]
   bool by_velocity = false;  // velocities had a say: the outcome holds for this step only
-  std::vector<int> cover;    // third blocks that cover a side here: were they to leave, there would be more points
+  std::vector<int>
+      cover;  // third blocks that cover a side here: were they to leave, there would be more points
 };
 
 /// Looks for contact points; keeps its memory from pair to pair.
@@ -58,7 +59,8 @@ class ContactSearch {
   ///  - A corner acts on an edge only above the edge itself (never its extension), and only where its own two
   ///    edges do not lie behind the edge (entrance condition).
   ///  - A flat corner (turning by less than 1e-4) enters nothing: the edges beside it are one straight side.
-  ///  - A side that a third block covers is no way out: neither a corner alone nor a stretch of two sides that
+  ///  - A side that a third block covers is no way out: neither a corner alone nor a stretch of two sides
+  ///  that
   ///    is not much longer than the overlap bears there.
   ///  - What was in touch before stays on its side until it opens or passes the end.
   ///  - Else a corner near a convex corner of the other block obeys one edge: the one with the larger gap;

@@ -17,8 +17,8 @@ namespace {
 // Skin of a block in the list of pairs, as share of its size, or of the median one where that is smaller.
 constexpr double kSkin = 0.1;
 
-// Contact points are sought this far ahead, as share of the smaller block; a point further away than the two come
-// together in one step has no force and costs only its row.
+// Contact points are sought this far ahead, as share of the smaller block; a point further away than the two
+// come together in one step has no force and costs only its row.
 constexpr double kMarginShare = 0.02;
 
 // Overlaps up to this share of the thinner of two blocks are seen.
@@ -187,7 +187,8 @@ double off_now(const BlockSet& blocks, const State& s, const Contact& c) {
 }
 
 // Which known contact a found point goes on from: the one with its key, else the one at its end of the same
-// interface, else the one of the same corner that has passed on from another edge, else one at the same place.
+// interface, else the one of the same corner that has passed on from another edge, else one at the same
+// place.
 struct Origin {
   const Contact* contact = nullptr;
   enum Kind { kNothing, kKey, kPlace, kPassed } kind = kNothing;
@@ -195,7 +196,8 @@ struct Origin {
 
 class Memory {
  public:
-  Memory(const BlockSet& blocks, const State& s, const ContactPair& pair, const std::vector<ContactPoint>& found)
+  Memory(const BlockSet& blocks, const State& s, const ContactPair& pair,
+         const std::vector<ContactPoint>& found)
       : blocks_(blocks),
         state_(s),
         pair_(pair),
@@ -211,8 +213,8 @@ class Memory {
       for (const Contact& c : known_)
         if (c.memory != Contact::kNone && c.face == point.face && !stays(c)) return {&c, Origin::kPlace};
     for (const Contact& c : known_)
-      if (c.memory != Contact::kNone && c.key.block_a == point.key.block_a && c.key.vertex == point.key.vertex &&
-          !stays(c))
+      if (c.memory != Contact::kNone && c.key.block_a == point.key.block_a &&
+          c.key.vertex == point.key.vertex && !stays(c))
         return {&c, Origin::kPassed};
     const Vec2 place = place_of(blocks_, state_, pair_.a, point.key);
     for (const Contact& c : known_)
@@ -258,7 +260,8 @@ Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& p
   if (kind == Origin::kKey) {
     c.anchor = from->anchor, c.memory = from->memory;
   } else if (kind == Origin::kPlace && from->memory == Contact::kWhole) {
-    // counted from another corner now, and as far from where it sticks as before; the same number from either block
+    // counted from another corner now, and as far from where it sticks as before; the same number from either
+    // block
     c.anchor = point.slip - off_now(blocks, s, *from), c.memory = Contact::kWhole;
   }
   return c;
@@ -328,7 +331,8 @@ class Updater {
       if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints_[static_cast<size_t>(c.joint)], c.slip));
     }
     return 2 * ahead_.dt *
-               closing_speed(blocks_, *ahead_.before, static_cast<size_t>(pair.a), static_cast<size_t>(pair.b)) +
+               closing_speed(blocks_, *ahead_.before, static_cast<size_t>(pair.a),
+                             static_cast<size_t>(pair.b)) +
            2 * rise;
   }
 
@@ -362,10 +366,11 @@ class Updater {
       keep_pose(blocks_, s, pair);
       keep_cover(s, sought.cover, pair);
       // what velocities decided is asked again in the next step
-      pair.reuse = sought.by_velocity || sought.cover.size() > pair.cover.size()
-                       ? -1
-                       : std::min(0.25 * pair.margin, std::max(0.5 * kSamePlace * size,
-                                                               std::min(0.5 * sought.clearance, kReuse * size)));
+      pair.reuse =
+          sought.by_velocity || sought.cover.size() > pair.cover.size()
+              ? -1
+              : std::min(0.25 * pair.margin,
+                         std::max(0.5 * kSamePlace * size, std::min(0.5 * sought.clearance, kReuse * size)));
       if (found.size() > kMostPoints)
         throw NumericalError(
             fmt::format("blocks \"{}\" and \"{}\" touch at {} points at t = {:.9g} s; at most {} can "

@@ -11,13 +11,13 @@ namespace talus {
 
 /// How far the blocks of a step look ahead.
 struct LookAhead {
-  double dt = 0;                                 // length of the step [s]
+  double dt = 0;                                   // length of the step [s]
   const std::vector<BlockRate>* before = nullptr;  // rates of the blocks half a step ago
 };
 
-/// Renews state.pairs when some block has moved half its skin since they were made, or looks further ahead than
-/// then: all pairs (a < b), at least one moving freely, that may come into touch and are not glued for good.
-/// Pairs and contacts known before stay. Returns whether it did.
+/// Renews state.pairs when some block has moved half its skin since they were made, or looks further ahead
+/// than then: all pairs (a < b), at least one moving freely, that may come into touch and are not glued for
+/// good. Pairs and contacts known before stay. Returns whether it did.
 bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state);
 
@@ -26,10 +26,11 @@ struct SearchReport {
 };
 
 /// Brings the contact points of all pairs up to date (ContactSearch::touch): seeks them anew where the blocks
-/// of a pair have moved against each other, or against a third block that covers their sides, by more than its
-/// `reuse`, or look further ahead; follows the known ones elsewhere. How far ahead points are sought is a matter of
-/// the two blocks: 2 % of the smaller one, or what they come together by in two steps. Memory passes by place: to
-/// the same key, to the end of the same interface, to a corner that passed on to another edge of the same block.
+/// of a pair have moved against each other, or against a third block that covers their sides, by more than
+/// its `reuse`, or look further ahead; follows the known ones elsewhere. How far ahead points are sought is a
+/// matter of the two blocks: 2 % of the smaller one, or what they come together by in two steps. Memory
+/// passes by place: to the same key, to the end of the same interface, to a corner that passed on to another
+/// edge of the same block.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
                              const std::vector<JointProperty>& joints, const LookAhead& ahead,
                              const Workers& workers, State& state);

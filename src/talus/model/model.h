@@ -197,7 +197,9 @@ struct StageInput {
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;
-  bool implicit = false;         // block-implicit elasticity
+  bool implicit = false;  // block-implicit elasticity
+  bool elasticity_by_contact =
+      false;                     // implicit where a hard contact with friction can slide (set by build_scene)
   double damping_mass = 0;       // [1/s]
   double damping_stiffness = 0;  // [s]
   double damping_local = 0;      // [-]

@@ -63,16 +63,22 @@ SectionSpec stage_section() {
         .default_text = "\"auto\"",
         .doc = "Time step, rounded down so that the stage ends on a step. \"auto\": `safety` times the "
                "stable limit "
-               "of the stiffest block."},
+               "of the stiffest block; where no block deforms the least of 0.02 sqrt(h/g), 0.1 h/v and 1/50 "
+               "of the "
+               "shortest period of the histories, h the least thickness of a block, v the fastest motion "
+               "given."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",
         .doc = "With \"auto\": share of the stable limit."},
        {.name = "elasticity",
         .type = K::kChoice,
-        .default_text = "\"explicit\"",
-        .choices = {"explicit", "implicit"},
+        .default_text = "\"auto\"",
+        .choices = {"auto", "explicit", "implicit"},
         .doc =
+            "`auto`: implicit where a deformable block can slide on a hard contact with friction, else "
+            "explicit, and "
+            "explicit with `safety` or `moment_clamp`. "
             "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "
             "is part of its mass matrix (theory 4.9), so that no block limits the time step; \"auto\" is "
             "then the time in which a wave crosses two blocks of median size."},

@@ -21,9 +21,10 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
   finish();
   const StageInput& s = scene.model.stages[static_cast<size_t>(stage)];
   const bool at_rest = s.kind == StageKind::kStatic;
-  fmt::print(out_, "stage {}/{} \"{}\" ({}): {:g} s in {}{} steps of {:.4g} s\n", stage + 1,
-             scene.model.stages.size(), s.name, at_rest ? "static" : "dynamic", s.duration,
-             at_rest ? "at most " : "", plan.steps, plan.dt);
+  fmt::print(out_, "stage {}/{} \"{}\" ({}{}): {:g} s in {}{} steps of {:.4g} s\n", stage + 1,
+             scene.model.stages.size(), s.name, at_rest ? "static" : "dynamic",
+             s.implicit ? ", implicit elasticity" : "", s.duration, at_rest ? "at most " : "", plan.steps,
+             plan.dt);
   std::fflush(out_);
   stage_wall_ = last_shown_ = wall_now();
   stage_step_ = 0;
@@ -85,6 +86,8 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
         0.0 - r.energy.work.contact_closing);
   }
+  if (r.closed_share > 0.05)
+    out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);
   const Layout& cut = scene.layout;
   if (cut.slivers_merged + cut.slivers_deleted + cut.slivers_kept > 0)
     out += fmt::format("  slivers         {} merged, {} deleted, {} kept when the blocks were cut\n",

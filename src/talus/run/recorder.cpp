@@ -410,6 +410,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
       {"contact_error_at", r.worst_error_row}};
   const Energy& e = r.energy;
   j["energy [J]"] = {{"kinetic", e.kinetic},
+                     {"between_steps", e.between},
                      {"strain", e.strain},
                      {"gravity_work", e.gravity},
                      {"load_work", e.work.loads},

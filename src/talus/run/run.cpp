@@ -16,6 +16,19 @@ namespace talus {
 
 namespace {
 
+// Overlap of a contact, as share of the thinner block, at which a run ends.
+constexpr double kMostClosed = 0.25;
+
+// Steps of a static stage between looks at its progress; progress below which the solver is asked for more,
+// and below which there is none; sharpest tolerance, as share of the solver's; looks without any before it is
+// told.
+constexpr int64_t kRestLook = 250;
+constexpr double kStalled = 0.8, kNoProgress = 0.98, kSharpest = 1e-4;
+constexpr int kMostStuck = 4;
+
+// Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.
+constexpr double kFarToGo = 1e-3;
+
 class Runner {
  public:
   Runner(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
@@ -58,6 +71,7 @@ class Runner {
     enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
+    state_.rest = {};
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {
       state_.displacement_start = state_.displacement;
@@ -106,9 +120,11 @@ class Runner {
         result_.interrupted = true;
         break;
       }
+      settings_.sharper = state_.rest.sharper;
       StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);
-      show({scene_, state_, work_, report, plan, index, n == 0, false});
+      // the instant at which a run fails is shown as its last
+      show({scene_, state_, work_, report, plan, index, n == 0, ends(report)});
       note(report);  // after the observers: a step that ends the run is seen too
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
       drift(scene_, settings_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_,
@@ -117,11 +133,12 @@ class Runner {
       state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
       last_ = report;
-      state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.kinetic);
+      state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
       if (stage.kind == StageKind::kStatic && is_at_rest(stage, report, n)) {
         out.at_rest = true;
         break;
       }
+      if (stage.kind == StageKind::kStatic && watch_rest(stage, report, plan, n)) break;
     }
     out.end = state_.time;
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
@@ -169,9 +186,66 @@ class Runner {
     }
     return fmt::format(
         "static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced force is "
-        "{:.3g} of the mean, and {:.3g} of the velocity is left; asked for is {:g}.{} Give a longer "
-        "duration, or look in steps.csv whether something slides or falls",
-        stage.name, stage.duration, out.steps, out.unbalanced, last_.speed_left, stage.unbalanced, where);
+        "{:.3g} of the mean, and {:.3g} of the velocity is left; asked for is {:g}.{} {}",
+        stage.name, out.end - out.begin, out.steps, out.unbalanced, last_.speed_left, stage.unbalanced, where,
+        why_no_rest(stage, out));
+  }
+
+  // What keeps a stage from resting, and the key to change.
+  std::string why_no_rest(const StageInput& stage, const StageResult& out) const {
+    const double dt = plans_[result_.stages.size() - 1].dt;
+    const size_t i = static_cast<size_t>(std::max(last_.worst_block, 0));
+    const double floor = scene_.blocks.mass[i] * last_.error.worst / (dt * dt);
+    if (last_.worst_block >= 0 && floor > 0.5 * last_.worst_force)
+      return fmt::format(
+          "That is what the solver leaves: an error of {:.2g} m in a step of {:.2g} s is a force of {:.2g} N "
+          "there. "
+          "Give the joints a stiffness, a smaller solver.tolerance with more solver.max_sweeps, or a larger "
+          "stage.{}.unbalanced",
+          last_.error.worst, dt, floor, stage.name);
+    const double left = stage.duration - (out.end - out.begin);
+    double farthest = 0;
+    for (size_t k = 0; k < state_.rate.size(); ++k)
+      farthest =
+          std::max(farthest, norm(state_.rate[k].a) * std::max(left, stage.duration) / scene_.blocks.size[k]);
+    if (farthest > kFarToGo)
+      return fmt::format(
+          "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
+          "duration of "
+          "the stage. Look at blocks_end.svg and slips.csv; if it is on its way to rest, give "
+          "stage.{}.duration more",
+          farthest, stage.name);
+    return fmt::format(
+        "Blocks ring against each other without going anywhere. Give stage.{0}.elasticity = \"implicit\" or "
+        "some "
+        "contact.alpha, or a larger stage.{0}.unbalanced",
+        stage.name);
+  }
+
+  bool ends(const StepReport& r) const {
+    return (r.failed && scene_.model.solver.stop_on_failure) || r.closed_share > kMostClosed;
+  }
+
+  // Where a static stage makes no progress its steps are solved more sharply: errors that the solver leaves
+  // are forces. Whether that has not helped either, and nothing is on its way anywhere.
+  bool watch_rest(const StageInput& stage, const StepReport& report, const StagePlan& plan, int64_t n) {
+    RestWatch& rest = state_.rest;
+    const double now = std::max(report.unbalanced, report.speed_left) / stage.unbalanced;
+    rest.best = rest.best > 0 ? std::min(rest.best, now) : now;
+    if (++rest.steps % kRestLook != 0) return false;
+    const bool stalled = rest.before > 0 && rest.best > kStalled * rest.before;
+    const bool none = rest.before > 0 && rest.best > kNoProgress * rest.before;
+    if (stalled && rest.sharper > kSharpest)
+      rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
+    else
+      rest.stuck = none ? rest.stuck + 1 : 0;
+    if (rest.before == 0 || rest.best < rest.before) rest.before = rest.best;
+    rest.best = 0;
+    if (rest.stuck < kMostStuck || !is_relaxed(stage, n)) return false;
+    const double left = plan.dt * static_cast<double>(plan.steps - n);
+    for (size_t k = 0; k < state_.rate.size(); ++k)
+      if (norm(state_.rate[k].a) * left > kFarToGo * scene_.blocks.size[k]) return false;
+    return true;
   }
 
   void show(const Instant& instant) {
@@ -184,17 +258,19 @@ class Runner {
   double speed_left(const StepReport& report, const StagePlan& plan) const {
     const double longer = std::max(1.0, plan.dt / plan.dt_bound);
     const double peak =
-        std::max({state_.largest_kinetic, report.energy.kinetic, report.nudge / (longer * longer)});
-    return peak > 0 ? std::sqrt(std::max(report.energy.kinetic, 0.0) / peak) : 0;
+        std::max({state_.largest_kinetic, report.energy.moving, report.nudge / (longer * longer)});
+    return peak > 0 ? std::sqrt(report.energy.moving / peak) : 0;
   }
 
   // Forces in balance is not enough: a block that swings through its rest position is in balance there.
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    const bool relaxed =
-        stage.relaxation.empty() ||
-        plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
-    return n >= 1 && relaxed && report.unbalanced <= stage.unbalanced &&
+    return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
            report.speed_left <= stage.unbalanced;
+  }
+
+  bool is_relaxed(const StageInput& stage, int64_t n) const {
+    return stage.relaxation.empty() ||
+           plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
   }
 
   // The last instant has its forces too, found on a copy so that the state stays between two steps.
@@ -224,6 +300,13 @@ class Runner {
     result_.energy = r.energy;
     result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));
     result_.largest_energy = std::max(result_.largest_energy, r.energy.largest());
+    if (r.closed_share > result_.closed_share) {
+      result_.closed_share = r.closed_share, result_.closed_time = state_.time;
+      result_.closed_row = closed_text(r);
+    }
+    if (r.closed_share > kMostClosed)
+      throw NumericalError(
+          fmt::format("step {} at t = {:.9g} s: {}", state_.step, state_.time, result_.closed_row));
     if (!r.failed) return;
     ++result_.failed_steps;
     if (scene_.model.solver.stop_on_failure) {
@@ -235,6 +318,27 @@ class Runner {
           "solver.on_failure = \"continue\" counts such steps instead of stopping",
           state_.step, state_.time, r.error.worst, r.solve.iterations, settings_.tolerance, r.worst));
     }
+  }
+
+  // How deep a contact has gone, where, and what would keep it from it.
+  std::string closed_text(const StepReport& r) const {
+    const auto row = static_cast<size_t>(r.closed_row);
+    const Contact& c = state_.contacts[row - work_.first_contact];
+    const auto a = static_cast<size_t>(c.key.block_a);
+    const Vec2 at =
+        scene_.blocks.centroid[a] + offset_now(state_, a, scene_.blocks.corner(c.key.block_a, c.key.vertex));
+    const JointProperty* joint = c.joint < 0 ? nullptr : &scene_.model.joints[static_cast<size_t>(c.joint)];
+    const std::string cure =
+        joint && joint->normal_stiffness > 0
+            ? fmt::format("normal_stiffness = {:.2g} Pa/m of joint \"{}\" would keep it at 1 %",
+                          joint->normal_stiffness * r.closed_share / 0.01, joint->name)
+            : "a smaller time step keeps hard contacts apart";
+    return fmt::format("{} at ({:.4g}, {:.4g}) has closed by {:.2g} % of the thinner block{}; {}",
+                       row_name(scene_, state_, work_, row), at.x, at.y, 100 * r.closed_share,
+                       r.closed_share > kMostClosed
+                           ? ", more than a quarter: the geometry is no longer that of the model"
+                           : "",
+                       cure);
   }
 
   Scene& scene_;

@@ -25,7 +25,9 @@ struct RunResult {
   int most_contacts = 0, most_iterations = 0, candidate_rebuilds = 0;
   double worst_error = 0, worst_error_time = 0;  // [m], [s]
   std::string worst_error_row;
-  double deepest_drift = 0;                          // [m] overlap of hard contacts
+  double deepest_drift = 0;                  // [m] overlap of hard contacts
+  double closed_share = 0, closed_time = 0;  // largest overlap, as share of the thinner block; when [s]
+  std::string closed_row;
   Energy energy;                                     // at the end
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;

@@ -11,7 +11,7 @@ namespace {
 
 // A field that is added to one of these and not saved would be lost: whoever adds one comes by here.
 static_assert(sizeof(Contact) == 104 && sizeof(ContactPair) == 192 && sizeof(FaceState) == 80 &&
-                  sizeof(WorkDone) == 80 && sizeof(State) == 816 && sizeof(BoltNode) == 56 &&
+                  sizeof(WorkDone) == 80 && sizeof(State) == 856 && sizeof(BoltNode) == 56 &&
                   sizeof(BoltSegment) == 72 && sizeof(BoltCrossing) == 120 && sizeof(Bolt) == 96,
               "a field was added: save it in exchange_state(), then correct the size here");
 
@@ -28,7 +28,8 @@ void exchange_contacts(Exchange& x, State& s) {
     field("face", p.face), field("from_start", p.from_start), field("shares_face", p.shares_face),
         field("reuse", p.reuse);
     field("margin", p.margin), field("arm", p.arm), field("turn", p.turn);
-    field("cover_0", p.cover[0]), field("cover_1", p.cover[1]), field("cover_place", p.cover_place), field("cover_turn", p.cover_turn);
+    field("cover_0", p.cover[0]), field("cover_1", p.cover[1]), field("cover_place", p.cover_place),
+        field("cover_turn", p.cover_turn);
   });
   x.each("state.contacts", s.contacts, [](auto& field, Contact& c) {
     field("block_a", c.key.block_a), field("vertex", c.key.vertex);
@@ -98,6 +99,9 @@ void exchange_state(Exchange& x, State& s) {
   x("state.displacement_start", s.displacement_start), x("state.strain_part_start", s.strain_part_start);
   x("state.work", s.work), x("state.energy_start", s.energy_start);
   x("state.largest_kinetic", s.largest_kinetic);
+  x("state.rest.steps", s.rest.steps), x("state.rest.best", s.rest.best),
+      x("state.rest.before", s.rest.before);
+  x("state.rest.sharper", s.rest.sharper), x("state.rest.stuck", s.rest.stuck);
 }
 
 void exchange_standing(Exchange& x, Standing& standing) {
@@ -115,6 +119,8 @@ void exchange_standing(Exchange& x, Standing& standing) {
   x("run.most_contacts", r.most_contacts), x("run.most_iterations", r.most_iterations);
   x("run.worst_error", r.worst_error), x("run.worst_error_time", r.worst_error_time);
   x("run.worst_error_row", r.worst_error_row), x("run.deepest_drift", r.deepest_drift);
+  x("run.closed_share", r.closed_share), x("run.closed_time", r.closed_time),
+      x("run.closed_row", r.closed_row);
   x("run.energy", r.energy);
   x("run.largest_left_over", r.largest_left_over), x("run.largest_energy", r.largest_energy);
   x("run.wall_seconds", r.wall_seconds), x("run.cpu_seconds", r.cpu_seconds);

@@ -15,6 +15,9 @@ using wide::kLanes;
 
 constexpr double kEndless = 1e300;  // an open bound: products with it stay numbers
 
+// Sweeps that a sharper goal may take beyond as many again as the first one took.
+constexpr int kSweepsMore = 20;
+
 // Colours before couples are solved one after the other: as many as a word has bits.
 constexpr int kMostColours = 63;
 
@@ -422,7 +425,7 @@ void GaussSeidel::extrapolate(const Workers& workers, bool first) {
 }
 
 SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const SolverInput& options,
-                               double tolerance, double dt, const Workers& workers, RowSet& set,
+                               const Goal& goal, double dt, const Workers& workers, RowSet& set,
                                std::vector<BlockRate>& rate) {
   SolveReport report;
   report.converged = set.points.empty();
@@ -433,9 +436,10 @@ SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const Solv
   push(workers);
 
   // the change of a sweep tells when it is worth asking the judge, who costs as much as some sweeps
-  int ask_again = 0;
+  int ask_again = 0, last = options.max_sweeps;
+  double tolerance = goal.enough;
   bool first = true;
-  while (!report.converged && report.iterations < options.max_sweeps) {
+  while (!report.converged && report.iterations < last) {
     const bool second = report.iterations >= kPlainSweeps;
     if (second) keep(workers);
     const double change = sweep(workers) * dt;
@@ -446,15 +450,20 @@ SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const Solv
       read_lines(mobility, workers, rate);
       const double worst = contact_error(mobility, set, rate, dt, workers).worst;
       if (std::isnan(worst)) break;
-      report.converged = worst <= tolerance;
+      report.converged = worst <= goal.wanted;
+      if (!report.converged && worst <= goal.enough && tolerance == goal.enough) {
+        tolerance = goal.wanted;
+        last = std::min(last, 2 * report.iterations + kSweepsMore);
+      }
       ask_again = report.iterations + std::max(2, report.iterations / 5);
     }
-    if (!second || report.converged || report.iterations == options.max_sweeps) continue;
+    if (!second || report.converged || report.iterations == last) continue;
     extrapolate(workers, first);
     first = false;
     ++report.second_phase;
   }
   if (!report.converged) {
+    report.converged = tolerance < goal.enough;  // enough was reached
     read_records(workers, set);
     read_lines(mobility, workers, rate);
   }

@@ -14,14 +14,21 @@ namespace talus {
 /// Keeps its layout from step to step for as long as the same points join the same blocks.
 class GaussSeidel {
  public:
+  /// `wanted` [m] is given up, once `enough` is reached, after as many sweeps again.
+  struct Goal {
+    double wanted, enough;
+    Goal(double both) : wanted(both), enough(both) {}
+    Goal(double wanted_, double enough_) : wanted(wanted_), enough(enough_) {}
+  };
+
   /// Which kernels to run; for tests of one against the other.
   explicit GaussSeidel(const wide::Kernels& kernels = wide::best_kernels()) : kernels_(&kernels) {}
 
   /// Solves for the impulses of `set` (first guess in, solution out).
   /// @param rate       in: v*, rates without the rows; out: rates with them
-  /// @param tolerance  contact error at which to stop [m]; at most options.max_sweeps sweeps
+  /// @param goal       contact errors at which to stop [m]; at most options.max_sweeps sweeps
   /// @param dt         over which the velocities act [s]
-  SolveReport solve(const std::vector<Mobility>& mobility, const SolverInput& options, double tolerance,
+  SolveReport solve(const std::vector<Mobility>& mobility, const SolverInput& options, const Goal& goal,
                     double dt, const Workers& workers, RowSet& set, std::vector<BlockRate>& rate);
 
   int colours() const { return static_cast<int>(colour_.size()); }

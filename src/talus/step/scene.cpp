@@ -2,10 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "talus/blocks/in_situ.h"
 #include "talus/step/energy.h"
 
 namespace talus {
+
+namespace {
+
+// Whether a deformable block may meet another over a joint with friction and without give. With explicit
+// elasticity it would ring for ever, its normal force swing, and its friction be lost while that is small
+// (theory 4.9).
+bool slides_hard(const Scene& scene) {
+  const Layout& layout = scene.layout;
+  if (layout.blocks.size() < 2 || std::none_of(scene.blocks.kind.begin(), scene.blocks.kind.end(),
+                                               [](BlockKind k) { return k == BlockKind::kDeformable; }))
+    return false;
+  const auto hard = [&](int joint) {
+    if (joint < 0) return false;
+    const JointProperty& j = scene.model.joints[static_cast<size_t>(joint)];
+    return !j.bonded && j.normal_stiffness == 0 && j.friction_after() > 0;
+  };
+  if (hard(layout.default_joint)) return true;
+  for (const auto& [pair, joint] : layout.pair_joint)
+    if (hard(joint)) return true;
+  for (const BlockShape& b : layout.blocks)
+    if (std::any_of(b.edge_joint.begin(), b.edge_joint.end(), hard)) return true;
+  return false;
+}
+
+}  // namespace
 
 Scene build_scene(Model model, Layout layout, Findings& findings) {
   Scene scene;
@@ -16,6 +43,8 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
+  for (StageInput& stage : scene.model.stages)
+    if (stage.elasticity_by_contact) stage.implicit = slides_hard(scene);
   scene.loads = build_loads(scene.model, scene.layout, scene.blocks);
   if (const int above = block_above_ground(scene.model, scene.blocks); above >= 0) {
     const auto k = static_cast<size_t>(above);

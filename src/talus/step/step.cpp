@@ -63,12 +63,15 @@ struct RowSums {
   KickWork work;
   int closed = 0;
   double drift = 0;
+  double closed_share = 0;  // the largest, and where
+  int closed_row = -1;
   ContactError error;
   std::vector<std::pair<int, BlockForce>> on_still;  // impulses on blocks whose motion is prescribed
 
   RowSums& operator+=(const RowSums& o) {
     work.before += o.work.before, work.after += o.work.after;
     closed += o.closed, drift = std::max(drift, o.drift), error += o.error;
+    if (o.closed_share > closed_share) closed_share = o.closed_share, closed_row = o.closed_row;
     on_still.insert(on_still.end(), o.on_still.begin(), o.on_still.end());
     return *this;
   }
@@ -79,6 +82,7 @@ struct BlockSums {
   KickWork work;
   double gravity = 0, strain = 0;  // energies of the positions
   double kinetic = 0;              // before the kick, and what weight and elasticity did of it before now
+  double mean = 0, both = 0;       // kinetic energy of the mean velocity, mean of those before and after
   double jump = 0;                 // of the energy that central differences conserve
   double worst = 0, forces = 0;    // unbalanced force, and force
   double nudge = 0;                // kinetic energy that the forces would give in half a step
@@ -88,6 +92,7 @@ struct BlockSums {
   BlockSums& operator+=(const BlockSums& o) {
     work.before += o.work.before, work.after += o.work.after;
     gravity += o.gravity, strain += o.strain, kinetic += o.kinetic, jump += o.jump;
+    mean += o.mean, both += o.both;
     if (o.worst > worst) worst = o.worst, worst_block = o.worst_block;
     forces += o.forces, nudge += o.nudge, moving += o.moving;
     return *this;
@@ -123,7 +128,8 @@ class Kick {
       const LookAhead ahead{dt_, &work_.rate_before};
       renew_pairs(blocks_, scene_.bonds, joints, ahead, work_.workers, state_);
       report_.searched =
-          update_contacts(blocks_, scene_.bonds, scene_.layout, joints, ahead, work_.workers, state_).searched;
+          update_contacts(blocks_, scene_.bonds, scene_.layout, joints, ahead, work_.workers, state_)
+              .searched;
     }
     {
       const Timed timed(work_.profile.seconds[Profile::kSetUp]);
@@ -334,15 +340,16 @@ class Kick {
     options.max_sweeps = sweeps;
     // solvers stop earlier than the judge, who measures what is left after the result has been applied:
     // errors left in redundant ties add up from step to step, until no motion satisfies them all
-    const double stop = 0.1 * settings_.tolerance;
+    const double stop = 0.1 * settings_.tolerance, wanted = settings_.sharper * stop;
     state_.rate = work_.rate_free;
     report_.method = kind;
     if (kind == SolverKind::kNewton) {
-      report_.solve = solve_newton(work_.mobility, state_.rate, options, stop / dt_, work_.rows, smoothing());
+      report_.solve =
+          solve_newton(work_.mobility, state_.rate, options, wanted / dt_, work_.rows, smoothing());
       apply_impulses(work_.mobility, work_.rows, state_.rate);
     } else {
-      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, stop, dt_, work_.workers, work_.rows,
-                                               state_.rate);
+      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, {wanted, stop}, dt_, work_.workers,
+                                               work_.rows, state_.rate);
     }
     judge();
   }
@@ -371,6 +378,7 @@ class Kick {
     work_.work.before += rows_.work.before, work_.work.after += rows_.work.after;
     report_.closed = rows_.closed;
     report_.drift = rows_.drift;
+    report_.closed_share = rows_.closed_share, report_.closed_row = rows_.closed_row;
     // a driven block passes on the work that its drive does against the rows
     for (const auto& [block, impulse] : rows_.on_still) {
       const auto k = static_cast<size_t>(block);
@@ -385,6 +393,8 @@ class Kick {
     const bool contact = r >= work_.first_contact && r < work_.first_support;
     if (contact && p.row[0].compliance == 0)
       s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
+    if (contact && work_.places[r - work_.first_contact].closed > s.closed_share)
+      s.closed_share = work_.places[r - work_.first_contact].closed, s.closed_row = static_cast<int>(r);
     const auto u1 = relative_velocity(p, state_.rate);
     s.error +=
         {dt_ * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / dt_), static_cast<int>(r)};
@@ -442,10 +452,11 @@ class Kick {
     e.work += work_.work.before;
     // kinetic energy half a step ago, and the part of this kick that came before now: 1/2 v- M v+ for equal
     // steps
-    e.kinetic = sums.kinetic + work_.work.before.total();
+    const double ledger = sums.kinetic + work_.work.before.total();
+    e.kinetic = sums.mean, e.moving = sums.both, e.between = ledger - e.kinetic;
     // with unequal steps the energy that central differences conserve jumps, of second order in them: no work
     state_.energy_start += sums.jump;
-    e.left_over = e.kinetic + e.strain - state_.energy_start - e.gravity - e.work.total();
+    e.left_over = ledger + e.strain - state_.energy_start - e.gravity - e.work.total();
   }
 
   void tally_block(size_t i, BlockSums& s) {
@@ -479,7 +490,12 @@ class Kick {
 
     s.gravity += blocks_.mass[i] * dot(scene_.model.gravity, state_.displacement[i]);
     s.strain += blocks_.volume[i] * elastic_[i].density;
-    s.kinetic += 0.5 * work(momentum(blocks_, i, v0), v0);
+    const double energy_0 = 0.5 * work(momentum(blocks_, i, v0), v0);
+    s.kinetic += energy_0;
+    // at the start v0 is the velocity of this instant, later that of half a step ago
+    const BlockRate now = state_.dt_before > 0 ? talus::mean(v0, v1) : v0;
+    s.mean += 0.5 * work(momentum(blocks_, i, now), now);
+    s.both += 0.5 * energy_0 + 0.25 * work(momentum(blocks_, i, v1), v1);
     // weight and elastic resistance, whose energies are taken from the positions
     BlockForce own = kick * (forces_[i] + (-1) * load_[i]);
     if (!work_.bolt_forces.empty()) {

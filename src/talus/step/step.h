@@ -21,6 +21,7 @@ struct StepSettings {
   double damping_stiffness = 0;  // [s]
   double damping_local = 0;      // [-]
   double tolerance = 0;          // largest contact error of a step [m]
+  double sharper = 1;            // share of it to which steps are solved where that takes few sweeps more
   bool histories_run = true;     // false: their clock stands still (static stages)
   bool implicit = false;         // block-implicit elasticity (theory 4.9)
   bool keep_guess = false;       // StepWork::guess is wanted, for a problem file
@@ -42,6 +43,8 @@ struct StepReport {
   std::string worst;           // name of the row with the worst error
   bool failed = false;         // error above the tolerance
   bool second_solver = false;  // the other solver was asked
+  double closed_share = 0;     // largest overlap of a contact, as share of the thinner block there
+  int closed_row = -1;         // its row
   double drift = 0;            // deepest overlap of hard contacts before the step [m]
   double unbalanced = 0;       // largest unbalanced force of a block / mean force on blocks
   int worst_block = -1;        // whose unbalanced force is the largest

@@ -280,7 +280,8 @@ TEST_CASE("renew_pairs misses no close pair while the blocks move") {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<Polygon> polygons;
   for (int i = 0; i < 100; ++i) {
-    const double width = i % 7 == 0 ? 0.565 : 0.53;  // gaps of 0.04 and 0.005; the skin is 0.053, the margin 0.011
+    const double width =
+        i % 7 == 0 ? 0.565 : 0.53;  // gaps of 0.04 and 0.005; the skin is 0.053, the margin 0.011
     const Vec2 at{0.57 * (i % 10), 0.57 * (i / 10)};
     polygons.push_back({at, at + Vec2{width, 0}, at + Vec2{width, width}, at + Vec2{0, width}});
   }

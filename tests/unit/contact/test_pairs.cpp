@@ -236,7 +236,8 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   CHECK(all == static_cast<int>(state.pairs.size()));
   const auto first = keys_of(state.contacts);
   CHECK(update(scene, state) == 0);
-  CHECK_FALSE(renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state));
+  CHECK_FALSE(
+      renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state));
   for (Vec2& d : state.displacement) d += Vec2{0.25, -0.5};
   CHECK(update(scene, state) == 0);
   CHECK(keys_of(state.contacts) == first);
@@ -396,7 +397,8 @@ TEST_CASE("the list holds all pairs that are closer than the margin, however blo
   State state = start_state(scene);
   int rebuilds = 0;
   for (int step = 0; step < 60; ++step) {
-    rebuilds += renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state);
+    rebuilds +=
+        renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state);
     std::vector<Box> boxes;
     for (int i = 0; i < scene.blocks.count; ++i) boxes.push_back(bounding_box(corners_now(scene, state, i)));
     // of stones, which all are as large as each other

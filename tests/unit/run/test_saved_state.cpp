@@ -25,7 +25,8 @@ void each_field(FaceEnd& e, auto& f) {
 }
 
 void each_field(Contact& c, auto& f) {
-  auto& [key, joint, partner, memory, touched, face, allowed, length, force, stretch, anchor, slip, slip_signed] = c;
+  auto& [key, joint, partner, memory, touched, face, allowed, length, force, stretch, anchor, slip,
+         slip_signed] = c;
   f(key), f(joint), f(partner), f(memory), f(length), f(force), f(stretch), f(anchor), f(slip);
   f(slip_signed), f(touched), f(face), f(allowed);
 }
@@ -75,16 +76,21 @@ void each_field(Bolt& b, auto& f) {
   f(input), f(anchored), f(share), f(rupture_strain), f(nodes), f(segments), f(crossings);
 }
 
+void each_field(RestWatch& r, auto& f) {
+  auto& [steps, best, before, sharper, stuck] = r;
+  f(steps), f(best), f(before), f(sharper), f(stuck);
+}
+
 void each_field(State& s, auto& f) {
   auto& [time, step, history_time, dt_before, displacement, strain_part, angle, rate, contact_force,
          bond_force, face, support_force, boundary_force, boundary_static, boundary_hold, tie_force, bolts,
          column_displacement, column_rate, candidates, pairs, contacts, initial_stress, kept_force, relaxed,
-         support_hold, displacement_start, strain_part_start, work, energy_start, largest_kinetic] = s;
+         support_hold, displacement_start, strain_part_start, work, energy_start, largest_kinetic, rest] = s;
   f(time), f(step), f(history_time), f(dt_before), f(displacement), f(strain_part), f(angle), f(rate);
   f(contact_force), f(bond_force), f(face), f(support_force), f(boundary_force), f(boundary_static);
   f(boundary_hold), f(tie_force), f(bolts), f(column_displacement), f(column_rate), f(candidates);
   f(pairs), f(contacts), f(initial_stress), f(kept_force), f(relaxed), f(support_hold);
-  f(displacement_start), f(strain_part_start), f(work), f(energy_start), f(largest_kinetic);
+  f(displacement_start), f(strain_part_start), f(work), f(energy_start), f(largest_kinetic), f(rest);
 }
 
 // Calls `number(x)` for every number in a value, down to those in lists and structs.

@@ -321,13 +321,13 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
     near = std::max(near, speed(i, {4, 0})), far = std::max(far, speed(i, {12, 0}));
   });
   check_below("blast_hole kinetic energy before / largest", before / most, 1e-6, 1e-8);
-  // what opened joints keep moving: below 2 % when two faces had lost their cohesion, 2.2 % with the 167 that
+  // what opened joints keep moving: below 2 % when two faces had lost their cohesion, 2.2 % with the 161 that
   // opened
   check_below("blast_hole kinetic energy left / largest", last / most, 4e-2, 3e-2);
   // no formula: what the example's README quotes
   check_close("blast_hole velocity past 4 m [m/s]", near, 0.2390, 1e-2, 1e-3);
   check_close("blast_hole velocity past 12 m [m/s]", far, 0.1171, 1e-2, 1e-3);
-  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 167, 2e-2, 1e-12);
+  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 161, 2e-2, 1e-12);
   check_below("blast_hole energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
@@ -363,12 +363,12 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   // no formula: what the README quotes. Half the time step changes the crest by 11 % and the ground behind
   // by 4 %, another state of rest before by 2 %; other compilers may too
   check_close("shaken_slope largest velocity of the base [m/s]", base, 0.339, 1e-2, 2e-3);
-  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.417, 5e-2, 1e-2);
+  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.665, 5e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.256, 5e-2, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.174, 5e-2, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
-              (behind_end - behind_start - base_end + base_start).x, -0.055, 1e-1, 6e-2);
-  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.197, 5e-2, 1e-2);
+              (behind_end - behind_start - base_end + base_start).x, -0.0886, 1e-1, 6e-2);
+  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.382, 5e-2, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
 #endif
@@ -376,10 +376,10 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
 TEST_CASE("example bolted_slope: the bolts hold what would slide") {
   const CaseResult r = run_example("bolted_slope");
   const auto& slip = r.column("head.displacement_x [m]");
-  check_close("bolted_slope slip of the slab [m]", slip.back(), -0.886e-3, 5e-2, 5e-2);
-  check_close("bolted_slope tension of the anchor [N]", r.column("toe.axial_force [N]").back(), 64.8e3, 2e-2,
+  check_close("bolted_slope slip of the slab [m]", slip.back(), -0.503e-3, 5e-2, 5e-2);
+  check_close("bolted_slope tension of the anchor [N]", r.column("toe.axial_force [N]").back(), 53.0e3, 2e-2,
               2e-2);
-  check_close("bolted_slope tension of a grouted bar [N]", r.column("row.axial_force [N]").back(), 91.3e3,
+  check_close("bolted_slope tension of a grouted bar [N]", r.column("row.axial_force [N]").back(), 57.7e3,
               5e-2, 5e-2);
   CHECK(r.column("toe.ruptured").back() + r.column("row.ruptured").back() == 0);
   // the last half second is two periods of the shaking or more: no creep

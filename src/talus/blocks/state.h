@@ -152,7 +152,7 @@ struct RestWatch {
   int64_t steps = 0;  // since the stage began
   double best =
       0;  // least unbalanced or velocity left, over what is asked for, since the last look; 0: none yet
-  double before = 0;   // the same up to the last look
+  double before = 0;   // the same between the last two looks
   double sharper = 1;  // share of the solver's tolerance to which steps are solved
   int stuck = 0;       // looks in a row, at the sharpest, without any progress
 };

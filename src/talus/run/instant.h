@@ -25,6 +25,8 @@ class Observer {
   virtual ~Observer() = default;
   virtual void stage_begins(const Scene&, int /*stage*/, const StagePlan&) {}
   virtual void at(const Instant& instant) = 0;
+  /// Shown the instant at which numerical trouble ends the run, after at() and before anything moved on.
+  virtual void fails(const Instant& /*instant*/) {}
   /// Asked before every step; true ends the run after the present instant.
   virtual bool stop() { return false; }
   /// Asked before every step; true: keep_state() follows.

@@ -20,6 +20,7 @@ class Progress : public Observer {
   void at(const Instant& instant) override;
   bool stop() override { return next_.stop() || (stop_ && *stop_ != 0); }
   bool wants_state() override { return next_.wants_state(); }
+  void fails(const Instant& instant) override { next_.fails(instant); }
   void keep_state(const Standing& standing, const State& state) override {
     next_.keep_state(standing, state);
   }

@@ -246,6 +246,15 @@ void Recorder::at(const Instant& i) {
   }
 }
 
+// What there is to look at of a run that failed: the instant before nothing could go on.
+void Recorder::fails(const Instant& i) {
+  if (block_frames_.times().empty() || block_frames_.times().back() < i.state.time) write_frame(i);
+  write_joints(i, i.stage);
+  write_file(folder_ / "blocks_end.svg",
+             blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage),
+                        joint_lines(scene_, i)));
+}
+
 // The equations of a step as a file; of a very large one only when it was asked for.
 void Recorder::write_dump(const Instant& i) {
   constexpr size_t kMostPoints = 200000;

@@ -24,6 +24,7 @@ class Recorder : public Observer {
   /// Saves the state in saved/: stage_NN.h5 at the end of each stage; in between at intervals of wall time
   /// step_N.h5, of which the last two stay.
   bool wants_state() override;
+  void fails(const Instant& instant) override;
   void keep_state(const Standing& standing, const State& state) override;
 
   void at(const Instant& instant) override;

@@ -123,12 +123,8 @@ class Runner {
       settings_.sharper = state_.rest.sharper;
       StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);
-      // the instant at which a run fails is shown as its last
-      show({scene_, state_, work_, report, plan, index, n == 0, ends(report)});
-      note(report);  // after the observers: a step that ends the run is seen too
-      // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-      drift(scene_, settings_, plan.dt, out.begin + plan.dt * static_cast<double>(n + 1), work_, state_,
-            report);
+      show({scene_, state_, work_, report, plan, index, n == 0, false});
+      go_on_or_fail(index, n, report);
       ++out.steps;
       state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
@@ -142,9 +138,29 @@ class Runner {
     }
     out.end = state_.time;
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
+      result_.no_rest = true;
       throw NumericalError(no_rest(stage, out));
     }
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
+  }
+
+  // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
+  // and shown once more with everything in its place.
+  void go_on_or_fail(int index, int64_t n, StepReport& report) {
+    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    displacement_ = state_.displacement;
+    strain_part_ = state_.strain_part;
+    try {
+      note(report);
+      // from the start of the stage, not by adding: the last step ends exactly on the stage's end
+      drift(scene_, settings_, plan.dt, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1),
+            work_, state_, report);
+    } catch (const NumericalError&) {
+      state_.displacement = displacement_;
+      state_.strain_part = strain_part_;
+      observer_.fails({scene_, state_, work_, report, plan, index, n == 0, true});
+      throw;
+    }
   }
 
   // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not
@@ -222,10 +238,6 @@ class Runner {
         stage.name);
   }
 
-  bool ends(const StepReport& r) const {
-    return (r.failed && scene_.model.solver.stop_on_failure) || r.closed_share > kMostClosed;
-  }
-
   // Where a static stage makes no progress its steps are solved more sharply: errors that the solver leaves
   // are forces. Whether that has not helped either, and nothing is on its way anywhere.
   bool watch_rest(const StageInput& stage, const StepReport& report, const StagePlan& plan, int64_t n) {
@@ -233,15 +245,14 @@ class Runner {
     const double now = std::max(report.unbalanced, report.speed_left) / stage.unbalanced;
     rest.best = rest.best > 0 ? std::min(rest.best, now) : now;
     if (++rest.steps % kRestLook != 0) return false;
-    const bool stalled = rest.before > 0 && rest.best > kStalled * rest.before;
-    const bool none = rest.before > 0 && rest.best > kNoProgress * rest.before;
-    if (stalled && rest.sharper > kSharpest)
+    const double progress = rest.before > 0 ? rest.best / rest.before : 0;
+    if (progress > kStalled && rest.sharper > kSharpest)
       rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
     else
-      rest.stuck = none ? rest.stuck + 1 : 0;
-    if (rest.before == 0 || rest.best < rest.before) rest.before = rest.best;
+      rest.stuck = progress > kNoProgress && is_relaxed(stage, n) ? rest.stuck + 1 : 0;
+    rest.before = rest.best;
     rest.best = 0;
-    if (rest.stuck < kMostStuck || !is_relaxed(stage, n)) return false;
+    if (rest.stuck < kMostStuck) return false;
     const double left = plan.dt * static_cast<double>(plan.steps - n);
     for (size_t k = 0; k < state_.rate.size(); ++k)
       if (norm(state_.rate[k].a) * left > kFarToGo * scene_.blocks.size[k]) return false;
@@ -346,6 +357,8 @@ class Runner {
   State& state_;
   Observer& observer_;
   BlockSet unclamped_;
+  std::vector<Vec2> displacement_;  // before the drift
+  std::vector<Mat2> strain_part_;
   StepReport last_;
   StepSettings settings_;
   StepWork work_;

@@ -32,7 +32,8 @@ struct RunResult {
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;
   bool interrupted = false;
-  std::string failure;  // text of the NumericalError that ended the run, "" otherwise
+  bool no_rest = false;  // a static stage ended without it
+  std::string failure;   // text of the NumericalError that ended the run, "" otherwise
   double wall_seconds = 0, cpu_seconds = 0;
   int threads = 1;
   Profile profile;

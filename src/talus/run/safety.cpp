@@ -77,10 +77,9 @@ SafetyTrial run_trial(const PreparedRun& prepared, double factor, const Workers&
   trial.unbalanced = last.unbalanced;
   trial.closure = run.closure();
   trial.stands = run.failure.empty() && !run.interrupted && watch.farthest() <= limit;
-  const bool out_of_time = !last.at_rest && last.steps >= last.plan.steps;
   if (!trial.stands && !run.interrupted && run.failure.empty())
     trial.outcome = "displacement limit";  // reached in the last step
-  else if (!trial.stands && !run.interrupted && !out_of_time)
+  else if (!trial.stands && !run.interrupted && !run.no_rest)
     throw NumericalError(fmt::format("trial at factor {:g} says nothing of safety: {}", factor, run.failure));
   else
     trial.outcome = trial.stands ? "at rest" : run.interrupted ? "displacement limit" : "no rest";

@@ -218,7 +218,7 @@ TEST_CASE("jointed ground laid with its stress is at rest: nothing presses at th
   });
   CHECK(r.run.stages[0].at_rest);
   CHECK(r.run.stages[0].steps < 2000);
-  CHECK(corners > 20);
+  CHECK(corners == 0);  // the sides there are covered: blocks across a crossing have no points
   // blocks of constant stress under a linear one move by far less than the 1.5 mm that the joints have closed
   check_below("in_situ jointed largest displacement [m]", moved, 1e-6, 1e-7);
   // the stress of the ground on such a corner would make 5 %

@@ -53,7 +53,7 @@ enum { k1x1, k2x2, k3x2, k8x8, kTriangular, kCutBySet };
 
 struct Case {
   int above = 0, below = 0;
-  bool glued = true;
+  bool above_glued = true, below_glued = true;
   double stiffness = 0;   // kn = ks [Pa/m], 0: hard
   double friction = 30;   // [deg]
   double pressure = 4e5;  // [Pa]
@@ -61,10 +61,16 @@ struct Case {
   double load = 1.05;     // of the strength; without friction: 0.1 of the pressure
 
   double mu() const { return std::tan(friction * std::numbers::pi / 180); }
+  std::string meshes() const {
+    const auto body = [](int mesh, bool glued) {
+      return fmt::format("{}{}", kBodies[mesh].name, glued ? "" : " loose");
+    };
+    return body(above, above_glued) + " on " + body(below, below_glued);
+  }
   double shear() const { return pressure * (friction > 0 ? load * mu() : 0.1); }  // [Pa]
   std::string name() const {
-    return fmt::format("{} on {}, {}, {}, friction {:g}, {:g} MPa, offset {:g} mm, {}", kBodies[above].name,
-                       kBodies[below].name, glued ? "glued" : "loose",
+    return fmt::format("{}, {}, friction {:g}, {:g} MPa, offset {:g} mm, {}", meshes(),
+
                        stiffness > 0 ? fmt::format("{:g} GPa/m", stiffness * 1e-9) : "hard", friction,
                        pressure * 1e-6, offset * 1e3,
                        friction > 0 ? fmt::format("load {:g}", load) : "load 0.1 of the pressure");
@@ -80,23 +86,29 @@ std::vector<Case> all_cases() {
       if (c.friction == 0) break;
     }
   };
-  for (int above = 0; above < 6; ++above)
-    for (int below = 0; below < 6; ++below)
-      for (const bool glued : {true, false})
-        for (const double stiffness : {0.0, 20e9})
-          for (const double offset : {0.0, 1e-5, 1e-3, 0.3}) {
-            Case c;
-            c.above = above, c.below = below, c.glued = glued;
-            c.stiffness = stiffness, c.offset = offset;
-            add_loads(c);
-          }
+  const auto add_meshes = [&](int above, bool above_glued, int below, bool below_glued) {
+    for (const double stiffness : {0.0, 20e9})
+      for (const double offset : {0.0, 1e-5, 1e-3, 0.3}) {
+        Case c;
+        c.above = above, c.below = below, c.above_glued = above_glued, c.below_glued = below_glued;
+        c.stiffness = stiffness, c.offset = offset;
+        add_loads(c);
+      }
+  };
+  for (int above = k1x1; above <= kCutBySet; ++above)
+    for (int below = k1x1; below <= kCutBySet; ++below)
+      for (const bool above_glued : {true, false})
+        for (const bool below_glued : {true, false})
+          // one block has nothing to be glued
+          if ((above != k1x1 || above_glued) && (below != k1x1 || below_glued))
+            add_meshes(above, above_glued, below, below_glued);
   for (const auto& [above, below] : {std::pair{k2x2, k2x2}, {k8x8, k3x2}, {kTriangular, kCutBySet}})
     for (const bool glued : {true, false})
       for (const double friction : {0.0, 10.0, 20.0, 30.0, 40.0})
         for (const double pressure : {1e4, 1e5, 1e6, 1e7})
           for (const double stiffness : {100e9, 1000e9}) {
             Case c;
-            c.above = above, c.below = below, c.glued = glued;
+            c.above = above, c.below = below, c.above_glued = c.below_glued = glued;
             c.friction = friction, c.pressure = pressure, c.stiffness = stiffness;
             add_loads(c);
           }
@@ -109,8 +121,8 @@ std::string cuts(const std::string& region, const Body& body, double x, double y
   const auto set = [&](const char* name, double angle, double spacing) {
     text += fmt::format(
         "[[joint_set]]\nname = \"{}-{}\"\nregion = \"{}\"\nangle = \"{:.17g} deg\"\nspacing = "
-        "{:.17g}\norigin = [{:.17g}, {:.17g}]\njoint = \"inside\"\n",
-        region, name, region, angle, spacing, x, y);
+        "{:.17g}\norigin = [{:.17g}, {:.17g}]\njoint = \"in-{}\"\n",
+        region, name, region, angle, spacing, x, y, region);
   };
   if (body.columns > 0) set("upright", 90, kWidth / body.columns);
   if (body.rows > 1) set("level", 0, kHeight / body.rows);
@@ -129,14 +141,18 @@ std::string text_of(const Case& c) {
   const auto region = [](const char* name, double left, double right, double foot, const char* sides) {
     return fmt::format(
         "[[region]]\nname = \"{0}\"\npolygon = [[{1:.17g}, {3:.17g}], [{2:.17g}, {3:.17g}], [{2:.17g}, "
-        "{4:.17g}], [{1:.17g}, {4:.17g}]]\nsides = {5}\nmaterial = \"rock\"\njoint = \"inside\"\n",
+        "{4:.17g}], [{1:.17g}, {4:.17g}]]\nsides = {5}\nmaterial = \"rock\"\njoint = \"in-{0}\"\n",
         name, left, right, foot, foot + kHeight, sides);
+  };
+  const auto inside = [&stiff](const char* name, bool glued) {
+    return fmt::format("[joint.in-{}]\n{}", name,
+                       glued ? "kind = \"bonded\"\n" : "friction_angle = \"80 deg\"\n" + stiff);
   };
   return fmt::format(
              "talus = 1\ntitle = \"{}\"\n[material.rock]\ndensity = {}\nyoung = 20e9\npoisson = 0.2\n"
-             "[joint.slide]\nfriction_angle = \"{} deg\"\n{}[joint.inside]\n{}",
-             c.name(), kDensity, c.friction, stiff,
-             c.glued ? "kind = \"bonded\"\n" : "friction_angle = \"80 deg\"\n" + stiff) +
+             "[joint.slide]\nfriction_angle = \"{} deg\"\n{}{}{}",
+             c.name(), kDensity, c.friction, stiff, inside("upper", c.above_glued),
+             inside("lower", c.below_glued)) +
          region("lower", -0.5, kWidth + 0.5, -kHeight, "[\"foot\", \"l1\", \"l2\", \"l3\"]") +
          region("upper", c.offset, c.offset + kWidth, 0, "[\"u1\", \"u2\", \"top\", \"u3\"]") +
          cuts("lower", kBodies[c.below], 0, -kHeight) + cuts("upper", kBodies[c.above], c.offset, 0) +
@@ -266,7 +282,7 @@ struct Count {
 
 void print_table(const char* title, const std::map<std::string, Count>& rows) {
   fmt::print("{}\n", title);
-  for (const auto& [name, n] : rows) fmt::print("  {:<34} {:>5} cases {:>5} fail\n", name, n.cases, n.fail);
+  for (const auto& [name, n] : rows) fmt::print("  {:<36} {:>5} cases {:>5} fail\n", name, n.cases, n.fail);
 }
 
 int run(const std::vector<Case>& cases, const std::vector<int>& chosen, int jobs) {
@@ -283,8 +299,7 @@ int run(const std::vector<Case>& cases, const std::vector<int>& chosen, int jobs
       const Case& c = cases[static_cast<size_t>(number)];
       ++done, failed += !good, broken += trouble;
       const auto count = [good](Count& n) { ++n.cases, n.fail += !good; };
-      count(by_mesh[fmt::format("{} on {}, {}", kBodies[c.above].name, kBodies[c.below].name,
-                                c.glued ? "glued" : "loose")]);
+      count(by_mesh[c.meshes()]);
       count(by_joint[fmt::format("{:>4g} GPa/m, {:g} MPa, friction {:g}", c.stiffness * 1e-9,
                                  c.pressure * 1e-6, c.friction)]);
       count(by_load[c.friction == 0 ? "0.1 of the pressure" : fmt::format("{:g} of the strength", c.load)]);

@@ -207,6 +207,9 @@ const std::vector<Known> kKnown = {
     {"tunnel", "turned by 37 deg", 6.7e-06},
     {"tunnel", "turned and moved by 1e6 m", 3.8e-06},
     {"tunnel", "turned by 37 deg and cut again", 3.1e-02},
+    {"tunnel", "2 x 2 glued parts", 2.8e-01},
+    {"tunnel", "glued triangles", 2.7e-01},
+    {"tunnel", "a set of unlimited strength", 5.8e-01},
     {"mesh with fault", "a pebble far away", 3.9e-02},
     {"mesh with fault", "blocks backwards", 3.2e-01},
     {"mesh with fault", "blocks shuffled", 9.3e-01},
@@ -217,9 +220,9 @@ const std::vector<Known> kKnown = {
     {"mesh with fault", "units x 1000", 1.5e-01},
     {"mesh with fault", "turned and moved by 1e6 m", 1.2e-02},
     {"mesh with fault", "turned by 37 deg and cut again", 4.7e-02},
-    {"mesh with fault", "2 x 2 glued parts", 9.1e-02},
+    {"mesh with fault", "2 x 2 glued parts", 8.9e-02},
     {"mesh with fault", "glued triangles", 1.0e+00},
-    {"mesh with fault", "a set of unlimited strength", 1.0e+00},
+    {"mesh with fault", "a set of unlimited strength", 9.9e-01},
     {"pile", "a pebble far away", 4.6e-14},
     {"wall", "a pebble far away", 2.3e-02},
     {"wall", "blocks backwards", 9.0e-02},
@@ -229,6 +232,7 @@ const std::vector<Known> kKnown = {
     {"wall", "turned by 90 deg", 3.6e-02},
     {"wall", "units x 1000", 2.5e-02},
     {"wall", "turned and moved by 1e6 m", 7.0e-02},
+    {"wall", "half and quarter step, ratio of changes", 1.2e+00},
 };
 
 void judge(const Case& c, const std::string& transform, double found, double must, const Outcome& original) {
@@ -391,7 +395,7 @@ class Subject {
   Problem stiff() const {
     Problem p = problem_;
     for (Material& m : p.model.materials) m.young *= 100;
-    p.model.solver.tolerance = 1e-9;  // is enough for 1 %
+    p.model.solver.tolerance = 1e-9, p.model.solver.second_solver = false;  // is enough for 1 %
     return p;
   }
   // Both a hundred times stiffer, so that the softness of a whole block does not tell: motion within 1 % of

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <optional>
 
+#include "audit_command.h"
 #include "command_pages.h"
 #include "cut_command.h"
 #include "import_command.h"
@@ -163,8 +164,8 @@ int run_command(int argc, char** argv) {
                        fmt::format("talus {} (model format {})", talus::kVersion, talus::kModelFormat));
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 130 "
-      "interrupted.\nHelp on a verb: talus VERB --help");
+      "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 8 not "
+      "valid by its audit, 130 interrupted.\nHelp on a verb: talus VERB --help");
 
   ModelArguments model;
   RunArguments how;
@@ -229,6 +230,14 @@ int run_command(int argc, char** argv) {
   CLI::App* report_verb = app.add_subcommand(
       "report", "make one HTML page of a run: pictures in motion, charts, tables; opens in any browser");
   talus::app::add_report_arguments(*report_verb, report);
+
+  CLI::App* audit_verb = app.add_subcommand(
+      "audit", "look over the frames of a run: overlaps and forces against the polygons of the blocks");
+  audit_verb->add_option("DIR", folder, "result folder of talus run")->required();
+  audit_verb->add_option("--threads", how.threads, "threads, 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  audit_verb->footer("Example: talus audit out/impact_bar/run      (exit code 8: not valid)");
 
   talus::app::RecordArguments record;
   CLI::App* record_verb = app.add_subcommand(
@@ -300,6 +309,7 @@ int run_command(int argc, char** argv) {
   if (*replay_verb) return replay(problem, method, tolerance);
   if (*record_verb) return talus::app::record_command(record);
   if (*report_verb) return talus::app::report_command(report);
+  if (*audit_verb) return talus::app::audit_command(folder, how.threads);
   if (*plot_verb) return talus::app::plot_command(plot);
   if (*verify_verb) return talus::app::verify_command(verify);
   if (*completion_verb || *man_verb) {

@@ -23,7 +23,8 @@ ALLOWED = {
     "solve": "base model blocks rows",
     "step": "base geometry model cut blocks rows contact supports solve",
     "output": "base geometry model cut blocks",
-    "run": "base geometry record model cut blocks rows contact supports solve step output",
+    "audit": "base geometry output",
+    "run": "base geometry record model cut blocks rows contact supports solve step output audit",
     "plot": "base geometry record model maps cut output",
     "report": "base geometry output",
 }

@@ -16,6 +16,7 @@ enum ExitCode : int {
   kExitInput = 3,         // the model file
   kExitFile = 4,          // a file or disk
   kExitNumerical = 5,     // no convergence, non-finite numbers, an inverted block
+  kExitNotValid = 8,      // the run ended, and the audit says that its results are not valid
   kExitInterrupted = 130  // Ctrl-C; results up to then are valid
 };
 

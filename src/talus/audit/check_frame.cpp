@@ -1,0 +1,534 @@
+#include "talus/audit/check_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/audit/shapes.h"
+
+namespace talus::audit {
+
+namespace {
+
+// Limits beyond which a frame warns, and is no longer valid. None can be set: a threshold that can be moved
+// certifies nothing.
+constexpr double kOverlapWarns = 1e-4, kOverlapInvalid = 1e-2;  // unexplained, of the smaller block's area
+constexpr double kPrescribed = 1e-6;                            // overlap of prescribed blocks, the same
+constexpr double kClosureWarns = 0.05, kClosureInvalid = 0.25;  // of the smaller mean thickness
+constexpr double kHairGap = 1e-4;  // half the width of joints closed before that, of the smaller block
+constexpr double kAside = 5 * 3.14159265358979323846 / 180;  // a normal off the outline [rad]
+// forces below the first share of the mean one are round-off of redundant points; a wrong one above the
+// second is more than the error of a force
+constexpr double kForceSeen = 1e-4, kForceInvalid = 1e-2;
+// of the smaller block: what the foot and the gap of a followed point may be off by
+constexpr double kPlace = 1e-5;
+// a resultant above its limit by this share; solvers put forces on their cone to some digits
+constexpr double kLawSlack = 1e-3;
+// elastic normal force against stiffness x overlap: a closure that is linear along a face, one end of which
+// has opened, is off by up to 2
+constexpr double kNormalWarns = 2, kNormalInvalid = 4;
+constexpr double kAlongside = 0.1;  // sides that make an interface are antiparallel within [rad]
+
+struct Pair {
+  int a, b;        // a < b
+  int begin, end;  // of its points, in PairIndex::order
+};
+
+class Check {
+ public:
+  Check(const Rules& rules, const Frame& frame) : rules_(rules), frame_(frame) {
+    const size_t n = frame.blocks.size();
+    size_.assign(n, 0), area_.assign(n, 0);
+    for (size_t i = 0; i < n; ++i) {
+      if (frame.blocks[i].hold == Hold::kRemoved) continue;
+      area_[i] = std::abs(signed_area(frame.blocks[i].polygon));
+      size_[i] = std::sqrt(area_[i]);
+    }
+    take_points();
+    list_pairs();
+  }
+
+  FrameResult run(const Workers& workers) {
+    std::vector<FrameResult> part(pairs_.size());
+    constexpr size_t kGrain = 64;
+    workers.for_chunks(pairs_.size(), kGrain, [&](size_t begin, size_t end) {
+      for (size_t q = begin; q < end; ++q) check_pair(pairs_[q], part[q]);
+    });
+    FrameResult all;
+    for (FrameResult& r : part) {
+      all.findings.insert(all.findings.end(), r.findings.begin(), r.findings.end());
+      if (r.unexplained_share > all.unexplained_share)
+        all.unexplained_share = r.unexplained_share, all.unexplained_area = r.unexplained_area;
+      all.closure_share = std::max(all.closure_share, r.closure_share);
+    }
+    return all;
+  }
+
+ private:
+  // A point with what the polygons say of it.
+  struct Seen {
+    Vec2 place, normal;  // from block b into block a
+    double depth = 0;    // of positions, 0: apart [m]
+    double gap = 0;
+    double approach = 0;  // speed at which the two move against each other here [m/s]
+  };
+
+  const Polygon& polygon(int i) const { return frame_.blocks[static_cast<size_t>(i)].polygon; }
+  double size_of(int a, int b) const {
+    return std::min(size_[static_cast<size_t>(a)], size_[static_cast<size_t>(b)]);
+  }
+  double area_of(int a, int b) const {
+    return std::min(area_[static_cast<size_t>(a)], area_[static_cast<size_t>(b)]);
+  }
+  bool prescribed(int i) const { return frame_.blocks[static_cast<size_t>(i)].hold == Hold::kPrescribed; }
+  const Law* law_of(const Point& p) const {
+    return p.joint < 0 ? nullptr : &rules_.laws[static_cast<size_t>(p.joint)];
+  }
+
+  void take_points() {
+    const size_t n = frame_.points.size();
+    seen_.resize(n);
+    double sum = 0;
+    int forces = 0;
+    for (size_t i = 0; i < n; ++i) {
+      const Point& p = frame_.points[i];
+      const double force = std::hypot(p.normal_force, p.shear_force);
+      if (force > 0) sum += force, ++forces;
+      seen_[i] = p.bond() ? see_bond(p) : see_contact(p);
+    }
+    mean_force_ = forces > 0 ? sum / forces : 0;
+  }
+
+  Seen see_contact(const Point& p) const {
+    const Polygon &a = polygon(p.block_a), &b = polygon(p.block_b);
+    const auto v = static_cast<size_t>(p.corner), e = static_cast<size_t>(p.edge), next = (e + 1) % b.size();
+    Seen s;
+    const Vec2 side = b[next] - b[e];
+    s.place = a[v], s.normal = turn_right(side) / norm(side);
+    s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
+    const double along = std::clamp(dot(a[v] - b[e], side) / dot(side, side), 0.0, 1.0);
+    const auto velocity = [this](int block, size_t k) {
+      const std::vector<Vec2>& list = frame_.blocks[static_cast<size_t>(block)].velocity;
+      return list.empty() ? Vec2{} : list[k];
+    };
+    const Vec2 vb = (1 - along) * velocity(p.block_b, e) + along * velocity(p.block_b, next);
+    s.approach = std::abs(dot(s.normal, velocity(p.block_a, v) - vb));
+    return s;
+  }
+
+  // The end of a glued face is a place on block a: its gap is that over the side of b which lies along the
+  // face.
+  Seen see_bond(const Point& p) const {
+    Seen s;
+    s.place = p.place;
+    if (p.partner < 0) return s;
+    const Vec2 other = frame_.points[static_cast<size_t>(p.partner)].place;
+    const Vec2 face = other - p.place, middle = p.place + 0.5 * face;
+    const double length = norm(face);
+    if (length == 0) return s;
+    const Polygon& b = polygon(p.block_b);
+    double nearest = length;  // farther off there is no face
+    for (size_t k = 0; k < b.size(); ++k) {
+      const Vec2 side = b[(k + 1) % b.size()] - b[k];
+      const double l = norm(side);
+      if (l == 0 || std::abs(cross(face, side)) > kAlongside * length * l) continue;
+      const double off = distance_to_segment(middle, b[k], b[(k + 1) % b.size()]);
+      if (off >= nearest) continue;
+      nearest = off;
+      s.normal = turn_right(side) / l;
+      s.gap = dot(s.normal, p.place - b[k]);
+    }
+    s.depth = std::max(0.0, -s.gap);
+    return s;
+  }
+
+  // Pairs whose boxes overlap, and pairs that have points.
+  void list_pairs() {
+    std::vector<Box> boxes;
+    std::vector<int> block;
+    for (size_t i = 0; i < frame_.blocks.size(); ++i) {
+      if (frame_.blocks[i].hold == Hold::kRemoved) continue;
+      boxes.push_back(bounding_box(frame_.blocks[i].polygon));
+      block.push_back(static_cast<int>(i));
+    }
+    std::vector<std::pair<int, int>> list;
+    for (const auto& [i, j] : close_pairs(boxes, 0))
+      list.emplace_back(block[static_cast<size_t>(i)], block[static_cast<size_t>(j)]);
+    const auto pair_of = [this](int i) {
+      const Point& p = frame_.points[static_cast<size_t>(i)];
+      return std::minmax(p.block_a, p.block_b);
+    };
+    for (size_t i = 0; i < frame_.points.size(); ++i) {
+      order_.push_back(static_cast<int>(i));
+      list.emplace_back(pair_of(static_cast<int>(i)));
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    std::stable_sort(order_.begin(), order_.end(), [&](int x, int y) {
+      return std::pair<int, int>(pair_of(x)) < std::pair<int, int>(pair_of(y));
+    });
+    size_t next = 0;
+    neighbours_.resize(frame_.blocks.size());
+    for (const auto& [a, b] : list) {
+      Pair pair{a, b, static_cast<int>(next), 0};
+      while (next < order_.size() && std::pair<int, int>(pair_of(order_[next])) == std::pair{a, b}) ++next;
+      pair.end = static_cast<int>(next);
+      neighbours_[static_cast<size_t>(a)].push_back({b, static_cast<int>(pairs_.size())});
+      neighbours_[static_cast<size_t>(b)].push_back({a, static_cast<int>(pairs_.size())});
+      pairs_.push_back(pair);
+    }
+  }
+
+  Finding finding(Defect defect, bool invalid, int a, int b, Vec2 place, double share,
+                  std::string text) const {
+    return {defect, invalid, a, b, frame_.time, place, share, std::move(text)};
+  }
+
+  void check_pair(const Pair& pair, FrameResult& out) const {
+    check_overlap(pair, out);
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+      const Point& p = frame_.points[i];
+      check_closure(p, seen_[i], out);
+      check_shear(i, out);
+      if (p.bond() || std::hypot(p.normal_force, p.shear_force) <= kForceSeen * mean_force_) continue;
+      check_gap(p, seen_[i], out);
+      check_joint(p, seen_[i], out);
+      check_side(p, seen_[i], out);
+    }
+  }
+
+  // Check 1 and 6: what the two have in common against what their points account for.
+  void check_overlap(const Pair& pair, FrameResult& out) const {
+    const int a = pair.a, b = pair.b;
+    const Common common = common_part(polygon(a), polygon(b));
+    if (common.area <= 0 && pair.begin == pair.end) return;
+    const double smaller = area_of(a, b);
+    if (prescribed(a) && prescribed(b)) {
+      const double share = common.area / smaller;
+      if (share > kPrescribed)
+        out.findings.push_back(finding(Defect::kPrescribedOverlap, true, a, b, common.at, share,
+                                       fmt::format("two fixed or driven blocks overlap by {:.3g} m2, {:.2g} "
+                                                   "% of the smaller; nothing keeps them apart",
+                                                   common.area, 100 * share)));
+      return;
+    }
+    const double explained = explained_by_points(pair);
+    const double left = common.area - explained;
+    if (left > 1e-9 * smaller) {
+      const double rest = std::max(0.0, left - crossing_product(pair, common));
+      const double share = rest / smaller;
+      if (share > out.unexplained_share) out.unexplained_share = share, out.unexplained_area = rest;
+      if (share > kOverlapWarns)
+        out.findings.push_back(finding(Defect::kUnexplainedOverlap, share > kOverlapInvalid, a, b, common.at,
+                                       share,
+                                       fmt::format("they overlap by {:.3g} m2, {:.3g} m2 of it ({:.2g} % of "
+                                                   "the smaller block) at no point that the run knows of",
+                                                   common.area, rest, 100 * share)));
+    }
+    check_normal(pair, common, out);
+  }
+
+  // The trapezium of the two ends of each face, the wedge of each corner alone, and what the solver may
+  // leave.
+  double explained_by_points(const Pair& pair) const {
+    const double size = size_of(pair.a, pair.b);
+    const double left = rules_.slop * size + rules_.tolerance;
+    double sum = 0;
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const int i = order_[static_cast<size_t>(k)];
+      const Point& p = frame_.points[static_cast<size_t>(i)];
+      const Seen& s = seen_[static_cast<size_t>(i)];
+      if (p.partner >= 0) {
+        if (p.partner < i) continue;  // counted with its other end
+        const Seen& o = seen_[static_cast<size_t>(p.partner)];
+        const double length = norm(o.place - s.place);
+        sum += trapezium(s.gap, o.gap, length) + left * length;
+      } else if (!p.bond()) {
+        sum += wedge(p, s, s.depth + left);
+      }
+    }
+    return sum;
+  }
+
+  // Area below zero of a gap that is linear along a face.
+  static double trapezium(double gap_0, double gap_1, double length) {
+    const double low = -std::min(gap_0, gap_1), high = -std::max(gap_0, gap_1);
+    if (low <= 0) return 0;
+    if (high >= 0) return 0.5 * (low + high) * length;
+    return 0.5 * low * length * low / (low - high);
+  }
+
+  // What of a corner lies below a line at its depth, between the ends of the side it acts on.
+  double wedge(const Point& p, const Seen& s, double depth) const {
+    if (depth <= 0) return 0;
+    const Polygon &a = polygon(p.block_a), &b = polygon(p.block_b);
+    const auto v = static_cast<size_t>(p.corner), e = static_cast<size_t>(p.edge);
+    const Polygon legs{a[v], a[(v + 1) % a.size()], a[(v + a.size() - 1) % a.size()]};
+    if (signed_area(legs) <= 0) return 0;  // a notch bears nothing
+    const Vec2 from = b[e], to = b[(e + 1) % b.size()], side = (to - from) / norm(to - from);
+    Polygon part = cut_below(legs, a[v] + depth * s.normal, s.normal);
+    if (part.size() > 2) part = cut_below(part, from, -side);
+    if (part.size() > 2) part = cut_below(part, to, side);
+    return part.size() > 2 ? std::abs(signed_area(part)) : 0;
+  }
+
+  // At a crossing of joints the blocks across the corner overlap by the product of the closures of the two
+  // joints that each has with a neighbour of both. Twice that: the joints need not be at right angles.
+  double crossing_product(const Pair& pair, const Common& common) const {
+    double most = 0;
+    const double reach = 3 * std::sqrt(common.area) + kPlace * size_of(pair.a, pair.b);
+    const auto& of_a = neighbours_[static_cast<size_t>(pair.a)];
+    const auto& of_b = neighbours_[static_cast<size_t>(pair.b)];
+    for (size_t x = 0, y = 0; x < of_a.size() && y < of_b.size();) {
+      if (of_a[x].block != of_b[y].block) {
+        of_a[x].block < of_b[y].block ? ++x : ++y;
+        continue;
+      }
+      const double closure_a = closure_near(of_a[x].pair, common.at, reach),
+                   closure_b = closure_near(of_b[y].pair, common.at, reach);
+      most = std::max(most, 2 * closure_a * closure_b);
+      ++x, ++y;
+    }
+    return most;
+  }
+
+  // The deepest closure of a pair at points within `reach` of a place, counted with its own depth.
+  double closure_near(int pair, Vec2 place, double reach) const {
+    const Pair& q = pairs_[static_cast<size_t>(pair)];
+    double most = rules_.slop * size_of(q.a, q.b) + rules_.tolerance;
+    for (int k = q.begin; k < q.end; ++k) {
+      const Seen& s = seen_[static_cast<size_t>(order_[static_cast<size_t>(k)])];
+      if (norm(s.place - place) <= reach + 3 * s.depth) most = std::max(most, s.depth);
+    }
+    return most;
+  }
+
+  // Check 8: closure, less the rise of the joint over its roughness, against the thinner of the two blocks.
+  void check_closure(const Point& p, const Seen& s, FrameResult& out) const {
+    const double closure = p.rise - s.gap;
+    if (closure <= 0 || norm(s.normal) == 0) return;
+    const Vec2 along = turn_right(s.normal);
+    const double thickness =
+        std::min(mean_thickness(polygon(p.block_a), along), mean_thickness(polygon(p.block_b), along));
+    const double share = closure / thickness;
+    if (s.depth > 0) out.closure_share = std::max(out.closure_share, share);
+    if (share <= kClosureWarns || s.depth <= 0) return;
+    out.findings.push_back(
+        finding(Defect::kDeepClosure, share > kClosureInvalid, p.block_a, p.block_b, s.place, share,
+                fmt::format("they have closed by {:.3g} m, {:.2g} % of the smaller mean thickness{}", closure,
+                            100 * share,
+                            p.in_situ > 0 && std::isfinite(p.in_situ)
+                                ? fmt::format(", besides {:.3g} m by the stress of the ground", p.in_situ)
+                                : "")));
+  }
+
+  // Check 2. A force acts over the step: it may close the gap that the two cross within it. Beyond that a gap
+  // may be off by what a followed point is (kPlace of the smaller block) and by the error of the solver.
+  void check_gap(const Point& p, const Seen& s, FrameResult& out) const {
+    const double size = size_of(p.block_a, p.block_b);
+    const double allowed = p.rise + p.in_situ + kPlace * size + rules_.slop * size + 2 * rules_.tolerance +
+                           3 * frame_.step * s.approach;
+    if (s.gap <= allowed) return;
+    // an elastic face that has closed at its other end pushes with its whole length
+    const Law* law = law_of(p);
+    const bool soft = p.joint == kUnknownJoint || (law && law->normal_stiffness > 0);
+    if (soft && p.partner >= 0 && seen_[static_cast<size_t>(p.partner)].gap < 0) return;
+    const double share = (s.gap - allowed) / size;
+    out.findings.push_back(
+        finding(Defect::kForceAcrossGap, std::abs(p.normal_force) > kForceInvalid * mean_force_, p.block_a,
+                p.block_b, s.place, share,
+                fmt::format("a force of {:.4g} N across a gap of {:.3g} m, where {:.2g} m may be",
+                            p.normal_force, s.gap, allowed)));
+  }
+
+  void check_joint(const Point& p, const Seen& s, FrameResult& out) const {
+    if (p.joint != kNoJoint || !rules_.joints_everywhere) return;
+    out.findings.push_back(
+        finding(Defect::kNoJoint, false, p.block_a, p.block_b, s.place, p.normal_force / mean_force_,
+                fmt::format("a force of {:.4g} N at a point without a joint", p.normal_force)));
+  }
+
+  // Check 3: the normal against the outline of what lies around the corner, the corner's own body left out.
+  // Joints that are hair gaps are closed first, else they hide that a side is covered; a corner that has
+  // fallen deeper into such a gap than the overlap bears on its side, and only gaps up to the overlap are
+  // closed. Sides of the outline shorter than the overlap are none: a corner that stands deeper than a step
+  // is high is past it.
+  void check_side(const Point& p, const Seen& s, FrameResult& out) const {
+    const double size = size_of(p.block_a, p.block_b);
+    const auto a = static_cast<size_t>(p.block_a);
+    double overlap = std::max(s.depth, std::abs(s.gap)) + kPlace * size;
+    for (const Neighbour& n : neighbours_[a])
+      overlap = std::max(overlap, closure_near(n.pair, s.place, 0.02 * size));
+    overlap = std::min(overlap, 0.05 * size);
+    const double hair = std::max(overlap, kHairGap * size);
+    // only where another block lies on the far side of this one
+    std::vector<const Polygon*> around{&polygon(p.block_b)};
+    const std::vector<int> own = glued_to(p.block_a, p.block_b);
+    bool covered = false;
+    const Vec2 ahead = s.place + (overlap - s.gap) * s.normal;
+    for (const Neighbour& n : neighbours_[static_cast<size_t>(p.block_b)]) {
+      if (std::find(own.begin(), own.end(), n.block) != own.end()) continue;
+      around.push_back(&polygon(n.block));
+      covered = covered || depth_in(polygon(n.block), ahead) > -2 * hair;
+    }
+    if (!covered) return;
+    const double reach = 10 * std::max(2 * overlap, hair);
+    for (const double closing : {hair, overlap}) {
+      double along = 0, nearest = reach;  // length of the outline that faces as the normal does
+      for (const Side& side : outline_near(around, s.place, reach, closing)) {
+        const double off = distance_to_segment(s.place, side.from, side.to);
+        nearest = std::min(nearest, off);
+        const Vec2 d = side.to - side.from;
+        if (off > 4 * overlap || norm(d) == 0) continue;
+        const double turned = std::atan2(cross(s.normal, turn_right(d)), dot(s.normal, turn_right(d)));
+        if (std::abs(turned) <= kAside) along += norm(d);
+      }
+      if (along > overlap) return;
+      if (nearest <= 2 * overlap) break;  // at the surface
+    }
+    const double share = std::abs(p.normal_force) / mean_force_;
+    out.findings.push_back(
+        finding(Defect::kCoveredSide, share > kForceInvalid, p.block_a, p.block_b, s.place, share,
+                fmt::format("a corner of \"{}\" bears with {:.4g} N on a side of \"{}\" that the next block "
+                            "covers (normal {:.2g}, {:.2g})",
+                            rules_.names[a], p.normal_force, rules_.names[static_cast<size_t>(p.block_b)],
+                            s.normal.x, s.normal.y)));
+  }
+
+  // Blocks near two others that are one body with the first, bond by bond, itself included.
+  std::vector<int> glued_to(int a, int b) const {
+    std::vector<int> body{a};
+    const auto is_near = [&](int i) {
+      for (const int centre : {a, b})
+        for (const Neighbour& n : neighbours_[static_cast<size_t>(centre)])
+          if (n.block == i) return i != b;
+      return false;
+    };
+    for (size_t k = 0; k < body.size(); ++k) {
+      for (const Neighbour& n : neighbours_[static_cast<size_t>(body[k])]) {
+        const Pair& pair = pairs_[static_cast<size_t>(n.pair)];
+        if (pair.begin == pair.end ||
+            !frame_.points[static_cast<size_t>(order_[static_cast<size_t>(pair.begin)])].bond())
+          continue;
+        if (is_near(n.block) && std::find(body.begin(), body.end(), n.block) == body.end())
+          body.push_back(n.block);
+      }
+    }
+    return body;
+  }
+
+  // Check 4, along the joint: the resultant of a face, or of a corner alone.
+  void check_shear(size_t i, FrameResult& out) const {
+    const Point& p = frame_.points[i];
+    if (p.partner >= 0 && static_cast<size_t>(p.partner) < i) return;
+    const Law* law = law_of(p);
+    if (p.joint == kUnknownJoint || (law && law->bonded)) return;
+    const Law none;
+    if (!law) law = &none;
+    double normal = p.normal_force, shear = p.shear_force, area = 0;
+    if (p.partner >= 0) {
+      const Point& o = frame_.points[static_cast<size_t>(p.partner)];
+      if (o.joint != p.joint) return;
+      area = norm(seen_[static_cast<size_t>(p.partner)].place - seen_[i].place) * rules_.thickness;
+      normal += o.normal_force, shear += o.shear_force;
+    }
+    const double slack = kLawSlack * (std::abs(normal) + law->cohesion * area) + kForceSeen * mean_force_;
+    const double limit = law->cohesion * area + law->friction * std::max(0.0, normal);
+    const double tension = law->tension * area;
+    if (std::abs(shear) > limit + slack)
+      out.findings.push_back(finding(
+          Defect::kShearLaw, std::abs(shear) > limit + slack + kForceInvalid * mean_force_, p.block_a,
+          p.block_b, seen_[i].place, std::abs(shear) / (limit + slack),
+          fmt::format("a shear force of {:.4g} N where the joint holds {:.4g} N", std::abs(shear), limit)));
+    if (-normal > tension + slack)
+      out.findings.push_back(
+          finding(Defect::kShearLaw, -normal > tension + slack + kForceInvalid * mean_force_, p.block_a,
+                  p.block_b, seen_[i].place, -normal / (tension + slack),
+                  fmt::format("a tension of {:.4g} N where the joint holds {:.4g} N", -normal, tension)));
+  }
+
+  // Check 4, across the joint: along an interface of an elastic joint the normal force is its stiffness times
+  // the overlap. Asked only where one interface is all that the two share, where nothing else closes the
+  // joint and where it hardly moves: the force of a step also damps.
+  void check_normal(const Pair& pair, const Common& common, FrameResult& out) const {
+    if (pair.begin == pair.end) return;
+    const double size = size_of(pair.a, pair.b);
+    double normal = 0, blurred = 0;  // area that the overlap may be off by
+    const Law* law = nullptr;
+    Vec2 direction, place;
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+      const Point& p = frame_.points[i];
+      const Seen& s = seen_[i];
+      const Law* here = law_of(p);
+      if (p.bond() || !here || here->normal_stiffness <= 0 || p.in_situ != 0 || p.rise != 0) return;
+      if (law && law != here) return;
+      law = here;
+      if (s.depth > 0 && 3 * frame_.step * s.approach > 0.1 * s.depth) return;
+      // one normal, whichever of the two has the corner
+      const Vec2 n = p.block_a == pair.a ? s.normal : -s.normal;
+      if (norm(direction) > 0 && (std::abs(cross(direction, n)) > kAlongside || dot(direction, n) < 0))
+        return;
+      direction = n;
+      if (!side_along(p, s)) return;
+      if (p.normal_force >= normal) place = s.place;
+      const double length =
+          p.partner >= 0 ? 0.5 * norm(seen_[static_cast<size_t>(p.partner)].place - s.place) : 0.02 * size;
+      blurred += length * (kPlace * size + 3 * frame_.step * s.approach);
+      normal += p.normal_force;
+    }
+    const double winkler = law->normal_stiffness * common.area * rules_.thickness;
+    const double either = law->normal_stiffness * blurred * rules_.thickness;
+    const double larger = std::max(normal, winkler) - either, smaller = std::min(normal, winkler) + either;
+    if (larger <= kForceInvalid * mean_force_ || larger <= kNormalWarns * smaller) return;
+    out.findings.push_back(finding(Defect::kNormalLaw, larger > kNormalInvalid * smaller, pair.a, pair.b,
+                                   place, larger / smaller,
+                                   fmt::format("a normal force of {:.4g} N, where the stiffness of the joint "
+                                               "times the overlap of the two is {:.4g} N",
+                                               normal, winkler)));
+  }
+
+  // Whether a side of the corner lies along the side that it is over.
+  bool side_along(const Point& p, const Seen& s) const {
+    const Polygon& a = polygon(p.block_a);
+    const auto v = static_cast<size_t>(p.corner);
+    for (const size_t k : {v, (v + a.size() - 1) % a.size()}) {
+      const Vec2 side = a[(k + 1) % a.size()] - a[k];
+      const Vec2 n = turn_right(side) / norm(side);
+      if (std::abs(cross(n, s.normal)) <= kAlongside && dot(n, s.normal) < 0) return true;
+    }
+    return false;
+  }
+
+  struct Neighbour {
+    int block, pair;
+  };
+
+  const Rules& rules_;
+  const Frame& frame_;
+  std::vector<double> area_, size_;
+  std::vector<Seen> seen_;
+  double mean_force_ = 0;
+  std::vector<int> order_;  // points, pair by pair
+  std::vector<Pair> pairs_;
+  std::vector<std::vector<Neighbour>> neighbours_;
+};
+
+}  // namespace
+
+FrameResult check_frame(const Rules& rules, const Frame& frame, const Workers& workers) {
+  return Check(rules, frame).run(workers);
+}
+
+void add_frame(const Rules& rules, const Frame& frame, const Workers& workers, Report& report) {
+  const FrameResult r = check_frame(rules, frame, workers);
+  report.add(r.findings);
+  ++report.frames;
+  if (r.unexplained_share > report.unexplained_share)
+    report.unexplained_share = r.unexplained_share, report.unexplained_area = r.unexplained_area;
+  report.closure_share = std::max(report.closure_share, r.closure_share);
+}
+
+}  // namespace talus::audit

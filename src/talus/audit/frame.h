@@ -1,0 +1,61 @@
+#pragma once
+// What the audit looks at: blocks as polygons and the points between them, as plain data. It does not say how
+// the points were found. Theory: docs/theory.md section 10.3.
+
+#include <string>
+#include <vector>
+
+#include "talus/geometry/polygon.h"
+
+namespace talus::audit {
+
+enum class Hold : char { kFree, kPrescribed, kRemoved };  // prescribed: fixed or driven
+
+struct Block {
+  Hold hold = Hold::kFree;
+  Polygon polygon;             // as it lies now, counter-clockwise [m]
+  std::vector<Vec2> velocity;  // of the corners [m/s]; empty: at rest
+};
+
+/// What a joint can carry, the larger of peak and residual values.
+struct Law {
+  double friction = 0;               // tan of the friction angle
+  double cohesion = 0, tension = 0;  // [Pa]
+  double normal_stiffness = 0;       // [Pa/m], 0: hard
+  bool bonded = false;               // carries anything
+};
+
+inline constexpr int kNoJoint = -1, kUnknownJoint = -2;
+
+/// A contact point, a corner of block a over an edge of block b; or one end of an intact face of bonds.
+struct Point {
+  int block_a = -1, block_b = -1;
+  int corner = -1, edge = -1;  // of a and of b; -1 both: the end of a bond, at `place`
+  Vec2 place;                  // on block a [m]
+  double gap = 0;              // of positions [m]; of bonds not used
+  double normal_force = 0;     // > 0 pressing [N]
+  double shear_force = 0;      // [N]
+  double rise = 0;             // of the joint over its roughness [m]
+  double in_situ = 0;          // closure by the stress of the ground, left out of the gap [m]
+  int partner = -1;            // other end of the face: its place in the list, -1: a corner alone
+  int joint = kUnknownJoint;   // index into Rules::laws
+  bool bond() const { return corner < 0; }
+};
+
+/// What holds for a whole run.
+struct Rules {
+  std::vector<std::string> names;  // of the blocks
+  std::vector<Law> laws;           // of the joints
+  bool joints_everywhere = false;  // the model gives a joint for pairs that have none of their own
+  double slop = 0;                 // overlap that hard contacts may keep, share of the smaller block's size
+  double tolerance = 0;            // largest contact error of a step [m]
+  double thickness = 1;            // [m]
+};
+
+struct Frame {
+  double time = 0, step = 0;  // [s], length of the time step [s]
+  std::vector<Block> blocks;
+  std::vector<Point> points;
+};
+
+}  // namespace talus::audit

@@ -1,0 +1,301 @@
+#include "talus/audit/read_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "talus/audit/check_frame.h"
+#include "talus/base/error.h"
+#include "talus/base/text_file.h"
+#include "talus/output/files.h"
+#include "talus/output/read_vtk.h"
+#include "talus/output/text_table.h"
+
+namespace talus::audit {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+namespace {
+
+// of the largest term of the ledger: what round-off and the half steps of impacts leave
+constexpr double kClosing = 1e-3;
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+class Reader {
+ public:
+  Reader(const fs::path& folder, FolderAudit& out) : folder_(folder), out_(out) {
+    read_summary();
+    read_names();
+    read_joints();
+    read_steps();
+  }
+
+  void frames(const Workers& workers) {
+    const auto blocks = read_series(folder_ / "fields" / "blocks.pvd"),
+               contacts = read_series(folder_ / "fields" / "contacts.pvd");
+    if (blocks.empty())
+      throw FileError(fmt::format("{}: holds no frames of a run", (folder_ / "fields").string()));
+    for (size_t i = 0; i < std::min(blocks.size(), contacts.size()); ++i)
+      add_frame(rules_, read_frame(blocks[i], contacts[i]), workers, out_.report);
+  }
+
+  void closing_and_failures() {
+    const auto& s = summary_;
+    if (s.contains("solver")) {
+      const auto failed = s["solver"].value("failed_steps", int64_t{0});
+      add_failed(failed, first_failed_, s["solver"].value("contact_error_at", std::string()), out_.report);
+    }
+    if (!s.contains("energy [J]")) return;
+    const auto& e = s["energy [J]"];
+    const double largest = e.value("term_largest", 0.0);
+    double closing = e.value("contact_closing_work", 0.0), friction = e.value("friction_work", 0.0),
+           time = end_;
+    for (const auto& [t, c, f] : closing_) {
+      if (c <= closing) continue;
+      closing = c, friction = f, time = t;
+    }
+    add_closing(closing, friction, largest, lifting_, time, out_.report);
+  }
+
+ private:
+  void read_summary() {
+    std::error_code ec;
+    if (!fs::is_directory(folder_, ec))
+      throw FileError(fmt::format("{}: there is no such folder", folder_.string()));
+    const fs::path file = folder_ / "summary.json";
+    if (!fs::exists(file, ec))
+      throw FileError(
+          fmt::format("{}: holds no results of talus run: summary.json is missing", folder_.string()));
+    try {
+      summary_ = ordered_json::parse(read_text_file(file));
+      if (!summary_.is_object() || !summary_.contains("model"))
+        throw FileError(fmt::format("{}: is no summary of a run that has ended", file.string()));
+      const auto& model = summary_["model"];
+      rules_.thickness = model.value("thickness [m]", 1.0);
+      rules_.tolerance = model.value("contact_tolerance [m]", 0.0);
+      rules_.joints_everywhere = model.contains("default_joint");
+      in_situ_ = model.value("in_situ_stress", false);
+      for (const auto& j : model["joints"]) {
+        Law law;
+        law.bonded = j.value("bonded", false);
+        law.friction = std::tan(kDegree * std::max(j.value("friction_angle [deg]", 0.0),
+                                                   j.value("friction_angle_after [deg]", 0.0)));
+        law.cohesion = std::max(j.value("cohesion [Pa]", 0.0), j.value("cohesion_after [Pa]", 0.0));
+        law.tension =
+            std::max(j.value("tensile_strength [Pa]", 0.0), j.value("tensile_strength_after [Pa]", 0.0));
+        law.normal_stiffness = j.value("normal_stiffness [Pa/m]", 0.0);
+        dilation_.push_back(std::tan(kDegree * j.value("dilation_angle [deg]", 0.0)));
+        lifting_ = lifting_ || dilation_.back() > 0;
+        joint_of_name_[j.value("name", std::string())] = static_cast<int>(rules_.laws.size());
+        rules_.laws.push_back(law);
+      }
+      for (const auto& stage : summary_["stages"]) {
+        stage_steps_.emplace_back(stage.value("end [s]", 0.0), stage.value("dt [s]", 0.0));
+        end_ = stage.value("end [s]", end_);
+      }
+    } catch (const nlohmann::json::exception& e) {
+      throw FileError(fmt::format("{}: cannot be read: {}", file.string(), e.what()));
+    }
+    // the summary does not hold the slop, nor what stages change
+    rules_.slop = 1e-7;
+    if (!fs::exists(folder_ / "model.toml", ec)) return;
+    const std::string model = read_text_file(folder_ / "model.toml");
+    static const std::regex slop(R"((^|\n)\s*slop\s*=\s*([0-9.eE+-]+))");
+    if (std::smatch found; std::regex_search(model, found, slop)) rules_.slop = std::stod(found[2]);
+    static const std::regex change(R"((^|\n)\s*\[\[change\]\])");
+    laws_change_ = std::regex_search(model, change);
+  }
+
+  void read_names() {
+    const TextTable table = read_text_table(folder_ / "blocks.csv");
+    const int id = table.find("id"), name = table.find("name");
+    if (id < 0 || name < 0)
+      throw FileError(fmt::format("{}: has no columns id and name", (folder_ / "blocks.csv").string()));
+    for (const auto& row : table.rows) {
+      const auto i = static_cast<size_t>(std::stoul(row[static_cast<size_t>(id)]));
+      if (rules_.names.size() <= i) rules_.names.resize(i + 1);
+      rules_.names[i] = row[static_cast<size_t>(name)];
+      number_of_[rules_.names[i]] = static_cast<int>(i);
+    }
+    out_.names = rules_.names;
+  }
+
+  // Joints of points stand in joints.csv, at the ends of stages: a pair with one joint there has it
+  // throughout.
+  void read_joints() {
+    std::error_code ec;
+    if (!fs::exists(folder_ / "joints.csv", ec)) return;
+    const TextTable table = read_text_table(folder_ / "joints.csv");
+    const int a = table.find("block_a"), b = table.find("block_b"), joint = table.find("joint");
+    if (a < 0 || b < 0 || joint < 0) return;
+    for (const auto& row : table.rows) {
+      const std::string& name = row[static_cast<size_t>(joint)];
+      const auto known = joint_of_name_.find(name);
+      const int here = name.empty()                    ? kNoJoint
+                       : known == joint_of_name_.end() ? kUnknownJoint
+                                                       : known->second;
+      const std::pair<int, int> pair =
+          std::minmax(number_of_[row[static_cast<size_t>(a)]], number_of_[row[static_cast<size_t>(b)]]);
+      const auto [it, fresh] = joint_of_pair_.emplace(pair, here);
+      if (!fresh && it->second != here) it->second = kUnknownJoint;
+    }
+  }
+
+  void read_steps() {
+    std::error_code ec;
+    if (!fs::exists(folder_ / "steps.csv", ec)) return;
+    const CsvTable table = read_csv(folder_ / "steps.csv");
+    if (table.rows() == 0) return;
+    const auto &t = table.column("t [s]"), &failed = table.column("failed steps"),
+               &closing = table.column("contact closing work [J]"),
+               &friction = table.column("friction work [J]");
+    for (size_t i = 0; i < table.rows(); ++i) {
+      if (failed[i] > 0 && std::isnan(first_failed_)) first_failed_ = t[i];
+      closing_.push_back({t[i], closing[i], friction[i]});
+    }
+  }
+
+  Frame read_frame(const SeriesEntry& blocks, const SeriesEntry& contacts) const {
+    Frame frame;
+    frame.time = blocks.time;
+    frame.step = step_at(blocks.time);
+    read_blocks(read_vtk(blocks.file), frame);
+    read_points(read_vtk(contacts.file), frame);
+    return frame;
+  }
+
+  double step_at(double time) const {
+    for (const auto& [end, dt] : stage_steps_)
+      if (time < end) return dt;
+    return stage_steps_.empty() ? 0 : stage_steps_.back().second;
+  }
+
+  void read_blocks(const VtkFrame& vtk, Frame& frame) const {
+    frame.blocks.resize(rules_.names.size());
+    for (Block& b : frame.blocks) b.hold = Hold::kRemoved;
+    const auto &points = vtk.at("Points", 3).values, &velocity = vtk.at("velocity [m s-1]", 3).values,
+               &offsets = vtk.at("offsets", 1).values, &id = vtk.at("block", 1).values,
+               &kind = vtk.at("kind", 1).values;
+    size_t corner = 0;
+    for (size_t i = 0; i < id.size(); ++i) {
+      if (!(id[i] >= 0) || id[i] >= static_cast<double>(frame.blocks.size()))
+        throw FileError(fmt::format("{}: has a block that blocks.csv does not name", vtk.file));
+      Block& b = frame.blocks[static_cast<size_t>(id[i])];
+      b.hold = kind[i] >= 2 ? Hold::kPrescribed : Hold::kFree;  // deformable, rigid, fixed, driven
+      for (; corner < static_cast<size_t>(offsets[i]) && 3 * corner + 1 < points.size(); ++corner) {
+        b.polygon.push_back({points[3 * corner], points[3 * corner + 1]});
+        b.velocity.push_back({velocity[3 * corner], velocity[3 * corner + 1]});
+      }
+      if (b.polygon.size() < 3) throw FileError(fmt::format("{}: has a block without corners", vtk.file));
+    }
+  }
+
+  void read_points(const VtkFrame& vtk, Frame& frame) const {
+    for (const char* name : {"block a", "block b", "corner", "edge", "partner"})
+      if (!vtk.has(name))
+        throw FileError(
+            fmt::format("{}: has no \"{}\": a talus older than the audit needs wrote it", vtk.file, name));
+    const auto column = [&vtk](const char* name) -> const std::vector<double>& {
+      return vtk.at(name, 1).values;
+    };
+    const auto &place = vtk.at("Points", 3).values, &kind = column("kind"), &a = column("block a"),
+               &b = column("block b"), &corner = column("corner"), &edge = column("edge"),
+               &partner = column("partner"), &gap = column("gap [m]"), &normal = column("normal force [N]"),
+               &shear = column("shear force [N]"), &slip = column("slip [m]");
+    std::vector<int> at(kind.size(), -1);  // in the list of points
+    for (size_t i = 0; i < kind.size(); ++i) {
+      if (kind[i] != 0 && kind[i] != 1) continue;
+      Point p;
+      p.block_a = static_cast<int>(a[i]), p.block_b = static_cast<int>(b[i]);
+      check_number(vtk, p.block_a, frame.blocks.size());
+      check_number(vtk, p.block_b, frame.blocks.size());
+      if (kind[i] == 0) {
+        p.corner = static_cast<int>(corner[i]), p.edge = static_cast<int>(edge[i]);
+        check_number(vtk, p.corner, frame.blocks[static_cast<size_t>(p.block_a)].polygon.size());
+        check_number(vtk, p.edge, frame.blocks[static_cast<size_t>(p.block_b)].polygon.size());
+      }
+      p.place = {place[3 * i], place[3 * i + 1]};
+      p.gap = gap[i], p.normal_force = normal[i], p.shear_force = shear[i];
+      const auto joint = joint_of_pair_.find(std::minmax(p.block_a, p.block_b));
+      p.joint = joint == joint_of_pair_.end() || laws_change_ ? kUnknownJoint : joint->second;
+      // the way up to which a joint rises is not in the folder: the frame's slip is
+      if (p.joint >= 0) p.rise = dilation_[static_cast<size_t>(p.joint)] * slip[i];
+      if (p.joint == kUnknownJoint && lifting_)
+        p.rise = *std::max_element(dilation_.begin(), dilation_.end()) * slip[i];
+      const bool soft = p.joint == kUnknownJoint ||
+                        (p.joint >= 0 && rules_.laws[static_cast<size_t>(p.joint)].normal_stiffness > 0);
+      if (in_situ_ && soft) p.in_situ = std::numeric_limits<double>::infinity();
+      at[i] = static_cast<int>(frame.points.size());
+      frame.points.push_back(p);
+    }
+    for (size_t i = 0; i < kind.size(); ++i) {
+      if (at[i] < 0 || partner[i] < 0 || partner[i] >= static_cast<double>(kind.size())) continue;
+      frame.points[static_cast<size_t>(at[i])].partner = at[static_cast<size_t>(partner[i])];
+    }
+  }
+
+  static void check_number(const VtkFrame& vtk, int number, size_t count) {
+    if (number < 0 || static_cast<size_t>(number) >= count)
+      throw FileError(fmt::format("{}: a point names a block, corner or edge that there is not", vtk.file));
+  }
+
+  struct Closing {
+    double time, closing, friction;
+  };
+
+  fs::path folder_;
+  FolderAudit& out_;
+  ordered_json summary_;
+  Rules rules_;
+  std::vector<double> dilation_;  // [joints] tan of the angle
+  bool lifting_ = false, in_situ_ = false, laws_change_ = false;
+  std::map<std::string, int> joint_of_name_, number_of_;
+  std::map<std::pair<int, int>, int> joint_of_pair_;
+  std::vector<std::pair<double, double>> stage_steps_;  // end, dt [s]
+  std::vector<Closing> closing_;
+  double first_failed_ = std::nan(""), end_ = 0;
+};
+
+}  // namespace
+
+void add_closing(double closing, double friction, double largest, bool lifting, double time, Report& report) {
+  const double allowed = kClosing * largest + (lifting ? std::max(0.0, -friction) : 0);
+  if (!(closing > allowed)) return;
+  report.add({Defect::kClosingWork,
+              true,
+              -1,
+              -1,
+              time,
+              {},
+              closing / largest,
+              fmt::format("closing contacts have given {:.4g} J by t = {:.6g} s, {:.2g} % of the largest "
+                          "term of the ledger; "
+                          "they can only take",
+                          closing, time, 100 * closing / largest)});
+}
+
+void add_failed(int64_t failed, double time, const std::string& where, Report& report) {
+  if (failed <= 0) return;
+  Finding f{Defect::kFailedSteps,        true, -1, -1, std::isnan(time) ? 0 : time, {},
+            static_cast<double>(failed), {}};
+  f.text = fmt::format("{} step{} did not reach the tolerance of the contact equations{}{}", failed,
+                       failed == 1 ? "" : "s",
+                       std::isnan(time) ? "" : fmt::format(", first at t = {:.6g} s", time),
+                       where.empty() ? "" : ", worst at " + where);
+  report.add(f);
+}
+
+FolderAudit audit_folder(const fs::path& folder, const Workers& workers) {
+  FolderAudit out;
+  Reader reader(folder, out);
+  reader.frames(workers);
+  reader.closing_and_failures();
+  return out;
+}
+
+}  // namespace talus::audit

@@ -1,0 +1,26 @@
+#pragma once
+// The audit of a result folder, frame by frame. Whatever an older talus did not write is not asked for.
+
+#include <filesystem>
+
+#include "talus/audit/findings.h"
+#include "talus/base/parallel.h"
+
+namespace talus::audit {
+
+struct FolderAudit {
+  Report report;
+  std::vector<std::string> names;      // of the blocks
+  std::vector<std::string> not_asked;  // what the folder does not tell
+};
+
+/// Throws FileError when the folder holds no run, or a file in it cannot be read.
+FolderAudit audit_folder(const std::filesystem::path& folder, const Workers& workers = Workers());
+
+/// Failed steps and work of closing contacts, which the run itself counts.
+/// @param largest  term of the ledger [J]
+/// @param lifting  whether joints dilate: their lifting is work of closing contacts, paid for by friction
+void add_closing(double closing, double friction, double largest, bool lifting, double time, Report& report);
+void add_failed(int64_t failed, double time, const std::string& where, Report& report);
+
+}  // namespace talus::audit

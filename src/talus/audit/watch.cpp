@@ -1,0 +1,188 @@
+#include "talus/audit/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "talus/audit/shapes.h"
+
+namespace talus::audit {
+
+namespace {
+
+constexpr double kSamePlace = 1e-3;  // of the smaller block: points this near are one place
+constexpr double kOverlap = 1e-5;    // of the smaller block: less is the error of a followed point
+constexpr double kDeep = 1e-3;       // of the smaller block: what it may not lose a force over
+constexpr double kWeighty = 1e-3;    // of the mean force: less is round-off of redundant points
+constexpr double kThrough = 0.25;    // of the least mean thickness: a depth on a block's way through
+
+std::pair<int, int> pair_of(const StepPoint& p) { return std::minmax(p.block_a, p.block_b); }
+
+Vec2 velocity_of(const Block& block, int corner) {
+  return block.velocity.empty() ? Vec2{} : block.velocity[static_cast<size_t>(corner)];
+}
+
+double least_thickness(const Polygon& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t k = 0; k < p.size(); ++k) {
+    const Vec2 side = p[(k + 1) % p.size()] - p[k];
+    least = std::min(least, mean_thickness(p, side / norm(side)));
+  }
+  return least;
+}
+
+// Where on the way p to q the polygon's sides are crossed, as shares of the way, from 0 to 1.
+std::vector<double> crossings(const Polygon& polygon, Vec2 p, Vec2 q) {
+  std::vector<double> at{0, 1};
+  for (size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[k], side = polygon[(k + 1) % polygon.size()] - a, way = q - p;
+    const double d = cross(way, side);
+    if (d == 0) continue;
+    const double t = cross(a - p, side) / d, s = cross(a - p, way) / d;
+    if (t > 0 && t < 1 && s >= 0 && s <= 1) at.push_back(t);
+  }
+  std::sort(at.begin(), at.end());
+  return at;
+}
+
+}  // namespace
+
+void Watch::look(const Step& step, Report& report) {
+  if (known_) {
+    forces_gone(step, report);
+    blocks_through(step, report);
+    ++report.steps;
+  }
+  known_ = true;
+  before_.clear();
+  for (const StepPoint& p : step.points)
+    if (p.normal_force > 0) before_.push_back(p);
+  centroid_before_ = step.centroid;
+}
+
+// Most points are the same as before: the two lists are walked side by side, and only what has no force any
+// more is looked at.
+void Watch::forces_gone(const Step& step, Report& report) const {
+  double sum = 0;
+  for (const StepPoint& p : before_) sum += p.normal_force;
+  const double weighty = before_.empty() ? 0 : kWeighty * sum / static_cast<double>(before_.size());
+  size_t now = 0;
+  for (const StepPoint& p : before_) {
+    while (now < step.points.size() && pair_of(step.points[now]) < pair_of(p)) ++now;
+    const StepPoint* same = nullptr;
+    for (size_t k = now; k < step.points.size() && pair_of(step.points[k]) == pair_of(p); ++k)
+      if (step.points[k].same_place(p)) same = &step.points[k];
+    if (p.normal_force <= weighty || (same && same->normal_force > 0)) continue;
+    if (same && same->gap >= 0) continue;
+    judge(step, p, same, report);
+  }
+}
+
+// A point without its force: has another point at the same place taken it over, or do the two still overlap?
+void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* now, Report& report) const {
+  const auto a = static_cast<size_t>(before.block_a), b = static_cast<size_t>(before.block_b);
+  if (step.blocks[a].hold == Hold::kRemoved || step.blocks[b].hold == Hold::kRemoved) return;
+  const double size = std::min(step.blocks[a].size, step.blocks[b].size);
+  const Block shape_a = step.shape(before.block_a), shape_b = step.shape(before.block_b);
+  const Vec2 place = shape_a.polygon[static_cast<size_t>(before.corner)];
+  const auto e = static_cast<size_t>(before.edge), next = (e + 1) % shape_b.polygon.size();
+  const Vec2 side = shape_b.polygon[next] - shape_b.polygon[e], normal = turn_right(side) / norm(side);
+  const double inside = depth_in(shape_b.polygon, place);
+  const double depth = now ? -now->gap : std::min(inside, -dot(normal, place - shape_b.polygon[e]));
+  // within the step the two may still part
+  const Vec2 velocity =
+      velocity_of(shape_a, before.corner) -
+      0.5 * (velocity_of(shape_b, before.edge) + velocity_of(shape_b, static_cast<int>(next)));
+  const double allowed =
+      (kOverlap + rules_.slop) * size + 2 * rules_.tolerance + 3 * step.step * norm(velocity);
+  if (depth <= allowed) return;
+  const double near = kSamePlace * size + step.step * norm(velocity);
+  for (const StepPoint& p : step.points) {
+    if (p.normal_force <= 0) continue;
+    const bool of_pair = pair_of(p) == pair_of(before);
+    // over a crossing the force passes to the neighbour
+    if (!of_pair && p.block_a != before.block_a) continue;
+    const Vec2 there = p.block_a == before.block_a   ? shape_a.polygon[static_cast<size_t>(p.corner)]
+                       : p.block_a == before.block_b ? shape_b.polygon[static_cast<size_t>(p.corner)]
+                                                     : place;
+    if (norm(there - place) <= near) return;
+  }
+  report.add(
+      {Defect::kForceVanished, depth > kDeep * size, before.block_a, before.block_b, step.time, place,
+       depth / size,
+       fmt::format("a force of {:.4g} N is gone from one step to the next, while the two overlap by {:.3g} m",
+                   before.normal_force, depth)});
+}
+
+void Watch::blocks_through(const Step& step, Report& report) const {
+  double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < step.centroid.size(); ++i) {
+    if (step.blocks[i].hold == Hold::kRemoved) continue;
+    fastest = std::max(fastest, norm(step.centroid[i] - centroid_before_[i]));
+    thinnest = std::min(thinnest, step.blocks[i].thin);
+  }
+  if (fastest <= kThrough * thinnest) return;  // nothing can go through anything
+  std::vector<Box> boxes;
+  std::vector<int> block;
+  for (size_t i = 0; i < step.centroid.size(); ++i) {
+    if (step.blocks[i].hold == Hold::kRemoved) continue;
+    const Vec2 now = step.centroid[i], was = centroid_before_[i];
+    const Vec2 r{step.blocks[i].radius, step.blocks[i].radius};
+    boxes.push_back({Vec2{std::min(now.x, was.x), std::min(now.y, was.y)} - r,
+                     Vec2{std::max(now.x, was.x), std::max(now.y, was.y)} + r});
+    block.push_back(static_cast<int>(i));
+  }
+  for (const auto& [x, y] : close_pairs(boxes, 0)) {
+    const int i = block[static_cast<size_t>(x)], j = block[static_cast<size_t>(y)];
+    const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
+    const Vec2 moved = (step.centroid[a] - centroid_before_[a]) - (step.centroid[b] - centroid_before_[b]);
+    if (norm(moved) <= kThrough * std::min(step.blocks[a].thin, step.blocks[b].thin)) continue;
+    Vec2 at;
+    if (!went_through(step, i, j, at) && !went_through(step, j, i, at)) continue;
+    report.add({Defect::kCrossed, true, i, j, step.time, at,
+                norm(moved) / std::min(step.blocks[a].thin, step.blocks[b].thin),
+                fmt::format(
+                    "they move by {:.3g} m against each other in one step, through more than half of what is "
+                    "in the way",
+                    norm(moved))});
+  }
+}
+
+// Whether a corner or the centroid of block i went through block j within the step, block j standing still.
+bool Watch::went_through(const Step& step, int i, int j, Vec2& at) const {
+  const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
+  const Vec2 moved = (step.centroid[a] - centroid_before_[a]) - (step.centroid[b] - centroid_before_[b]);
+  const Polygon polygon = step.shape(j).polygon;
+  const double thin = least_thickness(polygon);
+  Polygon corners = step.shape(i).polygon;
+  corners.push_back(step.centroid[a]);
+  for (const Vec2 now : corners) {
+    const Vec2 was = now - moved;
+    if (contains(polygon, was, 1e-3 * thin)) continue;
+    const std::vector<double> cut = crossings(polygon, was, now);
+    for (size_t k = 0; k + 1 < cut.size(); ++k) {
+      // the way inside is as deep as its middle, or its end where it stays inside
+      for (const double share : {0.5 * (cut[k] + cut[k + 1]), cut[k + 1]}) {
+        const Vec2 here = was + share * moved;
+        if (depth_in(polygon, here) <= kThrough * thin) continue;
+        at = here;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void Watch::exchange(Exchange& x, const std::string& name) {
+  x(name + ".known", known_);
+  x.each(name + ".before", before_, [](auto& field, StepPoint& p) {
+    field("block_a", p.block_a), field("corner", p.corner), field("block_b", p.block_b),
+        field("edge", p.edge);
+    field("normal_force", p.normal_force), field("gap", p.gap);
+  });
+  x(name + ".centroid_before", centroid_before_);
+}
+
+}  // namespace talus::audit

@@ -56,6 +56,9 @@ class Check {
       for (size_t q = begin; q < end; ++q) check_pair(pairs_[q], part[q]);
     });
     FrameResult all;
+    for (const Point& p : frame_.points)
+      all.slack +=
+          std::abs(p.normal_force) * (rules_.slop * size_of(p.block_a, p.block_b) + 2 * rules_.tolerance);
     for (FrameResult& r : part) {
       all.findings.insert(all.findings.end(), r.findings.begin(), r.findings.end());
       if (r.unexplained_share > all.unexplained_share)
@@ -152,8 +155,12 @@ class Check {
       boxes.push_back(bounding_box(frame_.blocks[i].polygon));
       block.push_back(static_cast<int>(i));
     }
+    // neighbours across a hair gap too
+    double margin = 0;
+    for (const int i : block)
+      margin += 2 * kHairGap * size_[static_cast<size_t>(i)] / static_cast<double>(block.size());
     std::vector<std::pair<int, int>> list;
-    for (const auto& [i, j] : close_pairs(boxes, 0))
+    for (const auto& [i, j] : close_pairs(boxes, margin))
       list.emplace_back(block[static_cast<size_t>(i)], block[static_cast<size_t>(j)]);
     const auto pair_of = [this](int i) {
       const Point& p = frame_.points[static_cast<size_t>(i)];
@@ -529,6 +536,7 @@ void add_frame(const Rules& rules, const Frame& frame, const Workers& workers, R
   if (r.unexplained_share > report.unexplained_share)
     report.unexplained_share = r.unexplained_share, report.unexplained_area = r.unexplained_area;
   report.closure_share = std::max(report.closure_share, r.closure_share);
+  report.slack = std::max(report.slack, r.slack);
 }
 
 }  // namespace talus::audit

@@ -1,7 +1,7 @@
 #pragma once
 // The audit of one instant: are the points between blocks, and their forces, what the polygons say? It looks
 // at polygons and points alone and shares no code with the search for contacts. Theory: docs/theory.md
-// section 10.3.
+// section 12.
 
 #include "talus/audit/findings.h"
 #include "talus/audit/frame.h"
@@ -13,6 +13,7 @@ struct FrameResult {
   std::vector<Finding> findings;  // in the order of pairs and points
   double unexplained_share = 0, unexplained_area = 0;
   double closure_share = 0;
+  double slack = 0;  // as Report::slack
 };
 
 /// @pre  the polygons of blocks that are not removed are simple, counter-clockwise

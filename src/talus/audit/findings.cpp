@@ -84,7 +84,7 @@ std::vector<std::string> Report::lines(const std::vector<std::string>& names) co
 void Report::exchange(Exchange& x, const std::string& name) {
   x(name + ".frames", frames), x(name + ".steps", steps);
   x(name + ".unexplained_share", unexplained_share), x(name + ".unexplained_area", unexplained_area);
-  x(name + ".closure_share", closure_share);
+  x(name + ".closure_share", closure_share), x(name + ".slack", slack);
   for (size_t d = 0; d < kDefects; ++d) {
     const std::string entry = name + "." + kKey[d];
     x(entry + ".count", entries_[d].count), x(entry + ".invalid", entries_[d].invalid);

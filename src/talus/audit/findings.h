@@ -66,7 +66,8 @@ class Report {
   int64_t frames = 0, steps = 0;  // looked at
   double unexplained_share = 0;   // largest unexplained overlap, of the smaller block's area
   double unexplained_area = 0;    // the same [m2]
-  double closure_share = 0;       // largest closure, of the smaller mean thickness
+  double slack = 0;          // [J] what all forces may do within slop and tolerance: less work is round-off
+  double closure_share = 0;  // largest closure, of the smaller mean thickness
 
   /// Saves or loads it, under names that begin with `name`.
   void exchange(Exchange& exchange, const std::string& name);

@@ -1,6 +1,6 @@
 #pragma once
 // What the audit looks at: blocks as polygons and the points between them, as plain data. It does not say how
-// the points were found. Theory: docs/theory.md section 10.3.
+// the points were found. Theory: docs/theory.md section 12.
 
 #include <string>
 #include <vector>

@@ -264,7 +264,7 @@ class Reader {
 }  // namespace
 
 void add_closing(double closing, double friction, double largest, bool lifting, double time, Report& report) {
-  const double allowed = kClosing * largest + (lifting ? std::max(0.0, -friction) : 0);
+  const double allowed = kClosing * largest + report.slack + (lifting ? std::max(0.0, -friction) : 0);
   if (!(closing > allowed)) return;
   report.add({Defect::kClosingWork,
               true,

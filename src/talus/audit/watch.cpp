@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kSamePlace = 1e-3;  // of the smaller block: points this near are one place
 constexpr double kOverlap = 1e-5;    // of the smaller block: less is the error of a followed point
+constexpr double kFirm = 1e-4;       // of the smaller block: what a force that counts is not lost over
+constexpr double kCounts = 0.1;      // of the mean force
 constexpr double kDeep = 1e-3;       // of the smaller block: what it may not lose a force over
 constexpr double kWeighty = 1e-3;    // of the mean force: less is round-off of redundant points
 constexpr double kThrough = 0.25;    // of the least mean thickness: a depth on a block's way through
@@ -65,23 +67,23 @@ void Watch::look(const Step& step, Report& report) {
 // Most points are the same as before: the two lists are walked side by side, and only what has no force any
 // more is looked at.
 void Watch::forces_gone(const Step& step, Report& report) const {
-  double sum = 0;
-  for (const StepPoint& p : before_) sum += p.normal_force;
-  const double weighty = before_.empty() ? 0 : kWeighty * sum / static_cast<double>(before_.size());
+  double mean = 0;
+  for (const StepPoint& p : before_) mean += p.normal_force / static_cast<double>(before_.size());
   size_t now = 0;
   for (const StepPoint& p : before_) {
     while (now < step.points.size() && pair_of(step.points[now]) < pair_of(p)) ++now;
     const StepPoint* same = nullptr;
     for (size_t k = now; k < step.points.size() && pair_of(step.points[k]) == pair_of(p); ++k)
       if (step.points[k].same_place(p)) same = &step.points[k];
-    if (p.normal_force <= weighty || (same && same->normal_force > 0)) continue;
+    if (p.normal_force <= kWeighty * mean || (same && same->normal_force > 0)) continue;
     if (same && same->gap >= 0) continue;
-    judge(step, p, same, report);
+    judge(step, p, same, mean, report);
   }
 }
 
 // A point without its force: has another point at the same place taken it over, or do the two still overlap?
-void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* now, Report& report) const {
+void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
+                  Report& report) const {
   const auto a = static_cast<size_t>(before.block_a), b = static_cast<size_t>(before.block_b);
   if (step.blocks[a].hold == Hold::kRemoved || step.blocks[b].hold == Hold::kRemoved) return;
   const double size = std::min(step.blocks[a].size, step.blocks[b].size);
@@ -109,9 +111,9 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
                                                      : place;
     if (norm(there - place) <= near) return;
   }
+  const bool invalid = depth > kDeep * size || (depth > kFirm * size && before.normal_force > kCounts * mean);
   report.add(
-      {Defect::kForceVanished, depth > kDeep * size, before.block_a, before.block_b, step.time, place,
-       depth / size,
+      {Defect::kForceVanished, invalid, before.block_a, before.block_b, step.time, place, depth / size,
        fmt::format("a force of {:.4g} N is gone from one step to the next, while the two overlap by {:.3g} m",
                    before.normal_force, depth)});
 }

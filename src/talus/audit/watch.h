@@ -1,7 +1,7 @@
 #pragma once
 // The audit of every step: forces that vanish while the two blocks still overlap, and blocks that go through
 // each other within one step. As cheap as a look over the contacts; polygons are made only where something
-// may be wrong. Theory: docs/theory.md section 10.3.
+// may be wrong. Theory: docs/theory.md section 12.
 
 #include <functional>
 
@@ -50,7 +50,8 @@ class Watch {
 
  private:
   void forces_gone(const Step& step, Report& report) const;
-  void judge(const Step& step, const StepPoint& before, const StepPoint* now, Report& report) const;
+  void judge(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
+             Report& report) const;
   void blocks_through(const Step& step, Report& report) const;
   bool went_through(const Step& step, int i, int j, Vec2& at) const;
 

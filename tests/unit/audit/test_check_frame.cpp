@@ -1,0 +1,259 @@
+#include "talus/audit/check_frame.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+using namespace talus;
+using namespace talus::audit;
+
+namespace {
+
+Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
+
+// Blocks of 1 m; names "b0", "b1" ...; one joint: friction 30 deg, 20 GPa/m where it is soft.
+struct Case {
+  Rules rules;
+  Frame frame;
+
+  explicit Case(const std::vector<Polygon>& polygons, double stiffness = 0) {
+    for (const Polygon& p : polygons) {
+      rules.names.push_back("b" + std::to_string(rules.names.size()));
+      frame.blocks.push_back({Hold::kFree, p, {}});
+    }
+    rules.laws.push_back({.friction = std::tan(std::acos(-1) / 6), .normal_stiffness = stiffness});
+    rules.slop = 1e-7;
+    rules.joints_everywhere = true;
+    frame.time = 2, frame.step = 1e-4;
+  }
+  // a corner of block a over an edge of block b
+  Point& add(int a, int corner, int b, int edge, double gap, double normal, double shear = 0) {
+    Point p;
+    p.block_a = a, p.corner = corner, p.block_b = b, p.edge = edge;
+    p.gap = gap, p.normal_force = normal, p.shear_force = shear, p.joint = 0;
+    frame.points.push_back(p);
+    return frame.points.back();
+  }
+  void pair_last_two() {
+    const int n = static_cast<int>(frame.points.size());
+    frame.points[static_cast<size_t>(n - 1)].partner = n - 2;
+    frame.points[static_cast<size_t>(n - 2)].partner = n - 1;
+  }
+  FrameResult look() const { return check_frame(rules, frame); }
+};
+
+bool has(const FrameResult& r, Defect defect, bool invalid) {
+  return std::any_of(r.findings.begin(), r.findings.end(),
+                     [&](const Finding& f) { return f.defect == defect && f.invalid == invalid; });
+}
+
+// A block on a wider one, `closure` inside it, one point at each end.
+Case face(double closure, double force, double stiffness = 0) {
+  Case c({box(-1, -1, 2, 0), box(0, -closure, 1, 1 - closure)}, stiffness);
+  c.add(1, 0, 0, 2, -closure, force);
+  c.add(1, 1, 0, 2, -closure, force);
+  c.pair_last_two();
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("audit: a face whose two ends account for its overlap is clean, at a closure of 4 % too") {
+  for (const double closure : {0.0, 1e-6, 1e-3, 0.04}) {
+    const FrameResult r = face(closure, 1e5).look();
+    CHECK(r.findings.empty());
+    CHECK(r.unexplained_share < 1e-12);
+    CHECK(r.closure_share == doctest::Approx(closure));
+  }
+  // of the thinner: 3 m wide and 1 m high against 1 m x 1 m
+  CHECK(has(face(0.06, 1e5).look(), Defect::kDeepClosure, false));
+  CHECK(has(face(0.3, 1e5).look(), Defect::kDeepClosure, true));
+}
+
+TEST_CASE("audit: an overlap that no point accounts for is named with its pair, place and share") {
+  Case c = face(0.02, 1e5);
+  c.frame.points.clear();
+  FrameResult r = c.look();
+  REQUIRE(r.findings.size() == 1);
+  const Finding& f = r.findings[0];
+  CHECK(f.defect == Defect::kUnexplainedOverlap);
+  CHECK(f.invalid);
+  CHECK(f.block_a == 0);
+  CHECK(f.block_b == 1);
+  CHECK(f.time == 2);
+  CHECK(f.share == doctest::Approx(0.02));
+  CHECK(f.place.x == doctest::Approx(0.5));
+  CHECK(f.place.y == doctest::Approx(-0.01));
+
+  c = face(1e-3, 1e5);
+  c.frame.points.clear();
+  CHECK(has(c.look(), Defect::kUnexplainedOverlap, false));  // 0.1 %: a warning
+  c = face(5e-5, 1e5);
+  c.frame.points.clear();
+  CHECK(c.look().findings.empty());
+
+  // points that tell too small a depth explain only that
+  c = face(0.02, 1e5);
+  for (Point& p : c.frame.points) p.gap = -0.005;
+  CHECK(c.look().unexplained_share == doctest::Approx(0.015).epsilon(1e-4));
+}
+
+TEST_CASE(
+    "audit: a corner alone accounts for its wedge, a block across a crossing for the product of closures") {
+  // a square on its corner, 1 cm deep: legs at 45 degrees, area d^2
+  const double d = 0.01, r = std::sqrt(0.5);
+  Case c({box(-1, -1, 1, 0), {{0, -d}, {r, r - d}, {0, 2 * r - d}, {-r, r - d}}});
+  c.add(1, 0, 0, 2, -d, 1e5);
+  CHECK(c.look().findings.empty());
+  CHECK(c.look().unexplained_share < 1e-9);
+  c.frame.points.clear();
+  CHECK(c.look().unexplained_area == doctest::Approx(d * d));
+
+  // four blocks at a crossing of two joints closed by 2 cm: 0 and 3 overlap by 2 cm x 2 cm, at no point
+  const double k = 0.02;
+  Case x(
+      {box(0, 0, 1, 1), box(1 - k, 0, 2 - k, 1), box(0, 1 - k, 1, 2 - k), box(1 - k, 1 - k, 2 - k, 2 - k)});
+  const auto join = [&x, k](int a, int corner_0, int corner_1, int b, int edge) {
+    x.add(a, corner_0, b, edge, -k, 1e5);
+    x.add(a, corner_1, b, edge, -k, 1e5);
+    x.pair_last_two();
+  };
+  join(1, 3, 0, 0, 1), join(2, 0, 1, 0, 2), join(3, 0, 1, 1, 2), join(3, 3, 0, 2, 1);
+  CHECK(x.look().unexplained_share < 1e-9);
+  x.frame.points.resize(4);  // 3 without an interface: its overlaps with 1 and 2, and across, are nobody's
+  CHECK(has(x.look(), Defect::kUnexplainedOverlap, true));
+}
+
+TEST_CASE("audit: an intact glued face accounts for its overlap by its two ends") {
+  Case c({box(0, 0, 1, 1), box(0, 0.98, 1, 1.98)});
+  for (const double x : {0.0, 1.0}) {
+    Point p;
+    p.block_a = 1, p.block_b = 0, p.place = {x, 0.98}, p.normal_force = 1e5, p.joint = 0;
+    c.frame.points.push_back(p);
+  }
+  c.pair_last_two();
+  CHECK(c.look().findings.empty());
+  CHECK(c.look().unexplained_share < 1e-9);
+}
+
+TEST_CASE("audit: prescribed blocks that overlap are not valid") {
+  Case c({box(0, 0, 1, 1), box(0.9, 0, 2, 1)});
+  c.frame.blocks[0].hold = c.frame.blocks[1].hold = Hold::kPrescribed;
+  const FrameResult r = c.look();
+  REQUIRE(r.findings.size() == 1);
+  CHECK(r.findings[0].defect == Defect::kPrescribedOverlap);
+  CHECK(r.findings[0].invalid);
+  CHECK(r.findings[0].share == doctest::Approx(0.1));
+  CHECK(r.unexplained_share == 0);
+  c.frame.blocks[1].polygon = box(1, 0, 2, 1);
+  CHECK(c.look().findings.empty());
+  c.frame.blocks[1] = {Hold::kRemoved, {}, {}};
+  CHECK(c.look().findings.empty());
+}
+
+TEST_CASE("audit: a force needs the two in touch") {
+  const auto lifted = [](double gap) {
+    Case c({box(-1, -1, 2, 0), box(0, gap, 1, 1 + gap)});
+    c.add(1, 0, 0, 2, gap, 1e5);
+    c.add(1, 1, 0, 2, gap, 1e5);
+    c.pair_last_two();
+    return c;
+  };
+  CHECK(has(lifted(1e-3).look(), Defect::kForceAcrossGap, true));
+  CHECK(lifted(5e-6).look().findings.empty());
+  // a gap that closes within the step, a rise over roughness, closure by the stress of the ground
+  Case c = lifted(1e-3);
+  c.frame.blocks[1].velocity.assign(4, {0, -5});
+  CHECK(c.look().findings.empty());
+  c = lifted(1e-3);
+  for (Point& p : c.frame.points) p.rise = 1e-3;
+  CHECK(c.look().findings.empty());
+  c = lifted(1e-3);
+  for (Point& p : c.frame.points) p.in_situ = 1e-3;
+  CHECK(c.look().findings.empty());
+}
+
+TEST_CASE("audit: a force at a point without a joint, where the model gives joints, warns") {
+  Case c = face(0, 1e5);
+  c.frame.points[0].joint = c.frame.points[1].joint = kNoJoint;
+  CHECK(has(c.look(), Defect::kNoJoint, false));
+  c.rules.joints_everywhere = false;
+  CHECK(c.look().findings.empty());
+}
+
+TEST_CASE("audit: a corner on a side that the next block covers is not valid") {
+  // 2 stands on 0 and 1, its left lower corner 1 um inside the left side of 1, which 0 covers
+  const double d = 1e-6;
+  const auto stack = [d](double opening, double step, double depth) {
+    Case c({box(-1, 0, 0 - opening, 1), box(0, 0, 1, 1 + step), box(-1, 1 - depth, d, 2)});
+    c.add(2, 1, 1, 3, -d, 1e5);
+    c.add(2, 0, 0, 2, -depth, 1e5);
+    return c.look();
+  };
+  CHECK(has(stack(0, 0, 1e-5), Defect::kCoveredSide, true));
+  CHECK(has(stack(2e-5, 0, 1e-5), Defect::kCoveredSide, true));  // a hair gap hides nothing
+  // a real step of 1 mm, and a corner that has fallen 1 cm into a gap of 1 cm
+  CHECK(!has(stack(0, 1e-3, 0), Defect::kCoveredSide, true));
+  CHECK(!has(stack(0.01, 0, 0.01), Defect::kCoveredSide, true));
+
+  // the top of 1, on the other hand, is its way out
+  Case c({box(-1, 0, 0, 1), box(0, 0, 1, 1), box(-1, 1 - d, d, 2)});
+  c.add(2, 1, 1, 2, -d, 1e5);
+  CHECK(!has(c.look(), Defect::kCoveredSide, true));
+}
+
+TEST_CASE("audit: what is glued to the corner's own block does not make a side a way out") {
+  // 0 and 1 glued, 2 and 3 glued on top; the corner of 1 bears on the right side of 2, level with that of 0
+  Case c({box(-1, 0, 0, 1), box(0, 0, 1, 1), box(-1, 1, 0, 2), box(0, 1, 1, 2)});
+  c.frame.blocks[1].polygon[3].y = 1 + 1e-6;
+  c.add(1, 3, 2, 1, 0, 1e5);
+  for (const auto& [a, b, y] : {std::tuple{0, 1, 0.0}, std::tuple{2, 3, 1.0}}) {
+    for (const double end : {0.0, 1.0}) {
+      Point p;
+      p.block_a = a, p.block_b = b, p.place = {0, y + end}, p.joint = 0;
+      c.frame.points.push_back(p);
+    }
+    c.pair_last_two();
+  }
+  CHECK(has(c.look(), Defect::kCoveredSide, true));
+}
+
+TEST_CASE("audit: resultants of faces are held to the joint's law") {
+  const double mu = std::tan(std::acos(-1) / 6);
+  Case c = face(0, 1e5);
+  c.frame.points[0].shear_force = 1.2 * mu * 1e5, c.frame.points[1].shear_force = 0.79 * mu * 1e5;
+  CHECK(c.look().findings.empty());  // the resultant counts
+  c.frame.points[1].shear_force = 0.9 * mu * 1e5;
+  CHECK(has(c.look(), Defect::kShearLaw, true));
+  c.rules.laws[0].cohesion = 1e5;
+  CHECK(c.look().findings.empty());
+  c.frame.points[0].normal_force = c.frame.points[1].normal_force = -1e5;
+  CHECK(has(c.look(), Defect::kShearLaw, true));
+  c.rules.laws[0].tension = 3e5;
+  c.frame.points[0].shear_force = c.frame.points[1].shear_force = 0;
+  CHECK(c.look().findings.empty());
+  c.frame.points[0].joint = c.frame.points[1].joint = kUnknownJoint;
+  c.rules.laws[0] = {};
+  CHECK(c.look().findings.empty());  // what is not known is not asked for
+}
+
+TEST_CASE("audit: an elastic joint pushes by its stiffness times the overlap") {
+  const double kn = 1e9, closure = 1e-3;
+  CHECK(face(closure, 0.5 * kn * closure, kn).look().findings.empty());
+  CHECK(has(face(closure, 0.5 * kn * closure / 3, kn).look(), Defect::kNormalLaw, false));
+  CHECK(has(face(closure, 0.5 * kn * closure / 12, kn).look(), Defect::kNormalLaw, true));
+  CHECK(has(face(closure, 6 * kn * closure, kn).look(), Defect::kNormalLaw, true));
+}
+
+TEST_CASE("audit: findings do not depend on threads, nor on where the model lies") {
+  Case c = face(0.02, 1e5);
+  c.frame.points.clear();
+  const FrameResult one = c.look(), two = check_frame(c.rules, c.frame, Workers(2));
+  REQUIRE(one.findings.size() == two.findings.size());
+  CHECK(one.findings[0].share == two.findings[0].share);
+  for (Block& b : c.frame.blocks)
+    for (Vec2& p : b.polygon) p += Vec2{1048576, -1048576};
+  CHECK(c.look().findings[0].share == doctest::Approx(one.findings[0].share).epsilon(1e-6));
+}

@@ -1,0 +1,98 @@
+#include "talus/audit/watch.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace talus;
+using namespace talus::audit;
+
+namespace {
+
+Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
+
+// A floor and a block of 1 m on it, whose place is given step by step.
+struct Two {
+  Rules rules;
+  Report report;
+  Watch watch{rules};
+  std::vector<StepBlock> blocks{{std::sqrt(3.0), 2, 0.75, Hold::kPrescribed}, {1, 0.8, 0.625, Hold::kFree}};
+
+  Two() { rules.names = {"floor", "block"}, rules.slop = 1e-7; }
+  void step(Vec2 foot, const std::vector<StepPoint>& points, double time = 1) {
+    const std::vector<Vec2> centroid{{0.5, -0.5}, foot + Vec2{0.5, 0.5}};
+    watch.look({time, 1e-3, points, centroid, blocks,
+                [foot](int i) {
+                  return Block{Hold::kFree,
+                               i == 0 ? box(-1, -1, 2, 0) : box(foot.x, foot.y, foot.x + 1, foot.y + 1),
+                               {}};
+                }},
+               report);
+  }
+  int64_t count(Defect d) const { return report.of(d).count; }
+};
+
+StepPoint point(int corner, double force, double gap) { return {1, corner, 0, 2, force, gap}; }
+
+}  // namespace
+
+TEST_CASE("audit watch: a force that goes while the two overlap") {
+  const double d = 0.01;
+  SUBCASE("the point is gone") {
+    Two t;
+    t.step({0, -d}, {point(0, 1e5, -d), point(1, 1e5, -d)});
+    t.step({0, -d}, {point(1, 1e5, -d)}, 2);
+    CHECK(t.count(Defect::kForceVanished) == 1);
+    const Finding& f = t.report.of(Defect::kForceVanished).worst;
+    CHECK(f.invalid);
+    CHECK(f.time == 2);
+    CHECK(f.place.x == 0);
+    CHECK(f.place.y == -d);
+    CHECK(!t.report.valid());
+  }
+  SUBCASE("the point is there, the force is not") {
+    Two t;
+    t.step({0, -d}, {point(0, 1e5, -d)});
+    t.step({0, -d}, {point(0, 0, -d)});
+    CHECK(t.count(Defect::kForceVanished) == 1);
+  }
+  SUBCASE("the two have parted") {
+    Two t;
+    t.step({0, -d}, {point(0, 1e5, -d)});
+    t.step({0, 1e-3}, {});
+    CHECK(t.count(Defect::kForceVanished) == 0);
+  }
+  SUBCASE("another point at the same place has it, under another name") {
+    Two t;
+    t.step({0, -d}, {point(0, 1e5, -d)});
+    t.step({0, -d}, {{1, 0, 0, 1, 1e5, -d}});
+    CHECK(t.count(Defect::kForceVanished) == 0);
+  }
+  SUBCASE("a new stage asks nothing of the one before") {
+    Two t;
+    t.step({0, -d}, {point(0, 1e5, -d)});
+    t.watch.forget();
+    t.step({0, -d}, {});
+    CHECK(t.count(Defect::kForceVanished) == 0);
+    CHECK(t.report.steps == 0);
+  }
+}
+
+TEST_CASE("audit watch: a block that goes through another within a step") {
+  Two t;
+  t.step({0, 0.2}, {});
+  t.step({0, -0.1}, {});  // a tenth of the floor
+  CHECK(t.count(Defect::kCrossed) == 0);
+  t.step({0, 0.2}, {});
+  t.step({0, -0.4}, {});  // to the middle of it
+  CHECK(t.count(Defect::kCrossed) == 1);
+  t.step({0, 0.1}, {});
+  t.step({0, -3}, {});  // out on the other side
+  CHECK(t.report.of(Defect::kCrossed).worst.block_a == 0);
+  CHECK(t.count(Defect::kCrossed) == 2);
+  // past it, and along its top
+  Two along;
+  along.step({-0.9, 0}, {});
+  along.step({0.9, 0}, {});
+  CHECK(along.count(Defect::kCrossed) == 0);
+}

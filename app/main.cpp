@@ -136,11 +136,14 @@ int run(const ModelArguments& args, const RunArguments& how) {
           : talus::continue_stages(prepared.scene, prepared.plans, saved.standing, state, progress, workers);
   progress.finish();
   recorder->finish(result, args.overrides, findings);
-  fmt::print(out, "{}", talus::closing_text(prepared.scene, result, recorder->joints(), folder));
+  fmt::print(out, "{}",
+             talus::closing_text(prepared.scene, result, recorder->joints(), folder, recorder->audit()));
   if (profile) fmt::print(out, "{}", talus::profile_text(result.profile, result.threads, result.steps));
   if (!result.failure.empty())
     throw talus::NumericalError(result.failure + fmt::format("\nresults up to then are in {}", folder));
-  return result.interrupted ? talus::kExitInterrupted : talus::kExitOk;
+  if (result.interrupted) return talus::kExitInterrupted;
+  const auto audit = recorder->audit();
+  return audit && !audit->valid() ? talus::kExitNotValid : talus::kExitOk;
 }
 
 int replay(const std::string& file, const std::string& method, double tolerance) {

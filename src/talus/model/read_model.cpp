@@ -508,6 +508,8 @@ class ModelReader : private SectionReader {
     model_.output.steps_interval = f.get("steps_interval", 0.0);
     model_.output.field_interval = f.get("field_interval", 0.0);
     model_.output.save_interval = f.get("save_interval", model_.output.save_interval);
+    model_.output.audit = f.get("audit", true);
+    model_.output.audit_interval = f.get("audit_interval", 0.0);
   }
 
   void read_safety() {

@@ -122,7 +122,20 @@ std::vector<SectionSpec> run_sections() {
          .range = kNonNegative,
          .default_text = "\"60 s\"",
          .doc = "Wall time between saved states, from which `talus run --from` goes on; the last two stay. "
-                "0: only at the ends of stages."}}},
+                "0: only at the ends of stages."},
+        {.name = "audit",
+         .type = K::kBool,
+         .default_text = "true",
+         .doc =
+             "Polygons, points and forces are audited in every step, at every frame and at the end of each "
+             "stage; a run that is not valid ends with exit code 8. false: `valid` in summary.json is null."},
+        {.name = "audit_interval",
+         .dimension = D::kTime,
+         .range = kNonNegative,
+         .default_text = "\"0 s\"",
+         .doc =
+             "Spacing of audits of all polygons; 0: at every frame. Steps and the ends of stages are always "
+             "audited."}}},
 
       {"safety",
        SectionShape::kTable,

@@ -66,7 +66,7 @@ void Progress::finish() {
 }
 
 std::string closing_text(const Scene& scene, const RunResult& r, const JointSummary& joints,
-                         const std::string& folder) {
+                         const std::string& folder, const std::optional<audit::Report>& audit) {
   std::string out;
   const char* ending = !r.failure.empty() ? "failed"
                        : r.interrupted    ? "interrupted; the results up to then are valid"
@@ -88,6 +88,19 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   }
   if (r.closed_share > 0.05)
     out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);
+  if (audit) {
+    out += fmt::format(
+        "  audit           {}; {} frames and {} steps looked at; unexplained overlap {:.1e} of the smaller "
+        "block at "
+        "most, closure {:.2g} %\n",
+        !audit->valid()              ? "NOT VALID"
+        : audit->warning_kinds() > 0 ? "valid, with warnings"
+                                     : "valid",
+        audit->frames, audit->steps, audit->unexplained_share, 100 * audit->closure_share);
+    for (const std::string& line : audit->lines(scene.blocks.name)) out += "    " + line + "\n";
+  } else {
+    out += "  audit           none (output.audit = false): nothing says that the forces are right\n";
+  }
   const Layout& cut = scene.layout;
   if (cut.slivers_merged + cut.slivers_deleted + cut.slivers_kept > 0)
     out += fmt::format("  slivers         {} merged, {} deleted, {} kept when the blocks were cut\n",

@@ -43,6 +43,6 @@ class Progress : public Observer {
 
 /// Closing lines of a run: what happened and how far to trust it.
 std::string closing_text(const Scene& scene, const RunResult& result, const JointSummary& joints,
-                         const std::string& folder);
+                         const std::string& folder, const std::optional<audit::Report>& audit = std::nullopt);
 
 }  // namespace talus

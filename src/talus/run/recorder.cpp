@@ -129,6 +129,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
       bolt_frames_(folder_ / "fields", "bolts", "vtp"),
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
+  if (scene.model.output.audit) auditor_.emplace(scene);
   write_file(folder_ / "model.toml", scene.model.text);
   // replaced at the end: a run that was killed shows as one
   nlohmann::ordered_json running = {{"program", fmt::format("talus {}", kVersion)},
@@ -152,6 +153,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path folder, Archive& sa
       slips_(table_then(folder_ / "slips.csv", size_in(saved, kSlipsSize))),
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
+  if (scene.model.output.audit) auditor_.emplace(scene);
   Exchange loading(saved, false);
   exchange(loading);
   find_saved();
@@ -164,6 +166,7 @@ void Recorder::exchange(Exchange& x) {
   x("recorder.dumped_failure", dumped_failure_);
   joint_summary_.exchange(x, "recorder.joints");
   histories_.exchange(x);
+  if (auditor_) auditor_->exchange(x);
   std::vector<double> times = block_frames_.times();
   x("recorder.frames", times);
   if (x.saving()) return;
@@ -226,6 +229,7 @@ void Recorder::at(const Instant& i) {
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
   if (frame || i.stage_start || i.last) write_frame(i);
+  if (auditor_) auditor_->at(i, frame || i.stage_start || i.last);
   // a stage ends at the instant at which the next one starts
   if (i.stage_start && i.stage > 0) write_joints(i, i.stage - 1);
   if (i.last) write_joints(i, i.stage);
@@ -322,6 +326,10 @@ void Recorder::write_joints(const Instant& i, int stage) {
   write_file(folder_ / "slips.csv", slips_);
 }
 
+std::optional<audit::Report> Recorder::audit() const {
+  return auditor_ ? std::optional(auditor_->report()) : std::nullopt;
+}
+
 void Recorder::finish(const RunResult& result, const std::vector<std::string>& overrides,
                       const Findings& findings) {
   histories_.finish();
@@ -329,12 +337,47 @@ void Recorder::finish(const RunResult& result, const std::vector<std::string>& o
   steps_file_.flush();
   write_file(folder_ / "summary.json",
              summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_,
-                          histories_.peaks(), model_));
+                          histories_.peaks(), model_, audit()));
 }
+
+namespace {
+
+nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<audit::Report>& audit) {
+  using nlohmann::ordered_json;
+  if (!audit) return {};
+  ordered_json j = {{"frames", audit->frames},
+                    {"steps", audit->steps},
+                    {"unexplained_overlap_share", audit->unexplained_share},
+                    {"unexplained_overlap [m2]", audit->unexplained_area},
+                    {"closure_share", audit->closure_share},
+                    {"defects", ordered_json::array()}};
+  for (size_t d = 0; d < audit::kDefects; ++d) {
+    const auto defect = static_cast<audit::Defect>(d);
+    const audit::Report::Entry& e = audit->of(defect);
+    if (e.count == 0) continue;
+    ordered_json one = {{"kind", audit::key_of(defect)},
+                        {"valid", !e.invalid},
+                        {"count", e.count},
+                        {"first [s]", e.first.time},
+                        {"worst [s]", e.worst.time}};
+    if (e.worst.block_a >= 0) {
+      ordered_json names = ordered_json::array();
+      for (const int k : {e.worst.block_a, e.worst.block_b})
+        if (k >= 0) names.push_back(scene.blocks.name[static_cast<size_t>(k)]);
+      one["blocks"] = names, one["x [m]"] = e.worst.place.x, one["y [m]"] = e.worst.place.y;
+    }
+    one["share"] = e.worst.share, one["text"] = e.worst.text;
+    j["defects"].push_back(one);
+  }
+  return j;
+}
+
+}  // namespace
 
 std::string summary_text(const Scene& scene, const RunResult& r, const std::vector<std::string>& overrides,
                          const Findings& findings, int frames, const JointSummary& joints,
-                         const std::vector<Histories::Peak>& peaks, const std::string& model) {
+                         const std::vector<Histories::Peak>& peaks, const std::string& model,
+                         const std::optional<audit::Report>& audit) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -348,7 +391,11 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
   if (!r.failure.empty()) j["failure"] = r.failure;
   ordered_json warnings = ordered_json::array();
   for (const Finding& f : findings.list()) warnings.push_back(f.key + ": " + f.text);
+  if (audit)
+    for (const std::string& line : audit->lines(b.name)) warnings.push_back("audit: " + line);
+  j["valid"] = audit ? ordered_json(audit->valid()) : ordered_json();
   j["warnings"] = warnings;
+  j["audit"] = audit_numbers(scene, audit);
 
   j["blocks"] = {{"all", b.count},
                  {"deformable", count(BlockKind::kDeformable)},

@@ -6,6 +6,7 @@
 
 #include "talus/output/files.h"
 #include "talus/output/vtk.h"
+#include "talus/run/auditor.h"
 #include "talus/run/histories.h"
 #include "talus/run/joint_report.h"
 #include "talus/run/saved_state.h"
@@ -35,6 +36,9 @@ class Recorder : public Observer {
   /// Joints at the end of the last stage that has ended.
   const JointSummary& joints() const { return joint_summary_; }
 
+  /// What the audit found; none with `audit = false`.
+  std::optional<audit::Report> audit() const;
+
   /// Writes waiting rows and summary.json. To be called also when the run failed or was interrupted.
   void finish(const RunResult& result, const std::vector<std::string>& overrides, const Findings& findings);
 
@@ -52,6 +56,7 @@ class Recorder : public Observer {
   std::string model_;  // in numbers, as it began: stages change materials and joints
   CsvWriter history_file_, steps_file_;
   Histories histories_;
+  std::optional<Auditor> auditor_;
   FrameSeries block_frames_, contact_frames_, bolt_frames_;
   std::string bolt_table_;  // bolts.csv so far
   double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
@@ -70,6 +75,7 @@ class Recorder : public Observer {
 std::string summary_text(const Scene& scene, const RunResult& result,
                          const std::vector<std::string>& overrides, const Findings& findings, int frames,
                          const JointSummary& joints = {}, const std::vector<Histories::Peak>& peaks = {},
-                         const std::string& model = "{}");
+                         const std::string& model = "{}",
+                         const std::optional<audit::Report>& audit = std::nullopt);
 
 }  // namespace talus

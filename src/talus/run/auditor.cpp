@@ -1,0 +1,175 @@
+#include "talus/run/auditor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/audit/check_frame.h"
+#include "talus/audit/read_results.h"
+#include "talus/blocks/in_situ.h"
+#include "talus/run/joint_report.h"
+
+namespace talus {
+
+namespace {
+
+audit::Law law_of(const JointProperty& joint) {
+  return {.friction = std::tan(std::max(joint.friction_angle, joint.friction_after())),
+          .cohesion = std::max(joint.cohesion, joint.residual_cohesion),
+          .tension = std::max(joint.tensile_strength, joint.residual_tensile_strength),
+          .normal_stiffness = joint.normal_stiffness,
+          .bonded = joint.bonded};
+}
+
+audit::Hold hold_of(const BlockSet& blocks, int i) {
+  return blocks.removed(i)        ? audit::Hold::kRemoved
+         : blocks.moves_freely(i) ? audit::Hold::kFree
+                                  : audit::Hold::kPrescribed;
+}
+
+// What of a joint's closure the stress of the ground has made, so that no gap shows it [m].
+double closed_by_ground(const Scene& scene, const ContactPair& pair, const Contact& c) {
+  const Model& model = scene.model;
+  if (!model.in_situ.given || c.joint < 0 || !(pair.shares_face || (pair.from_start && c.length > 0)))
+    return 0;
+  const auto b = static_cast<size_t>(c.key.block_b);
+  const int next = c.key.edge + 1 == scene.blocks.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
+  const Vec2 from = scene.blocks.corner(c.key.block_b, c.key.edge),
+             side = scene.blocks.corner(c.key.block_b, next) - from;
+  const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, scene.blocks.centroid[b].y + from.y);
+  const Vec2 closure =
+      in_situ_closure(model.joints[static_cast<size_t>(c.joint)], stress, turn_right(side) / norm(side));
+  return std::abs(closure.x);
+}
+
+}  // namespace
+
+Auditor::Auditor(const Scene& scene) : scene_(scene), watch_(rules_) {
+  rules_.names = scene.blocks.name;
+  rules_.thickness = scene.model.thickness;
+}
+
+void Auditor::at(const Instant& i, bool frame) {
+  if (fresh_ || i.stage_start) look_at_stage(i);
+  watch(i);
+  if (i.report.failed && failed_++ == 0) first_failed_ = i.state.time, worst_failed_ = i.report.worst;
+  const Energy& e = i.report.energy;
+  largest_energy_ = std::max(largest_energy_, e.largest());
+  if (e.work.contact_closing > closing_)
+    closing_ = e.work.contact_closing, closing_friction_ = e.work.friction, closing_time_ = i.state.time;
+
+  const double interval = scene_.model.output.audit_interval;
+  bool due = frame;
+  if (interval > 0) {
+    const bool reached = i.state.time >= next_ - 1e-6 * i.plan.dt;
+    if (reached) next_ = (std::floor((i.state.time + 1e-6 * i.plan.dt) / interval) + 1) * interval;
+    due = reached || i.stage_start || i.last;
+  }
+  if (due) audit::add_frame(rules_, frame_of(i), i.work.workers, report_);
+}
+
+audit::Report Auditor::report() const {
+  audit::Report out = report_;
+  audit::add_closing(closing_, closing_friction_, largest_energy_, lifting_, closing_time_, out);
+  audit::add_failed(failed_, first_failed_, worst_failed_, out);
+  return out;
+}
+
+void Auditor::look_at_stage(const Instant& i) {
+  const BlockSet& b = scene_.blocks;
+  rules_.laws.clear();
+  for (const JointProperty& joint : scene_.model.joints) {
+    rules_.laws.push_back(law_of(joint));
+    lifting_ = lifting_ || joint.dilation_angle > 0;
+  }
+  rules_.joints_everywhere = scene_.layout.default_joint >= 0;
+  rules_.slop = scene_.model.contact.slop;
+  rules_.tolerance = scene_.model.solver.tolerance * smallest_size(b);
+  blocks_.clear();
+  for (int k = 0; k < b.count; ++k) {
+    const auto n = static_cast<size_t>(k);
+    const double area = b.volume[n] / b.thickness;
+    blocks_.push_back({b.size[n], b.radius[n], area / (2 * b.radius[n]), hold_of(b, k)});
+  }
+  if (i.stage_start) watch_.forget();
+  fresh_ = false;
+}
+
+void Auditor::watch(const Instant& i) {
+  const State& state = i.state;
+  points_.clear();
+  points_.reserve(state.contacts.size());
+  for (size_t k = 0; k < state.contacts.size(); ++k) {
+    const Contact& c = state.contacts[k];
+    points_.push_back(
+        {c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge, c.force[0], i.work.places[k].gap});
+  }
+  centroid_.resize(blocks_.size());
+  for (size_t k = 0; k < centroid_.size(); ++k)
+    centroid_[k] = scene_.blocks.centroid[k] + state.displacement[k];
+  watch_.look(
+      {state.time, i.plan.dt, points_, centroid_, blocks_, [&](int block) { return shape(i, block); }},
+      report_);
+}
+
+audit::Block Auditor::shape(const Instant& i, int block) const {
+  const BlockSet& b = scene_.blocks;
+  const auto k = static_cast<size_t>(block);
+  audit::Block out;
+  out.hold = hold_of(b, block);
+  if (out.hold == audit::Hold::kRemoved) return out;
+  const BlockRate rate = rate_now(i.work, i.state, k);
+  for (int v = 0; v < b.vertex_count(block); ++v) {
+    const Vec2 X = b.corner(block, v);
+    out.polygon.push_back(b.centroid[k] + offset_now(i.state, k, X));
+    out.velocity.push_back(velocity_at(rate, acting_arm(b, i.state, k, X)));
+  }
+  return out;
+}
+
+audit::Frame Auditor::frame_of(const Instant& i) const {
+  audit::Frame frame;
+  frame.time = i.state.time, frame.step = i.plan.dt;
+  for (int k = 0; k < scene_.blocks.count; ++k) frame.blocks.push_back(shape(i, k));
+  const size_t bonds = i.work.first_contact;
+  for (size_t r = 0; r < bonds; ++r) {
+    const PointRows& row = i.work.rows.points[r];
+    const BondFace& face = scene_.bonds.faces[static_cast<size_t>(i.work.bond_owner[r]) / 2];
+    audit::Point p;
+    p.block_a = face.block_a, p.block_b = face.block_b, p.joint = face.joint;
+    p.place = point_now(scene_, i.state, row);
+    p.normal_force = i.work.rows.impulse[r][0] / i.work.dt_kick;
+    p.shear_force = i.work.rows.impulse[r][1] / i.work.dt_kick;
+    p.partner = static_cast<int>(r % 2 == 0 ? r + 1 : r - 1);
+    frame.points.push_back(p);
+  }
+  for (const ContactPair& pair : i.state.pairs) {
+    for (int n = 0; n < pair.count; ++n) {
+      const auto k = static_cast<size_t>(pair.begin + n);
+      const Contact& c = i.state.contacts[k];
+      audit::Point p;
+      p.block_a = c.key.block_a, p.corner = c.key.vertex, p.block_b = c.key.block_b, p.edge = c.key.edge;
+      p.gap = i.work.places[k].gap;
+      p.normal_force = c.force[0], p.shear_force = c.force[1];
+      p.joint = c.joint < 0 ? audit::kNoJoint : c.joint;
+      if (c.joint >= 0) {
+        const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];
+        p.rise = std::tan(joint.dilation_angle) * std::min(c.slip, joint.dilation_slip);
+      }
+      p.in_situ = closed_by_ground(scene_, pair, c);
+      if (c.partner >= 0) p.partner = static_cast<int>(bonds) + pair.begin + c.partner;
+      frame.points.push_back(p);
+    }
+  }
+  return frame;
+}
+
+void Auditor::exchange(Exchange& x) {
+  report_.exchange(x, "audit.report");
+  watch_.exchange(x, "audit.watch");
+  x("audit.next", next_), x("audit.failed", failed_), x("audit.first_failed", first_failed_);
+  x("audit.worst_failed", worst_failed_), x("audit.lifting", lifting_);
+  x("audit.closing", closing_), x("audit.closing_friction", closing_friction_);
+  x("audit.closing_time", closing_time_), x("audit.largest_energy", largest_energy_);
+}
+
+}  // namespace talus

@@ -17,6 +17,7 @@ export function warningsOf(run) {
   const s = run.summary, out = [];
   if (s.status === "running") out.push("The run has not ended, or was killed: its summary was never written.");
   if (s.status === "failed") out.push(`The run failed: ${s.failure}`);
+  if (s.valid === false) out.push("The audit says that the results are not valid.");
   if (s.status === "interrupted") out.push("The run was interrupted; the results up to then are valid.");
   const solver = s.solver || {};
   if (solver.failed_steps > 0)
@@ -45,7 +46,9 @@ export function warningsOf(run) {
 export function cardsOf(run) {
   const s = run.summary, b = s.blocks || {}, solver = s.solver || {};
   const end = (s.stages || []).reduce((t, stage) => Math.max(t, stage["end [s]"] || 0), 0);
-  const cards = [["status", s.status, s.status === "finished" ? `in ${duration(s["wall_time [s]"])}` : ""]];
+  const cards = [];
+  if (s.valid !== undefined) cards.push(validity(s));
+  cards.push(["status", s.status, s.status === "finished" ? `in ${duration(s["wall_time [s]"])}` : ""]);
   if (b.all !== undefined) cards.push(["blocks", Number(b.all).toLocaleString("en"), kinds(b)]);
   cards.push(["time computed", `${number(end, 4)} s`, solver.contact_solves ? count(solver.contact_solves, "step") : ""]);
   if (solver["contact_error_worst [m]"] !== undefined)
@@ -56,6 +59,15 @@ export function cardsOf(run) {
   if (j && j.points > 0)
     cards.push(["joints slipped", Number(j.slipped_joints ?? j.slipped).toLocaleString("en"), j["slip_largest [m]"] > 0 ? `by ${withUnit(j["slip_largest [m]"], "m")} at most` : ""]);
   return cards;
+}
+
+// The audit's word on the run: [title, value, note].
+function validity(s) {
+  if (s.valid === null) return ["audit", "none", "nothing says that the forces are right"];
+  const defects = (s.audit && s.audit.defects) || [], share = s.audit ? s.audit.unexplained_overlap_share : 0;
+  if (!s.valid) return ["audit", "NOT VALID", defects.filter((d) => !d.valid).map((d) => d.kind.replace(/_/g, " ")).join(", ")];
+  if (defects.length) return ["audit", "valid, with warnings", defects.map((d) => d.kind.replace(/_/g, " ")).join(", ")];
+  return ["audit", "valid", `unexplained overlap ${number(share, 2)} of a block at most`];
 }
 
 function kinds(b) {

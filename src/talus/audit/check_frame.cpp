@@ -17,6 +17,7 @@ constexpr double kOverlapWarns = 1e-4, kOverlapInvalid = 1e-2;  // unexplained, 
 constexpr double kPrescribed = 1e-6;                            // overlap of prescribed blocks, the same
 constexpr double kClosureWarns = 0.05, kClosureInvalid = 0.25;  // of the smaller mean thickness
 constexpr double kHairGap = 1e-4;  // half the width of joints closed before that, of the smaller block
+constexpr double kFace = 1e-2;     // of the smaller block: length of a face that speaks for its side
 constexpr double kAside = 5 * 3.14159265358979323846 / 180;  // a normal off the outline [rad]
 // forces below the first share of the mean one are round-off of redundant points; a wrong one above the
 // second is more than the error of a force
@@ -365,6 +366,13 @@ class Check {
   void check_side(const Point& p, const Seen& s, FrameResult& out) const {
     const double size = size_of(p.block_a, p.block_b);
     const auto a = static_cast<size_t>(p.block_a);
+    // along a face the side is exposed to the corner's own block: nothing else can cover it there
+    if (p.partner >= 0) {
+      const Seen& o = seen_[static_cast<size_t>(p.partner)];
+      if (norm(o.place - s.place) > kFace * size &&
+          std::max(std::abs(o.gap), std::abs(s.gap)) < 0.1 * kFace * size)
+        return;
+    }
     double overlap = std::max(s.depth, std::abs(s.gap)) + kPlace * size;
     for (const Neighbour& n : neighbours_[a])
       overlap = std::max(overlap, closure_near(n.pair, s.place, 0.02 * size));

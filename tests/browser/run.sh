@@ -5,7 +5,21 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(cd "$1" && pwd)
 out=$build/browser_test
-if [ ! -e "$build/browser/node_modules/playwright-core" ]; then
+
+# Debian 12 has Node.js 18: a newer one on the developer's machine must not hide a package that wants more
+oldest=18
+for lock in "$here/package-lock.json" "$here/../../web/package-lock.json"; do
+  wanted=$(grep -o '"node": ".*' "$lock" | grep -o '>= *[0-9]*' | grep -o '[0-9]*' | sort -n | tail -1)
+  [ "${wanted:-0}" -le "$oldest" ] || { echo "failed: a package of $lock needs Node.js $wanted, Debian 12 has $oldest"; exit 1; }
+done
+found=$(node --version 2>/dev/null | sed 's/^v\([0-9]*\).*/\1/')
+[ "${found:-0}" -ge "$oldest" ] || {
+  echo "failed: this test needs Node.js $oldest or newer, found: $(command -v node || echo none) ${found:+version $found}"
+  exit 1
+}
+
+if ! cmp -s "$here/package-lock.json" "$build/browser/package-lock.json" || [ ! -e "$build/browser/node_modules/playwright-core" ]; then
+  rm -rf "$build/browser"
   mkdir -p "$build/browser"
   cp "$here/package.json" "$here/package-lock.json" "$here/.npmrc" "$build/browser"
   (cd "$build/browser" && npm ci --ignore-scripts --loglevel=error) || {

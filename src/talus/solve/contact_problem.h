@@ -7,19 +7,11 @@
 
 #include "talus/rows/mobility.h"
 #include "talus/rows/rows.h"
+#include "talus/solve/smoothing.h"
 
 namespace talus {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-/// The paper's smoothing of contact rows (its eqs 26, 27, units corrected): normal law
-/// min(a, b) - eps log1p(exp(-|a - b| / eps)) of a = e / Wii and b = p, friction p_t = -(2/pi) mu p_n
-/// atan(u_t / width).
-struct Smoothing {
-  bool on = false;
-  double impulse = 0;   // epsilon_1 over the kick [N s]
-  double velocity = 0;  // epsilon_2 per step [m/s]
-};
 
 /// Rows 2 i and 2 i + 1 are the normal and tangential row of point `point[i]` of the row set.
 struct ContactProblem {

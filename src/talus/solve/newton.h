@@ -2,9 +2,13 @@
 // Newton's method for the contact constraint equations, island by island.
 // Semismooth: the Jacobian of the exact law, with a line search. Theory: docs/theory.md section 5.
 
+#include <vector>
+
 #include "talus/model/model.h"
-#include "talus/solve/contact_problem.h"
+#include "talus/rows/mobility.h"
+#include "talus/rows/rows.h"
 #include "talus/solve/report.h"
+#include "talus/solve/smoothing.h"
 
 namespace talus {
 

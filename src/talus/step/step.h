@@ -3,9 +3,9 @@
 // the forces of this instant and the velocities after it, drift() moves the blocks. Theory: docs/theory.md
 // section 4.
 
-#include <string>
-
 #include <array>
+#include <string>
+#include <vector>
 
 #include "talus/contact/contact_rows.h"
 #include "talus/solve/choose.h"

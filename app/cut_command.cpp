@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "talus/base/error.h"
+#include "talus/base/text_file.h"
 #include "talus/cut/blocks_file.h"
 #include "talus/maps/expand.h"
 #include "talus/maps/vector_module.h"
 #include "talus/model/read_model.h"
-#include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
 #include "talus/output/files.h"
 #include "talus/plot/cut_picture.h"

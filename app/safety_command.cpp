@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 #include "talus/talus.h"
 
 namespace talus::app {

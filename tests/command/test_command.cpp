@@ -9,7 +9,7 @@
 #include <string>
 
 #include "support/command.h"
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 #include "talus/output/files.h"
 
 using namespace talus;

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "support/command.h"
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 
 using namespace talus;
 using namespace talus::test;

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <string>
 
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 
 namespace talus::test {
 

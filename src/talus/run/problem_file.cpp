@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.h"
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 
 namespace talus {
 

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "talus/base/text_file.h"
 #include "talus/model/read_model.h"
 #include "talus/model/schema.h"
-#include "talus/model/toml_source.h"
 
 using namespace talus;
 

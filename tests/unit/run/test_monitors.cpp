@@ -8,7 +8,7 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/error.h"
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 
 using namespace talus;
 using namespace talus::test;

@@ -6,7 +6,7 @@
 
 #include "support/run_case.h"
 #include "support/tolerance.h"
-#include "talus/model/toml_source.h"
+#include "talus/base/text_file.h"
 #include "talus/run/plan.h"
 
 using namespace talus;

@@ -24,9 +24,7 @@ fs::path cases_program() {
   const fs::path program = program_folder();
   for (const char* place : {"../tests/verification", "../lib/talus/verification"})
     if (fs::exists(program / place, ec)) return (program / place).lexically_normal();
-  throw FileError(
-      "the verification cases were not built with this talus: configure with -DTALUS_TESTS=ON and build "
-      "again");
+  throw FileError("the verification cases are not built; ./run.sh --verify builds and runs them");
 }
 
 // A word of a shell command.

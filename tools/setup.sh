@@ -48,17 +48,41 @@ install_missing_packages() {
       $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends --no-remove $missing >/dev/null; }
 }
 
-# build PRESET: configures once and builds what has changed; the log is shown when it fails.
+# What ninja says, as one line: rewritten on a terminal, otherwise one now and then.
+show_progress() {
+  local line last=$SECONDS at=""
+  while IFS= read -r line; do
+    case "$line" in \[[0-9]*/[0-9]*\]*) ;; *) continue ;; esac
+    line=${line%%\]*}
+    at="building: ${line#\[}"
+    at="${at%/*} of ${at#*/}"
+    if [ -t 1 ]; then
+      printf '\r\033[K%s' "$at"
+    elif [ $((SECONDS - last)) -ge 30 ]; then
+      echo "$at"
+      last=$SECONDS
+    fi
+  done
+  [ ! -t 1 ] || [ -z "$at" ] || printf '\r\033[K'
+}
+
+# build PRESET [TARGET...]: configures once and builds what has changed, all or the targets; the log is shown when it fails.
 build() {
-  local log="build/$1.log"
+  local preset=$1 log="build/$1.log" begun=$SECONDS
+  shift
   mkdir -p build
-  [ -e "build/$1/build.ninja" ] || echo "building ($1); the first time takes a few minutes"
+  [ -e "build/$preset/build.ninja" ] || echo "building ($preset); the first time takes some minutes"
   local configure=no
-  [ -e "build/$1/build.ninja" ] || configure=yes
-  [ "$talus_report" = no ] || [ -e "build/$1/share/talus/report_page.html" ] || configure=yes
-  [ "$talus_maps" = no ] || [ -e "build/$1/modules/libtalus_vector.so" ] || configure=yes
-  { { [ $configure = no ] || cmake --preset "$1" ${2:-}; } && cmake --build --preset "$1"; } >"$log" 2>&1 ||
-    { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }
-  [ "$talus_report" = no ] || [ -e "build/$1/share/talus/report_page.html" ] ||
+  [ -e "build/$preset/build.ninja" ] || configure=yes
+  [ "$talus_report" = no ] || [ -e "build/$preset/share/talus/report_page.html" ] || configure=yes
+  [ "$talus_maps" = no ] || [ -e "build/$preset/modules/libtalus_vector.so" ] || configure=yes
+  (
+    set -o pipefail
+    export NINJA_STATUS="[%f/%t] "
+    { { [ $configure = no ] || cmake --preset "$preset"; } && cmake --build --preset "$preset" ${1:+--target "$@"}; } 2>&1 |
+      tee "$log" | show_progress
+  ) || { tail -40 "$log"; echo "the build failed; the whole log is in $log"; exit 1; }
+  build_seconds=$((SECONDS - begun))
+  [ "$talus_report" = no ] || [ -e "build/$preset/share/talus/report_page.html" ] ||
     echo "note: the page of talus report was not built; the reason is in $log"
 }

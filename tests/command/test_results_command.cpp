@@ -175,6 +175,14 @@ TEST_CASE("command verify: a table of what the cases reach") {
   CHECK(shell(f, "TALUS_TEST_TOLERANCE=0 $talus verify \"incline\"").code == 1);
 }
 
+TEST_CASE("command verify: without its cases it says what builds them") {
+  const Folder f;
+  const Outcome o = shell(f, "mkdir bin && cp \"$talus\" bin/talus && bin/talus verify");
+  CHECK(o.code == 4);
+  has(o.text, "./run.sh --verify");
+  CHECK(count(o.text, "\n") == 1);
+}
+
 TEST_CASE("command completion and man: made from the verbs") {
   const Folder f;
   const Outcome bash =

@@ -1,9 +1,19 @@
 #!/bin/bash
-# Installs what is missing, builds, and runs all tests: optimised, then under the sanitizers.
+# Installs what is missing, builds, and runs the tests: optimised, then under the sanitizers.
 # Usage: ./test.sh [release|sanitize]    (default: both)
+#        ./test.sh long [PART]           what is too long for every day, all parts or one (tests/long.sh)
 set -eu
 cd "$(dirname "$0")"
 . tools/setup.sh
+. tests/long.sh
+
+which=${1:-both}
+case "$which" in
+  both | release | sanitize) [ $# -le 1 ] || { sed -n '2,4s/^# //p' "$0"; exit 2; } ;;
+  long) long_known "${2:-}" || exit 2 ;;
+  *) sed -n '2,4s/^# //p' "$0"; exit 2 ;;
+esac
+
 add_maps
 add_report
 add_browser
@@ -18,11 +28,17 @@ format_check() {
 
 run_tests() {
   build "$1"
+  local begun=$SECONDS
   ctest --preset "$1" -j 2 --no-tests=error --progress ${2:-} >"build/$1.test.log" 2>&1 || { tail -100 "build/$1.test.log"; return 1; }
   tail -4 "build/$1.test.log"
+  echo "$1: built in $build_seconds s, tested in $((SECONDS - begun)) s"
 }
 
-which=${1:-both}
+if [ "$which" = long ]; then
+  build release
+  long_run "${2:-}"
+  exit
+fi
 format_check
 if [ "$which" != sanitize ]; then
   run_tests release

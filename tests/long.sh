@@ -1,0 +1,55 @@
+# Sourced by test.sh: what is too long for every day, in parts of less than half an hour each.
+#
+# A part is a line of this table, NAME | WHAT | COMMAND (of the release build; exit 0: passed), or the cases of a doctest
+# suite "long: NAME" (one word) in any test program: TEST_SUITE("long: NAME") around them is all it takes, tests/main.cpp leaves
+# such suites out unless they are asked for.
+long_table="
+gauss_seidel | every verification case by Gauss-Seidel | env TALUS_TEST_SOLVER=gauss_seidel build/release/tests/verification
+"
+
+long_suites() { grep -rhoE 'TEST_SUITE\("long: [^" ]+"\)|test_suite\("long: [^" ]+"\)' tests --include='*.cpp' | sed 's/.*long: \([^"]*\)".*/\1/' | sort -u; }
+long_rows() { printf '%s\n' "$long_table" | sed 's/ *| */|/g; /^$/d'; }
+long_parts() { { long_rows | cut -d'|' -f1; long_suites; } | sort -u; }
+
+# long_known [NAME]: whether there is that part; says which there are if not.
+long_known() {
+  [ -z "$1" ] || long_parts | grep -qxF -- "$1" && return 0
+  echo "no part \"$1\"; there are:"
+  long_parts | sed 's/^/  /'
+  return 1
+}
+
+long_commands() {
+  local name what command program
+  while IFS='|' read -r name what command; do
+    [ "$name" != "$1" ] || echo "$command"
+  done < <(long_rows)
+  long_suites | grep -qxF -- "$1" || return 0
+  for program in unit verification command; do
+    echo "build/release/tests/$program --no-version --test-suite='long: $1'"
+  done
+}
+
+# long_run [NAME]: one part or all, the minutes of each; fails when one has failed or takes more than half an hour.
+long_run() {
+  local part command begun left failed="" log
+  mkdir -p build/long
+  for part in ${1:-$(long_parts)}; do
+    begun=$SECONDS log=build/long/$part.log
+    : >"$log"
+    while IFS= read -r command; do
+      left=$((1800 - SECONDS + begun))
+      timeout $((left > 0 ? left : 1)) bash -c "$command" </dev/null >>"$log" 2>&1 || {
+        [ $? != 124 ] || echo "stopped: more than half an hour" >>"$log"
+        case " $failed " in *" $part "*) ;; *) failed="$failed $part" ;; esac
+      }
+    done < <(long_commands "$part")
+    if long_suites | grep -qxF -- "$part" && ! grep -qE '^\[doctest\] test cases: +[1-9]' "$log"; then
+      echo "no case of the suite was run" >>"$log"
+      failed="$failed $part"
+    fi
+    case " $failed " in *" $part "*) tail -40 "$log" ;; esac
+    awk -v part="$part" -v s=$((SECONDS - begun)) -v log_file="$log" 'BEGIN { printf "long: %s: %.1f minutes, log in %s\n", part, s / 60, log_file }'
+  done
+  [ -z "$failed" ] || { echo "failed:$failed"; return 1; }
+}

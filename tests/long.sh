@@ -5,6 +5,7 @@
 # such suites out unless they are asked for.
 long_table="
 gauss_seidel | every verification case by Gauss-Seidel | env TALUS_TEST_SOLVER=gauss_seidel build/release/tests/verification
+includes | library and program without precompiled headers, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_TESTS=OFF -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
 "
 
 long_suites() { grep -rhoE 'TEST_SUITE\("long: [^" ]+"\)|test_suite\("long: [^" ]+"\)' tests --include='*.cpp' | sed 's/.*long: \([^"]*\)".*/\1/' | sort -u; }

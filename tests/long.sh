@@ -4,7 +4,7 @@
 # suite "long: NAME" (one word) in any test program: TEST_SUITE("long: NAME") around them is all it takes, tests/main.cpp leaves
 # such suites out unless they are asked for.
 long_table="
-gauss_seidel | every verification case by Gauss-Seidel | env TALUS_TEST_SOLVER=gauss_seidel build/release/tests/verification
+sliding | joints slide at their strength, whatever the mesh | build/release/studies/sliding_joints
 includes | library and program without precompiled headers, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_TESTS=OFF -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
 "
 

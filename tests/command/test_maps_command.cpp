@@ -2,6 +2,8 @@
 // (tests/fixtures/make_maps.py says what they hold).
 
 #include <doctest/doctest.h>
+
+#include <fstream>
 #include <fmt/format.h>
 
 #include <cmath>

@@ -25,8 +25,8 @@ const std::string kBar = std::string(TALUS_SOURCE_DIR) + "/examples/impact_bar/i
 TEST_CASE("command: help, version and wrong usage") {
   const Folder f;
   CHECK(shell(f, "$talus --help").code == 0);
-  for (const char* verb : {"run", "check", "cut", "import", "safety", "audit", "new", "plot", "report", "record",
-                           "replay", "schema", "verify", "completion", "man"}) {
+  for (const char* verb : {"run", "check", "cut", "import", "safety", "audit", "new", "plot", "report",
+                           "record", "replay", "schema", "verify", "completion", "man"}) {
     const Outcome o = shell(f, fmt::format("$talus {} --help", verb));
     CHECK(o.code == 0);
     has(o.text, "Example: talus");

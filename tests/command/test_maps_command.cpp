@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include <fstream>
 #include <fmt/format.h>
+#include <fstream>
 
 #include <cmath>
 #include <filesystem>

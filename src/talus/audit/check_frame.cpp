@@ -342,7 +342,10 @@ class Check {
     // an elastic face that has closed at its other end pushes with its whole length
     const Law* law = law_of(p);
     const bool soft = p.joint == kUnknownJoint || (law && law->normal_stiffness > 0);
-    if (soft && p.partner >= 0 && seen_[static_cast<size_t>(p.partner)].gap < 0) return;
+    if (soft && p.partner >= 0) {
+      const auto other = static_cast<size_t>(p.partner);
+      if (seen_[other].gap < frame_.points[other].in_situ + frame_.points[other].rise) return;
+    }
     const double share = (s.gap - allowed) / size;
     out.findings.push_back(
         finding(Defect::kForceAcrossGap, std::abs(p.normal_force) > kForceInvalid * mean_force_, p.block_a,

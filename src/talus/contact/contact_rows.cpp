@@ -200,7 +200,7 @@ class ContactRows {
         if (soft && p.lower == 0)
           length *= close_face(q, points[static_cast<size_t>(partner)], c,
                                state_.contacts[at + static_cast<size_t>(partner)], p);
-      } else if (soft && p.lower == 0 && c.length == 0) {
+      } else if (soft && p.lower == 0 && c.partner < 0) {
         length = close_corner(q, c, size, p);
       } else if (c.length == 0) {
         length = kCornerLength * size;
@@ -287,7 +287,11 @@ class ContactRows {
     const Vec2 X = blocks_.corner(c.key.block_a, v), along = turn_left(q.over.normal);
     const double on_edge = q.over.along * q.over.length;  // the edge runs along turn_left(normal)
     double force = 0, moment = 0;
+    int bit = 1;
     for (const int neighbour : {v + 1 == n ? 0 : v + 1, v == 0 ? n - 1 : v - 1}) {
+      const bool bears = c.toes & bit;
+      bit = 2;
+      if (!bears) continue;
       const Vec2 E = blocks_.corner(c.key.block_a, neighbour) - X, side = E + state_.strain_part[a] * E;
       const double up = dot(side, q.over.normal), run = dot(side, along);
       const double room = std::min(std::abs(run), run > 0 ? q.over.length - on_edge : on_edge);

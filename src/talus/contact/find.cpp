@@ -141,7 +141,8 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
 // Whether x is the way out rather than y: what was in touch before, else the larger gap, or of nearly equal
 // ones what is coming.
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
-  if (x.held != y.held) return x.held;
+  const bool x_stays = x.held && !x.covered, y_stays = y.held && !y.covered;
+  if (x_stays != y_stays) return x_stays;
   found_.clearance = std::min(found_.clearance, std::abs(std::abs(x.point.gap - y.point.gap) - same_));
   if (std::abs(x.point.gap - y.point.gap) > same_) return x.point.gap > y.point.gap;
   found_.clearance = 0;
@@ -222,6 +223,8 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   const double middle = stretch.length > 0 ? stretch.middle : foot;
   const Vec2 on_b = b.corner[ke] + std::clamp(middle, inward, length - inward) * along;
   if (lies_in_third(blocks, s, b.block, a.block, on_b + reach * n)) return true;
+  // a neighbour may come and cover the side while the two stay as they are
+  if (h.point.gap < -same_) found_.this_step_only = true;
   if (stretch.length == 0) return false;
   const auto kf = static_cast<size_t>(stretch.edge_a);
   const Vec2 a0 = shift + a.corner[kf], ea = a.edge[kf] / a.length[kf];
@@ -268,7 +271,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const bool held = was_in_touch(a, v, b, e);
       // behind the line of an edge, and yet not in the block: beyond another of its sides
       if (!held && c.gap < -range_.margin && !b.holds(place, same_)) continue;
-      found_.by_velocity = found_.by_velocity || !above;
+      found_.this_step_only = found_.this_step_only || !above;
       Hit hit;
       hit.point.key = {a.block, v, b.block, e};
       hit.point.normal = c.normal;
@@ -288,11 +291,11 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
     double reach = same_;
     for (size_t i = first; i < hits_.size(); ++i) reach = std::max(reach, -hits_[i].point.gap);
     reach = std::min(reach, kMostReach / kSamePlace * same_);
-    hits_.erase(std::remove_if(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
-                               [&](const Hit& h) {
-                                 return !h.held && (is_elsewhere(a, v, place, b, h) ||
-                                                    is_covered(blocks, s, a, b, shift, h, reach));
-                               }),
+    for (size_t i = first; i < hits_.size(); ++i)
+      hits_[i].covered = is_covered(blocks, s, a, b, shift, hits_[i], reach);
+    hits_.erase(std::remove_if(
+                    hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
+                    [&](const Hit& h) { return !h.held && (h.covered || is_elsewhere(a, v, place, b, h)); }),
                 hits_.end());
     // where b is convex the corner obeys one edge, the one it is least behind
     for (size_t i = first; i < hits_.size(); ++i) {
@@ -376,13 +379,14 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         if (std::find(spans_[j].begin(), spans_[j].end(), span) == spans_[j].end()) continue;
         ContactPoint &x = hits_[i].point, &y = hits_[j].point;
         const Vec2 px = place(hits_[i]), py = place(hits_[j]), middle = 0.5 * (px + py);
-        const double length = norm(px - py);
+        const auto side = static_cast<size_t>(span.side_lo);
+        const double length = std::abs(dot(px - py, lo.edge[side])) / lo.length[side];
         // one partner each; what is left of a face whose other end has one goes to the free end
         const bool both = x.partner < 0 && y.partner < 0;
         if (both) {
           x.partner = static_cast<int>(j), y.partner = static_cast<int>(i);
           x.length = y.length = 0.5 * length;
-          const bool first = dot(lo.edge[static_cast<size_t>(span.side_lo)], py - px) > 0;
+          const bool first = dot(lo.edge[side], py - px) > 0;
           x.face = {span.side_lo, span.side_hi, first ? 0 : 1};
           y.face = {span.side_lo, span.side_hi, first ? 1 : 0};
         } else if (x.partner < 0 || y.partner < 0) {
@@ -397,6 +401,26 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
           h->face_edge_b = h->key.block_a == lo.block ? edge_hi : edge_lo;
         }
       }
+    }
+  }
+}
+
+// Which sides of a corner alone bear on its edge by themselves: not those whose interface has its own two
+// ends.
+void ContactSearch::find_toes(const Outline& a, const Outline& b) {
+  for (Hit& h : hits_) {
+    if (h.point.partner >= 0) continue;
+    const ContactKey& k = h.point.key;
+    const Outline &on_a = k.block_a == a.block ? a : b, &on_b = k.block_a == a.block ? b : a;
+    const int side_b = on_b.side_of(k.edge);
+    int bit = 1;
+    for (const int f : {k.vertex, on_a.before(k.vertex)}) {
+      const int side_a = on_a.side_of(f);
+      const int lo = k.block_a < k.block_b ? side_a : side_b, hi = k.block_a < k.block_b ? side_b : side_a;
+      for (const Hit& o : hits_)
+        if (o.point.partner >= 0 && o.point.face.side_lo == lo && o.point.face.side_hi == hi)
+          h.point.toes &= ~bit;
+      bit = 2;
     }
   }
 }
@@ -421,7 +445,7 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);
   found_.points.clear(), found_.cover.clear();
   found_.clearance = range.margin;
-  found_.by_velocity = false;
+  found_.this_step_only = false;
   hits_.clear();
   first_.take(blocks, state, a);
   second_.take(blocks, state, b);
@@ -433,6 +457,7 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   std::erase_if(hits_, [](const Hit& h) { return h.apart; });
   std::sort(hits_.begin(), hits_.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });
   share_faces(first_, second_, shift);
+  find_toes(first_, second_);
   for (const Hit& h : hits_) found_.points.push_back(h.point);
   return found_;
 }

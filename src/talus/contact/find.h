@@ -21,6 +21,8 @@ struct ContactPoint {
   int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of that face; -1: none
   int partner = -1;  // the other end of that face: its place in the list; each is the other's; -1: none
   FaceEnd face;      // which end of which interface, where it has a partner
+  int toes = 3;      // where it has none: 1: the side after the corner is no part of an interface with this
+                     // edge's side, 2: nor is the side before it
 };
 
 /// Gap and foot of a corner over an edge; digits are kept however far both are from the origin.
@@ -46,8 +48,8 @@ struct SearchRange {
 /// What a search found, and what could change it.
 struct Found {
   std::vector<ContactPoint> points;  // in the order of their keys
-  double clearance = 0;      // the least distance, along an edge or between gaps, to another outcome [m]
-  bool by_velocity = false;  // velocities had a say: the outcome holds for this step only
+  double clearance = 0;         // the least distance, along an edge or between gaps, to another outcome [m]
+  bool this_step_only = false;  // velocities or neighbours had a say: the outcome holds for this step only
   std::vector<int>
       cover;  // third blocks that cover a side here: were they to leave, there would be more points
 };
@@ -89,11 +91,12 @@ class ContactSearch {
   };
   struct Hit {
     ContactPoint point;
-    int at_corner = -1;   // corner of b at the foot, -1 inside the edge
-    double expected = 0;  // gap after the look-ahead
-    bool apart = false;   // by the side of b, over which a slides flush
-    bool coming = false;  // beside the edge still; over it after the look-ahead
-    bool held = false;    // in touch on this side before
+    int at_corner = -1;    // corner of b at the foot, -1 inside the edge
+    double expected = 0;   // gap after the look-ahead
+    bool apart = false;    // by the side of b, over which a slides flush
+    bool coming = false;   // beside the edge still; over it after the look-ahead
+    bool held = false;     // in touch on this side before
+    bool covered = false;  // by a third block, now
   };
   // The length over which two antiparallel sides lie beside each other, along an edge of the second block.
   struct Stretch {
@@ -118,6 +121,7 @@ class ContactSearch {
   bool lies_in_third(const BlockSet& blocks, const State& state, int block, int other, Vec2 place);
   void merge_corner_pairs(const Outline& a, const Outline& b);
   void share_faces(const Outline& a, const Outline& b, Vec2 shift);
+  void find_toes(const Outline& a, const Outline& b);
   void spans_of(const Outline& a, const Outline& b, const Hit& h, std::vector<Span>& list) const;
 
   SearchRange range_;

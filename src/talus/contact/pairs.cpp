@@ -244,6 +244,7 @@ Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& p
   Contact c;
   c.key = point.key;
   c.partner = static_cast<int16_t>(point.partner), c.length = point.length, c.face = point.face;
+  c.toes = static_cast<int8_t>(point.toes);
   const ContactKey& key = point.key;
   c.joint = point.face_edge_b >= 0
                 ? joints_of.joint_at(key.block_a, point.face_edge_a, key.block_b, point.face_edge_b)
@@ -367,7 +368,7 @@ class Updater {
       keep_cover(s, sought.cover, pair);
       // what velocities decided is asked again in the next step
       pair.reuse =
-          sought.by_velocity || sought.cover.size() > pair.cover.size()
+          sought.this_step_only || sought.cover.size() > pair.cover.size()
               ? -1
               : std::min(0.25 * pair.margin,
                          std::max(0.5 * kSamePlace * size, std::min(0.5 * sought.clearance, kReuse * size)));

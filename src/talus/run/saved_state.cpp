@@ -35,7 +35,7 @@ void exchange_contacts(Exchange& x, State& s) {
     field("block_a", c.key.block_a), field("vertex", c.key.vertex);
     field("block_b", c.key.block_b), field("edge", c.key.edge);
     field("joint", c.joint), field("partner", c.partner), field("memory", c.memory);
-    field("length", c.length), field("force", c.force), field("allowed", c.allowed);
+    field("length", c.length), field("force", c.force), field("allowed", c.allowed), field("toes", c.toes);
     field("side_lo", c.face.side_lo), field("side_hi", c.face.side_hi), field("face_end", c.face.end);
     field("stretch", c.stretch), field("anchor", c.anchor);
     field("slip", c.slip), field("slip_signed", c.slip_signed), field("touched", c.touched);

@@ -159,7 +159,7 @@ TEST_CASE("random small motions: the contacts that are followed are those that w
     State state = start_state(scene);
     update(scene, state);
     remember_all(state);
-    CHECK(state.contacts.size() > 20);
+    CHECK(state.contacts.size() > 15);
     int searched = 0, followed = 0, differ = 0;
     for (int step = 0; step < 200; ++step) {
       const State before = state;

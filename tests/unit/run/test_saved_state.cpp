@@ -25,10 +25,10 @@ void each_field(FaceEnd& e, auto& f) {
 }
 
 void each_field(Contact& c, auto& f) {
-  auto& [key, joint, partner, memory, touched, face, allowed, length, force, stretch, anchor, slip,
+  auto& [key, joint, partner, memory, touched, toes, face, allowed, length, force, stretch, anchor, slip,
          slip_signed] = c;
   f(key), f(joint), f(partner), f(memory), f(length), f(force), f(stretch), f(anchor), f(slip);
-  f(slip_signed), f(touched), f(face), f(allowed);
+  f(slip_signed), f(touched), f(toes), f(face), f(allowed);
 }
 
 void each_field(ContactPair& p, auto& f) {

@@ -45,6 +45,7 @@ point = [0.5, 1]
 name = "rest"
 kind = "static"
 duration = 1
+elasticity = "explicit"    # a short step: what comes next begins half of it early
 )";
 
 const std::string kIncline = R"(talus = 1

@@ -186,11 +186,6 @@ TEST_CASE("wrong input: each kind has its message") {
        "duration = \"1 s\"\ntime_step = \"10 ms\"\nelasticity = \"explicit\"",
        {"model.toml:26:1: error: stage.go.time_step: 0.01 s is above the stable limit",
         "set by block \"upper\"", "use \"auto\""}},
-      {"automatic step without a deformable block",
-       "gravity = [0, -9.81]\n[material.rock]",
-       "gravity = [0, 0]\n[[block]]\nname = \"upper\"\npolygon = [[0, 1], [1, 1], [1, 2], [0, 2]]\n"
-       "material = \"rock\"\nkind = \"rigid\"\n[material.rock]",
-       {"there"}},
       {"support off every block",
        "[contact]",
        "[[support]]\nname = \"s\"\npoint = [5, 5]\n[contact]",
@@ -255,4 +250,15 @@ TEST_CASE("overrides: values, names in lists, and their own mistakes") {
                 {"no block is called \"uper\"", "there is lower or upper"});
   check_message(refusal(kSound, {"young"}), {"an override is written path=value"});
   check_message(refusal(kSound, {"talus.x=1"}), {"\"talus\" holds no further keys"});
+}
+
+TEST_CASE(
+    "an automatic step where no block deforms: from gravity and motions, refused where nothing sets a time") {
+  const std::string rigid =
+      replaced("material = \"rock\"\n[contact]", "material = \"rock\"\nkind = \"rigid\"\n[contact]");
+  CHECK(refusal(rigid).empty());
+  const std::string message = refusal(rigid, {"model.gravity=[0,0]"});
+  CHECK(message.find("stage.go.time_step: \"auto\" finds nothing in this model that sets a time") !=
+        std::string::npos);
+  CHECK(message.find("give a time_step") != std::string::npos);
 }

@@ -471,7 +471,8 @@ class Check {
   // the overlap. Asked only where one interface is all that the two share, where nothing else closes the
   // joint and where it hardly moves: the force of a step also damps.
   void check_normal(const Pair& pair, const Common& common, FrameResult& out) const {
-    if (pair.begin == pair.end) return;
+    // in the first step what presses has not closed anything yet
+    if (pair.begin == pair.end || frame_.time == 0) return;
     const double size = size_of(pair.a, pair.b);
     double normal = 0, blurred = 0;  // area that the overlap may be off by
     const Law* law = nullptr;

@@ -20,9 +20,13 @@ constexpr double kEntrance = 0.02;
 // or the side belongs to two sources. It enters nothing; the corner across does.
 constexpr double kFlat = 1e-4;
 
-// Stretches of two sides longer than this many times the size of one place, and this many times the overlap,
-// are interfaces whatever lies beside them.
-constexpr double kLongStretch = 100, kLongerThanDeep = 20;
+// Stretches of two sides longer than this many times the size of one place (5 % of the smaller block), and
+// this many times the overlap, are interfaces whatever lies beside them.
+constexpr double kLongStretch = 5000, kLongerThanDeep = 20;
+
+// Height at which a neighbour is looked for beside a side, against the distance from its end: wedges of 14
+// degrees.
+constexpr double kWedge = 0.25;
 
 // Gaps beside a side up to the depth of the overlap are none, but never wider than this share of the smaller
 // block.
@@ -122,13 +126,18 @@ bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outli
 
 // Whether a corner of a that seems to lie inside edge e of b is nearer to another edge that it could enter:
 // it is across a thin part of b, beside a corner of b that touches a.
-bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outline& b, const Hit& hit) {
+bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outline& b, const Hit& hit,
+                                 size_t first) {
   const double depth = -hit.point.gap;
   bool nearer = false;
   if (depth <= same_) return nearer;
   for (int f = 0; f < b.count; ++f) {
     const auto k = static_cast<size_t>(f);
-    if (f == hit.point.key.edge || !a.may_enter(v, turn_right(b.edge[k]) / b.length[k])) continue;
+    if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k])) continue;
+    // sides that the corner lies over are weighed against each other, where they are no covered ones
+    if (std::any_of(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
+                    [f](const Hit& h) { return h.point.key.edge == f; }))
+      continue;
     const Vec2 r = place - b.corner[k];
     const double along = std::clamp(dot(r, b.edge[k]) / (b.length[k] * b.length[k]), 0.0, 1.0);
     const double left = depth - same_ - norm(r - along * b.edge[k]);
@@ -215,22 +224,29 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   const Stretch stretch = stretch_of(a, key.vertex, b, key.edge, shift);
   // two sides with an interface as good as any
   if (stretch.length > std::max(kLongStretch * same_, kLongerThanDeep * reach)) return false;
+  // before the overlap comes to be, the height over which the two lie beside each other tells what it will be
+  reach = std::clamp(stretch.length, reach, std::max(reach, kMostReach / kSamePlace * same_));
   const auto ke = static_cast<size_t>(key.edge);
   const double length = b.length[ke];
   const Vec2 along = b.edge[ke] / length, n = h.point.normal;
   const double foot = dot(along, shift + a.corner[static_cast<size_t>(key.vertex)] - b.corner[ke]);
-  const double inward = std::min(2 * same_, 0.5 * length);
+  // hair gaps are looked across; close by, a neighbour may be a thin wedge beside the end of the side
+  const auto filled = [&](int block, int other, Vec2 first, Vec2 direction, double of, double at, Vec2 out) {
+    const double inward = std::min(2 * same_, 0.5 * of), place = std::clamp(at, inward, of - inward);
+    const Vec2 on = first + place * direction;
+    return lies_in_third(blocks, s, block, other, on + reach * out) ||
+           lies_in_third(blocks, s, block, other,
+                         on + std::min(reach, kWedge * std::min(place, of - place)) * out);
+  };
   const double middle = stretch.length > 0 ? stretch.middle : foot;
-  const Vec2 on_b = b.corner[ke] + std::clamp(middle, inward, length - inward) * along;
-  if (lies_in_third(blocks, s, b.block, a.block, on_b + reach * n)) return true;
+  if (filled(b.block, a.block, b.corner[ke], along, length, middle, n)) return true;
   // a neighbour may come and cover the side while the two stay as they are
   if (h.point.gap < -same_) found_.this_step_only = true;
   if (stretch.length == 0) return false;
   const auto kf = static_cast<size_t>(stretch.edge_a);
-  const Vec2 a0 = shift + a.corner[kf], ea = a.edge[kf] / a.length[kf];
-  const double in_a = std::min(2 * same_, 0.5 * a.length[kf]);
-  const double at = std::clamp(dot(ea, b.corner[ke] + middle * along - a0), in_a, a.length[kf] - in_a);
-  return lies_in_third(blocks, s, a.block, b.block, a0 + at * ea - shift + reach * turn_right(ea));
+  const Vec2 a0 = a.corner[kf], ea = a.edge[kf] / a.length[kf];
+  const double at = dot(ea, b.corner[ke] + middle * along - shift - a0);
+  return filled(a.block, b.block, a0, ea, a.length[kf], at, turn_right(ea));
 }
 
 // All corner-edge pairs of corners of a over edges of b. `shift` leads from the centroid of b to that of a.
@@ -293,10 +309,14 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
     reach = std::min(reach, kMostReach / kSamePlace * same_);
     for (size_t i = first; i < hits_.size(); ++i)
       hits_[i].covered = is_covered(blocks, s, a, b, shift, hits_[i], reach);
-    hits_.erase(std::remove_if(
-                    hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
-                    [&](const Hit& h) { return !h.held && (h.covered || is_elsewhere(a, v, place, b, h)); }),
-                hits_.end());
+    // both are asked with all hits in their places
+    out_.assign(hits_.size() - first, 0);
+    for (size_t i = first; i < hits_.size(); ++i)
+      out_[i - first] = !hits_[i].held && (hits_[i].covered || is_elsewhere(a, v, place, b, hits_[i], first));
+    size_t kept = first;
+    for (size_t i = first; i < hits_.size(); ++i)
+      if (!out_[i - first]) hits_[kept++] = hits_[i];
+    hits_.resize(kept);
     // where b is convex the corner obeys one edge, the one it is least behind
     for (size_t i = first; i < hits_.size(); ++i) {
       for (size_t j = i + 1; j < hits_.size();) {

@@ -110,7 +110,7 @@ class ContactSearch {
 
   bool is_flush(const BlockSet& blocks, const State& state, const Outline& a, int corner, const Outline& b,
                 int edge, int end) const;
-  bool is_elsewhere(const Outline& a, int corner, Vec2 place, const Outline& b, const Hit& hit);
+  bool is_elsewhere(const Outline& a, int corner, Vec2 place, const Outline& b, const Hit& hit, size_t first);
   bool is_better(const Hit& x, const Hit& y);
   void corners_over_edges(const BlockSet& blocks, const State& state, const Outline& a, const Outline& b,
                           Vec2 shift);
@@ -130,6 +130,7 @@ class ContactSearch {
   std::vector<Hit> hits_;
   std::vector<std::vector<Span>> spans_;
   std::vector<Vec2> outline_;  // of a third block
+  std::vector<char> out_;      // hits of a corner that hold nothing
   Found found_;
 };
 

@@ -242,7 +242,8 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   if (filled(b.block, a.block, b.corner[ke], along, length, middle, n)) return true;
   // a neighbour may come and cover the side while the two stay as they are
   if (h.point.gap < -same_) found_.this_step_only = true;
-  if (stretch.length == 0) return false;
+  // corner on corner, the two share nothing yet: a block in the notch between them holds both
+  if (stretch.edge_a < 0) return false;
   const auto kf = static_cast<size_t>(stretch.edge_a);
   const Vec2 a0 = a.corner[kf], ea = a.edge[kf] / a.length[kf];
   const double at = dot(ea, b.corner[ke] + middle * along - shift - a0);

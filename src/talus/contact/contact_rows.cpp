@@ -97,6 +97,7 @@ class ContactRows {
         place_(place),
         joints_(model.joints) {
     joints_.emplace_back();  // the last: neither friction nor stiffness
+    if (blocks.count > 0) thinnest_ = *std::min_element(blocks.thinness.begin(), blocks.thinness.end());
     for (const JointProperty& j : joints_) friction_.push_back(std::tan(j.friction_after()));
   }
 
@@ -213,6 +214,7 @@ class ContactRows {
 
   double closed_part(const ContactPair& pair, const Point& q) const {
     double share = 0;
+    if (-q.gap <= kNoticed * thinnest_) return share;
     for (const int block : {pair.a, pair.b}) {
       const auto k = static_cast<size_t>(block);
       // below this nobody asks: the thinnest there can be
@@ -326,6 +328,7 @@ class ContactRows {
   std::vector<ContactPlace>& place_;
   std::vector<JointProperty> joints_;
   std::vector<double> friction_;
+  double thinnest_ = 0;  // least thinness of a block [m]
 };
 
 }  // namespace

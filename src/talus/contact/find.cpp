@@ -470,6 +470,10 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   hits_.clear();
   first_.take(blocks, state, a);
   second_.take(blocks, state, b);
+  const auto none_flat = [](const Outline& o) {
+    return std::find(o.flat.begin(), o.flat.end(), 1) == o.flat.end();
+  };
+  found_.plain = none_flat(first_) && none_flat(second_);
   const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
   corners_over_edges(blocks, state, first_, second_, shift);
   corners_over_edges(blocks, state, second_, first_, -shift);

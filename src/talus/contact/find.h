@@ -50,6 +50,7 @@ struct Found {
   std::vector<ContactPoint> points;  // in the order of their keys
   double clearance = 0;         // the least distance, along an edge or between gaps, to another outcome [m]
   bool this_step_only = false;  // velocities or neighbours had a say: the outcome holds for this step only
+  bool plain = false;  // no corner of the two lies on a straight side
   std::vector<int>
       cover;  // third blocks that cover a side here: were they to leave, there would be more points
 };

@@ -40,15 +40,14 @@ double moved_since(const BlockSet& blocks, const State& state, const CandidateLi
   return norm(state.displacement[i] - list.displacement[i]) + std::sqrt(contract(h, h)) * blocks.radius[i];
 }
 
-// How fast places of a block move at most [m/s].
-double speed_of(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t i) {
-  return norm(rate[i].a) + std::sqrt(contract(rate[i].G, rate[i].G)) * blocks.radius[i];
+// How fast the outermost places of a block move against its centroid at most [m/s].
+double turning_speed(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t i) {
+  return std::sqrt(contract(rate[i].G, rate[i].G)) * blocks.radius[i];
 }
 
-// How fast places of one block come towards those of another at most [m/s].
-double closing_speed(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t a, size_t b) {
-  return norm(rate[a].a - rate[b].a) + std::sqrt(contract(rate[a].G, rate[a].G)) * blocks.radius[a] +
-         std::sqrt(contract(rate[b].G, rate[b].G)) * blocks.radius[b];
+// How fast places of a block move at most [m/s].
+double speed_of(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t i) {
+  return norm(rate[i].a) + turning_speed(blocks, rate, i);
 }
 
 // Faces that rode up over their roughness are that far apart and in touch: the most that joints can rise [m].
@@ -238,18 +237,21 @@ class Memory {
   const double same_;
 };
 
-// A found point with what a known one at the same place remembers.
+// A found point with what a known one at the same place remembers. `plain`: every straight side is one edge.
 Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& point, const Memory& memory,
-                   const Layout& joints_of) {
+                   bool plain, const Layout& joints_of) {
   Contact c;
   c.key = point.key;
   c.partner = static_cast<int16_t>(point.partner), c.length = point.length, c.face = point.face;
   c.toes = static_cast<int8_t>(point.toes);
   const ContactKey& key = point.key;
-  c.joint = point.face_edge_b >= 0
-                ? joints_of.joint_at(key.block_a, point.face_edge_a, key.block_b, point.face_edge_b)
-                : joints_of.joint_at_corner(key.block_a, key.vertex, key.block_b, key.edge);
   const auto [from, kind] = memory.of(point);
+  if (from && plain && kind == Origin::kKey && from->face == point.face)
+    c.joint = from->joint;  // the same two edges
+  else
+    c.joint = point.face_edge_b >= 0
+                  ? joints_of.joint_at(key.block_a, point.face_edge_a, key.block_b, point.face_edge_b)
+                  : joints_of.joint_at_corner(key.block_a, key.vertex, key.block_b, key.edge);
   if (!from) {
     if (kind == Origin::kNothing) c.allowed = std::max(0.0, -point.gap);
     return c;
@@ -309,6 +311,10 @@ class Updater {
         state_(state) {}
 
   SearchReport run(const Workers& workers) {
+    turning_.resize(static_cast<size_t>(blocks_.count));
+    workers.for_chunks(turning_.size(), 4096, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) turning_[i] = turning_speed(blocks_, *ahead_.before, i);
+    });
     const size_t n = state_.pairs.size();
     changed_.resize((n + kGrain - 1) / kGrain);
     searched_.assign(changed_.size(), 0);
@@ -331,10 +337,9 @@ class Updater {
       const Contact& c = state_.contacts[static_cast<size_t>(pair.begin + k)];
       if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints_[static_cast<size_t>(c.joint)], c.slip));
     }
-    return 2 * ahead_.dt *
-               closing_speed(blocks_, *ahead_.before, static_cast<size_t>(pair.a),
-                             static_cast<size_t>(pair.b)) +
-           2 * rise;
+    const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+    const std::vector<BlockRate>& rate = *ahead_.before;
+    return 2 * ahead_.dt * (norm(rate[a].a - rate[b].a) + turning_[a] + turning_[b]) + 2 * rise;
   }
 
   void look_at(size_t begin, size_t end) {
@@ -380,7 +385,7 @@ class Updater {
                         found.size(), s.time, kMostPoints));
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
-        changed.contact.push_back(contact_of(blocks_, s, p, memory, joints_of_));
+        changed.contact.push_back(contact_of(blocks_, s, p, memory, sought.plain, joints_of_));
       if (pair.from_start && s.step == 0)
         pair.shares_face =
             std::any_of(found.begin(), found.end(), [](const ContactPoint& p) { return p.length > 0; });
@@ -470,6 +475,7 @@ class Updater {
   const LookAhead& ahead_;
   const bool dilates_;
   State& state_;
+  std::vector<double> turning_;  // [count] how fast places move against the centroid [m/s]
   std::vector<Changed> changed_;
   std::vector<int> searched_;
 };

@@ -470,7 +470,7 @@ TEST_CASE("invariance: a sample of models and transforms") {
   Subject(case_called("mesh with fault"), 0.05).check("turned by 37 deg");
 }
 
-TEST_SUITE("long: invariance" * doctest::skip()) {
+TEST_SUITE("long: invariance") {
   TEST_CASE("invariance: block") { Subject(case_called("block")).check_all(); }
   TEST_CASE("invariance: wall") { Subject(case_called("wall")).check_all(); }
   TEST_CASE("invariance: arch") { Subject(case_called("arch")).check_all(); }

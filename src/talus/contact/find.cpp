@@ -261,9 +261,13 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
     for (int e = 0; e < b.count; ++e) {
       const auto ke = static_cast<size_t>(e);
       // far from the line of the edge, as most are
-      const double off = -cross(b.edge[ke], place - b.corner[ke]);
+      const Vec2 from_end = place - b.corner[ke];
+      const double off = -cross(b.edge[ke], from_end);
       if (off > (range_.margin + same_) * b.length[ke] || off < -(range_.depth + same_) * b.length[ke])
         continue;
+      // far beyond its ends: what comes within the look-ahead is nearer than the margin
+      const double run = dot(b.edge[ke], from_end), beside = 2 * (range_.margin + same_) * b.length[ke];
+      if (run < -beside || run > b.length[ke] * b.length[ke] + beside) continue;
       const CornerEdge c = corner_over_edge(blocks, s, a.block, v, b.block, e);
       if (c.gap > range_.margin || c.gap < -range_.depth) continue;
       // beyond a convex end lies free space; beyond an end in a notch lies the block itself, and a corner

@@ -309,6 +309,61 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
   MESSAGE(kills, " kills, ", gone_on, " runs went on from a saved state, ", ended, " came to their end");
 }
 
+TEST_CASE("command run: a run that fails leaves its last good state, from which it comes to the same end") {
+  // a block between two jaws: there is no room for what the equations ask for
+  Folder folder;
+  write_model(folder, R"model(talus = 1
+[material.r]
+density = 2700
+young = "5 GPa"
+poisson = 0.25
+[joint.f]
+friction_angle = "35 deg"
+[contact]
+joint = "f"
+[history.v]
+time = [0, 10]
+value = [0.05, 0.05]
+[history.w]
+time = [0, 10]
+value = [-0.05, -0.05]
+[[block]]
+name = "left"
+polygon = [[-1, 0], [-0.1, 0], [-0.1, 1], [-1, 1]]
+material = "r"
+kind = "driven"
+motion_x = { velocity = "v" }
+[[block]]
+name = "right"
+polygon = [[1.1, 0], [2, 0], [2, 1], [1.1, 1]]
+material = "r"
+kind = "driven"
+motion_x = { velocity = "w" }
+[[block]]
+name = "between"
+polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
+material = "r"
+kind = "rigid"
+[[stage]]
+name = "close"
+kind = "dynamic"
+duration = "10 s"
+time_step = "0.5 ms"
+)model");
+  const Outcome o = shell(folder, "$talus run model.toml -o whole -q");
+  INFO(o.text);
+  CHECK(o.code == 5);
+  const auto states = saved_in(folder / "whole");
+  REQUIRE(states.size() == 1);
+  const std::string name = states[0].filename().string();
+  const int step = std::atoi(name.c_str() + 5);
+  CHECK(step > 0);
+  CHECK(step <= 4000);  // the jaws touch after 2 s
+  const auto whole = results(folder / "whole");
+  CHECK(shell(folder, "$talus run model.toml --from whole/saved/" + name + " -q").code == 5);
+  same(whole, results(folder / "whole"));
+}
+
 TEST_CASE("command run --from: what cannot go on is refused") {
   Folder folder;
   write_model(folder);

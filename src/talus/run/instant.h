@@ -31,6 +31,10 @@ class Observer {
   virtual bool stop() { return false; }
   /// Asked before every step; true: keep_state() follows.
   virtual bool wants_state() { return false; }
+  /// Asked before every step; true: hold_state() follows.
+  virtual bool wants_copy() { return false; }
+  /// Shown where the run could go on from, to be held in case the next steps fail.
+  virtual void hold_state(const Standing& /*standing*/, const State& /*state*/) {}
   /// Shown where the run could go on from: when wanted, after every stage, and before a run that is stopped
   /// ends.
   virtual void keep_state(const Standing& /*standing*/, const State& /*state*/) {}

@@ -21,6 +21,10 @@ class Progress : public Observer {
   bool stop() override { return next_.stop() || (stop_ && *stop_ != 0); }
   bool wants_state() override { return next_.wants_state(); }
   void fails(const Instant& instant) override { next_.fails(instant); }
+  bool wants_copy() override { return next_.wants_copy(); }
+  void hold_state(const Standing& standing, const State& state) override {
+    next_.hold_state(standing, state);
+  }
   void keep_state(const Standing& standing, const State& state) override {
     next_.keep_state(standing, state);
   }

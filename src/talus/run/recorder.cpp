@@ -183,9 +183,22 @@ bool Recorder::wants_state() {
          wall_now() - last_saved_ >= interval;
 }
 
-void Recorder::keep_state(const Standing& standing, const State& state) {
-  history_file_.flush();
-  steps_file_.flush();
+bool Recorder::wants_copy() {
+  constexpr int kStepsBetween = 16;
+  // takes at most this share of the time
+  constexpr double kShare = 0.02;
+  if (held_ && ++steps_since_held_ % kStepsBetween != 0) return false;
+  return !held_ || wall_now() - held_at_ >= holding_took_ / kShare;
+}
+
+void Recorder::hold_state(const Standing& standing, const State& state) {
+  const double begin = wall_now();
+  held_ = archive_of(standing, state);
+  held_step_ = state.step;
+  held_at_ = wall_now(), holding_took_ = held_at_ - begin;
+}
+
+Archive Recorder::archive_of(const Standing& standing, const State& state) {
   Archive archive = run_archive(scene_, standing, state);
   Exchange saving(archive, true);
   exchange(saving);
@@ -194,16 +207,28 @@ void Recorder::keep_state(const Standing& standing, const State& state) {
   archive.numbers[kJointsSize] = {static_cast<double>(joints_.size())};
   archive.numbers[kSlipsSize] = {static_cast<double>(slips_.size())};
   archive.numbers[kBoltsSize] = {static_cast<double>(bolt_table_.size())};
+  return archive;
+}
+
+void Recorder::write_step(int64_t step, const Archive& archive) {
+  make_folder(folder_ / "saved");
+  const auto path = folder_ / "saved" / fmt::format("step_{:09}.h5", step);
+  write_archive(path, archive);
+  std::erase(saved_, path);
+  saved_.push_back(path);
+  std::error_code ec;
+  for (; saved_.size() > kSavedStates; saved_.erase(saved_.begin())) std::filesystem::remove(saved_[0], ec);
+}
+
+void Recorder::keep_state(const Standing& standing, const State& state) {
+  history_file_.flush();
+  steps_file_.flush();
+  const Archive archive = archive_of(standing, state);
   make_folder(folder_ / "saved");
   if (standing.between) {
     write_archive(folder_ / "saved" / fmt::format("stage_{:02}.h5", standing.result.stages.size()), archive);
   } else {
-    const auto path = folder_ / "saved" / fmt::format("step_{:09}.h5", state.step);
-    write_archive(path, archive);
-    std::erase(saved_, path);
-    saved_.push_back(path);
-    std::error_code ec;
-    for (; saved_.size() > kSavedStates; saved_.erase(saved_.begin())) std::filesystem::remove(saved_[0], ec);
+    write_step(state.step, archive);
   }
   last_saved_ = wall_now();
 }
@@ -335,6 +360,7 @@ void Recorder::finish(const RunResult& result, const std::vector<std::string>& o
   histories_.finish();
   history_file_.flush();
   steps_file_.flush();
+  if (!result.failure.empty() && held_) write_step(held_step_, *held_);
   write_file(folder_ / "summary.json",
              summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_,
                           histories_.peaks(), model_, audit()));

@@ -25,6 +25,10 @@ class Recorder : public Observer {
   /// Saves the state in saved/: stage_NN.h5 at the end of each stage; in between at intervals of wall time
   /// step_N.h5, of which the last two stay.
   bool wants_state() override;
+  /// Holds the state in memory as often as it costs little; of a run that fails the last one is saved as
+  /// step_N.h5.
+  bool wants_copy() override;
+  void hold_state(const Standing& standing, const State& state) override;
   void fails(const Instant& instant) override;
   void keep_state(const Standing& standing, const State& state) override;
 
@@ -44,6 +48,8 @@ class Recorder : public Observer {
 
  private:
   void exchange(Exchange& exchange);
+  Archive archive_of(const Standing& standing, const State& state);
+  void write_step(int64_t step, const Archive& archive);
   void find_saved();
   void record_step(const Instant& instant);
   void write_dump(const Instant& instant);
@@ -65,7 +71,10 @@ class Recorder : public Observer {
   std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0, last_saved_ = 0;
   std::vector<std::filesystem::path> saved_;  // between stages
-  int steps_since_look_ = 0;
+  int steps_since_look_ = 0, steps_since_held_ = 0;
+  std::optional<Archive> held_;  // in case the next steps fail
+  int64_t held_step_ = -1;
+  double held_at_ = 0, holding_took_ = 0;  // wall time [s]
   int64_t dump_step_ = -1;
   bool dumped_failure_ = false;
 };

@@ -120,6 +120,7 @@ class Runner {
         result_.interrupted = true;
         break;
       }
+      if (observer_.wants_copy()) observer_.hold_state({result_, false}, state_);
       settings_.sharper = state_.rest.sharper;
       StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);

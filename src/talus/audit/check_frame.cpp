@@ -76,6 +76,7 @@ class Check {
     double depth = 0;    // of positions, 0: apart [m]
     double gap = 0;
     double approach = 0;  // speed at which the two move against each other here [m/s]
+    double closing = 0;   // the most they may close a gap at within the step [m/s]
   };
 
   const Polygon& polygon(int i) const { return frame_.blocks[static_cast<size_t>(i)].polygon; }
@@ -112,12 +113,19 @@ class Check {
     s.place = a[v], s.normal = turn_right(side) / norm(side);
     s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
     const double along = std::clamp(dot(a[v] - b[e], side) / dot(side, side), 0.0, 1.0);
-    const auto velocity = [this](int block, size_t k) {
-      const std::vector<Vec2>& list = frame_.blocks[static_cast<size_t>(block)].velocity;
-      return list.empty() ? Vec2{} : list[k];
+    const auto moves = [&](std::vector<Vec2> Block::*list) {
+      const auto of = [&](int block, size_t k) {
+        const std::vector<Vec2>& all = frame_.blocks[static_cast<size_t>(block)].*list;
+        return all.empty() ? Vec2{} : all[k];
+      };
+      return of(p.block_a, v) - ((1 - along) * of(p.block_b, e) + along * of(p.block_b, next));
     };
-    const Vec2 vb = (1 - along) * velocity(p.block_b, e) + along * velocity(p.block_b, next);
-    s.approach = std::abs(dot(s.normal, velocity(p.block_a, v) - vb));
+    const Vec2 now = moves(&Block::velocity);
+    s.approach = std::abs(dot(s.normal, now));
+    // elastic laws look at the velocities before and after the kick
+    const bool known = !frame_.blocks[static_cast<size_t>(p.block_a)].next.empty() ||
+                       !frame_.blocks[static_cast<size_t>(p.block_b)].next.empty();
+    s.closing = known ? std::max(s.approach, std::abs(dot(s.normal, moves(&Block::next)))) : norm(now);
     return s;
   }
 
@@ -337,14 +345,17 @@ class Check {
   void check_gap(const Point& p, const Seen& s, FrameResult& out) const {
     const double size = size_of(p.block_a, p.block_b);
     const double allowed = p.rise + p.in_situ + kPlace * size + rules_.slop * size + 2 * rules_.tolerance +
-                           3 * frame_.step * s.approach;
+                           3 * frame_.step * s.closing;
     if (s.gap <= allowed) return;
     // an elastic face that has closed at its other end pushes with its whole length
     const Law* law = law_of(p);
     const bool soft = p.joint == kUnknownJoint || (law && law->normal_stiffness > 0);
     if (soft && p.partner >= 0) {
       const auto other = static_cast<size_t>(p.partner);
-      if (seen_[other].gap < frame_.points[other].in_situ + frame_.points[other].rise) return;
+      // or is closing there within the step
+      if (seen_[other].gap <
+          frame_.points[other].in_situ + frame_.points[other].rise + 3 * frame_.step * seen_[other].closing)
+        return;
     }
     const double share = (s.gap - allowed) / size;
     out.findings.push_back(

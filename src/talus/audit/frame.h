@@ -13,8 +13,9 @@ enum class Hold : char { kFree, kPrescribed, kRemoved };  // prescribed: fixed o
 
 struct Block {
   Hold hold = Hold::kFree;
-  Polygon polygon;             // as it lies now, counter-clockwise [m]
-  std::vector<Vec2> velocity;  // of the corners [m/s]; empty: at rest
+  Polygon polygon;              // as it lies now, counter-clockwise [m]
+  std::vector<Vec2> velocity;   // of the corners [m/s]; empty: at rest
+  std::vector<Vec2> next = {};  // the same of the step that follows; empty: not known
 };
 
 /// What a joint can carry, the larger of peak and residual values.

@@ -22,8 +22,13 @@ constexpr double kThrough = 0.25;    // of the least mean thickness: a depth on 
 
 std::pair<int, int> pair_of(const StepPoint& p) { return std::minmax(p.block_a, p.block_b); }
 
-Vec2 velocity_of(const Block& block, int corner) {
-  return block.velocity.empty() ? Vec2{} : block.velocity[static_cast<size_t>(corner)];
+// How a corner of one block moves against its foot on an edge of another, `along` from the edge's first end.
+Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, double along,
+                   std::vector<Vec2> Block::*velocity) {
+  const auto of = [velocity](const Block& block, size_t k) {
+    return (block.*velocity).empty() ? Vec2{} : (block.*velocity)[k];
+  };
+  return of(a, corner) - (1 - along) * of(b, edge) - along * of(b, (edge + 1) % b.polygon.size());
 }
 
 double least_thickness(const Polygon& p) {
@@ -94,16 +99,23 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
   const double inside = depth_in(shape_b.polygon, place);
   const double depth = now ? -now->gap : std::min(inside, -dot(normal, place - shape_b.polygon[e]));
   // within the step the two may still part
-  const Vec2 velocity =
-      velocity_of(shape_a, before.corner) -
-      0.5 * (velocity_of(shape_b, before.edge) + velocity_of(shape_b, static_cast<int>(next)));
-  const double allowed =
-      (kOverlap + rules_.slop) * size + 2 * rules_.tolerance + 3 * step.step * norm(velocity);
+  const double along = std::clamp(dot(place - shape_b.polygon[e], side) / dot(side, side), 0.0, 1.0);
+  const auto moves = [&](std::vector<Vec2> Block::*velocity) {
+    return moves_against(shape_a, static_cast<size_t>(before.corner), shape_b, e, along, velocity);
+  };
+  const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
+  const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance + 3 * step.step * speed;
   if (depth <= allowed) return;
-  const double near = kSamePlace * size + step.step * norm(velocity);
+  if (now && now->hard && dot(normal, moves(&Block::next)) > 0) return;
+  const double near = kSamePlace * size + step.step * speed;
   for (const StepPoint& p : step.points) {
     if (p.normal_force <= 0) continue;
     const bool of_pair = pair_of(p) == pair_of(before);
+    // an end of a side that turns away: the corner across bears on that side now, as far as it is closed
+    if (of_pair && p.block_b == before.block_a &&
+        (before.corner == p.edge ||
+         static_cast<size_t>(before.corner) == static_cast<size_t>(p.edge + 1) % shape_a.polygon.size()))
+      return;
     // over a crossing the force passes to the neighbour
     if (!of_pair && p.block_a != before.block_a) continue;
     const Vec2 there = p.block_a == before.block_a   ? shape_a.polygon[static_cast<size_t>(p.corner)]
@@ -183,6 +195,7 @@ void Watch::exchange(Exchange& x, const std::string& name) {
     field("block_a", p.block_a), field("corner", p.corner), field("block_b", p.block_b),
         field("edge", p.edge);
     field("normal_force", p.normal_force), field("gap", p.gap);
+    field("hard", p.hard);
   });
   x(name + ".centroid_before", centroid_before_);
 }

@@ -14,6 +14,7 @@ namespace talus::audit {
 struct StepPoint {
   int block_a = -1, corner = -1, block_b = -1, edge = -1;
   double normal_force = 0, gap = 0;  // [N], [m] of positions
+  bool hard = false;                 // no force by its overlap: it may keep one as the two part
 
   bool same_place(const StepPoint& o) const {
     return block_a == o.block_a && corner == o.corner && block_b == o.block_b && edge == o.edge;

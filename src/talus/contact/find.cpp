@@ -16,6 +16,10 @@ constexpr double kParallel = 0.02;
 // entrance condition in spite of round-off and of the strain of a step.
 constexpr double kEntrance = 0.02;
 
+// The same for sides that a corner is nearer to than to the one it lies deep behind: it came in with its own
+// sides ahead of it, through one that it does not rest on.
+constexpr double kDeepDip = 0.5, kDeep = 2000;  // 2 % of the smaller block
+
 // A corner that turns by less than this (sine) lies on a straight side: a joint ends there on the other side,
 // or the side belongs to two sources. It enters nothing; the corner across does.
 constexpr double kFlat = 1e-4;
@@ -90,11 +94,11 @@ int ContactSearch::Outline::edge_beside(int first, Vec2 place) const {
   return e;
 }
 
-// Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards.
-bool ContactSearch::Outline::may_enter(int k, Vec2 n) const {
+// Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards, by more than
+// -`dip` (sine).
+bool ContactSearch::Outline::may_enter(int k, Vec2 n, double dip) const {
   const auto v = static_cast<size_t>(k), b = static_cast<size_t>(before(k));
-  return convex[v] && !flat[v] && dot(edge[v], n) >= -kEntrance * length[v] &&
-         -dot(edge[b], n) >= -kEntrance * length[b];
+  return convex[v] && !flat[v] && dot(edge[v], n) >= -dip * length[v] && -dot(edge[b], n) >= -dip * length[b];
 }
 
 // Whether only convex corners lie between two edges, the shorter way round.
@@ -133,7 +137,8 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
   if (depth <= same_) return nearer;
   for (int f = 0; f < b.count; ++f) {
     const auto k = static_cast<size_t>(f);
-    if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k])) continue;
+    if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k], depth > kDeep * same_ ? kDeepDip : kEntrance))
+      continue;
     // sides that the corner lies over are weighed against each other, where they are no covered ones
     if (std::any_of(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
                     [f](const Hit& h) { return h.point.key.edge == f; }))
@@ -224,6 +229,19 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   const Stretch stretch = stretch_of(a, key.vertex, b, key.edge, shift);
   // two sides with an interface as good as any
   if (stretch.length > std::max(kLongStretch * same_, kLongerThanDeep * reach)) return false;
+  // a corner far from the ends of the side, or one that the side beside it could not hold, came in through
+  // this one, whoever stands there
+  if (stretch.edge_a < 0) {
+    const auto v = static_cast<size_t>(key.vertex);
+    const int first = b.side_of(key.edge), last = b.after(b.last_of(key.edge));
+    const Vec2 place = shift + a.corner[v];
+    const Vec2 side = b.corner[static_cast<size_t>(last)] - b.corner[static_cast<size_t>(first)];
+    const double from = dot(side, place - b.corner[static_cast<size_t>(first)]) / norm(side);
+    const double to = norm(side) - from;
+    if (std::min(from, to) > std::max(reach, kMostReach / kSamePlace * same_)) return false;
+    const auto beside = static_cast<size_t>(from < to ? b.before(first) : last);
+    if (!a.may_enter(key.vertex, turn_right(b.edge[beside]) / b.length[beside], dip_)) return false;
+  }
   // before the overlap comes to be, the height over which the two lie beside each other tells what it will be
   reach = std::clamp(stretch.length, reach, std::max(reach, kMostReach / kSamePlace * same_));
   const auto ke = static_cast<size_t>(key.edge);
@@ -288,7 +306,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const double along_then = c.along + range_.look_ahead * dot(turn_left(c.normal), u) / c.length;
       const bool comes_in = c.gap > -same_ && expected < 0 && along_then >= 0 && along_then <= 1;
       if (!above && !comes_in) continue;
-      if (!a.may_enter(v, c.normal)) continue;
+      if (!a.may_enter(v, c.normal, dip_)) continue;
       const bool held = was_in_touch(a, v, b, e);
       // behind the line of an edge, and yet not in the block: beyond another of its sides
       if (!held && c.gap < -range_.margin && !b.holds(place, same_)) continue;
@@ -374,8 +392,7 @@ void ContactSearch::spans_of(const Outline& a, const Outline& b, const Hit& h,
     for (const int f : {k.vertex, on_a.before(k.vertex)}) {
       const auto kf = static_cast<size_t>(f);
       const Vec2 da = on_a.edge[kf], db = on_b.edge[ke];
-      if (dot(da, db) > 0 || std::abs(cross(da, db)) > kParallel * on_a.length[kf] * on_b.length[ke])
-        continue;
+      if (dot(da, db) > 0 || std::abs(cross(da, db)) > dip_ * on_a.length[kf] * on_b.length[ke]) continue;
       const int side_a = on_a.side_of(f), side_b = on_b.side_of(e);
       const Span span = k.block_a < k.block_b ? Span{side_a, side_b} : Span{side_b, side_a};
       if (std::find(list.begin(), list.end(), span) == list.end()) list.push_back(span);
@@ -468,6 +485,9 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
   range_ = range;
   same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);
+  // what turns within the look-ahead may be in the way before it is seen to
+  const Mat2 turning = state.rate[ia].G - state.rate[ib].G;
+  dip_ = kEntrance + range.look_ahead * std::sqrt(contract(turning, turning));
   found_.points.clear(), found_.cover.clear();
   found_.clearance = range.margin;
   found_.this_step_only = false;

@@ -86,7 +86,7 @@ class ContactSearch {
     int side_of(int edge) const;
     int last_of(int edge) const;
     int edge_beside(int first, Vec2 place) const;
-    bool may_enter(int corner, Vec2 normal) const;
+    bool may_enter(int corner, Vec2 normal, double dip) const;
     bool holds(Vec2 place, double tolerance) const;
     bool on_convex_chain(int edge_1, int edge_2) const;
   };
@@ -127,6 +127,7 @@ class ContactSearch {
 
   SearchRange range_;
   double same_ = 0;
+  double dip_ = 0;  // how far a corner's own edges may dip below the plane it rests on (sine)
   Outline first_, second_;
   std::vector<Hit> hits_;
   std::vector<std::vector<Span>> spans_;

@@ -100,8 +100,9 @@ void Auditor::watch(const Instant& i) {
   points_.reserve(state.contacts.size());
   for (size_t k = 0; k < state.contacts.size(); ++k) {
     const Contact& c = state.contacts[k];
+    const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
     points_.push_back(
-        {c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge, c.force[0], i.work.places[k].gap});
+        {c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge, c.force[0], i.work.places[k].gap, hard});
   }
   centroid_.resize(blocks_.size());
   for (size_t k = 0; k < centroid_.size(); ++k)
@@ -121,7 +122,9 @@ audit::Block Auditor::shape(const Instant& i, int block) const {
   for (int v = 0; v < b.vertex_count(block); ++v) {
     const Vec2 X = b.corner(block, v);
     out.polygon.push_back(b.centroid[k] + offset_now(i.state, k, X));
-    out.velocity.push_back(velocity_at(rate, acting_arm(b, i.state, k, X)));
+    const Vec2 arm = acting_arm(b, i.state, k, X);
+    out.velocity.push_back(velocity_at(rate, arm));
+    out.next.push_back(velocity_at(i.state.rate[k], arm));
   }
   return out;
 }

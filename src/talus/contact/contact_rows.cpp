@@ -185,8 +185,7 @@ class ContactRows {
       p.row[1].bias = elastic / timing_.dt;
     } else {
       guess = {c.force[0] * timing_.dt_kick, c.force[1] * timing_.dt_kick};
-      const double off = off_anchor(c, q.slip);
-      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing_.dt;
+      p.row[1].bias = stuck_bias(off_anchor(c, q.slip), joint, size);
     }
     if (property.restitution >= 0 || springs) {
       q.u = relative_velocity(p, before_);
@@ -200,7 +199,7 @@ class ContactRows {
         p.partner = static_cast<int>(first_) + pair.begin + partner;
         if (soft && p.lower == 0)
           length *= close_face(q, points[static_cast<size_t>(partner)], c,
-                               state_.contacts[at + static_cast<size_t>(partner)], p);
+                               state_.contacts[at + static_cast<size_t>(partner)], size, p);
       } else if (soft && p.lower == 0 && c.partner < 0) {
         length = close_corner(q, c, size, p);
       } else if (c.length == 0) {
@@ -210,6 +209,12 @@ class ContactRows {
     }
     rows_.points[first_ + i] = p;
     rows_.impulse[first_ + i] = guess;
+  }
+
+  // Bias of the shear row of a place that is `off` from where it sticks [m/s].
+  double stuck_bias(double off, size_t joint, double size) const {
+    const bool elastic = joints_[joint].shear_stiffness > 0;
+    return (elastic ? off : beyond(off, model_.contact.slop * size)) / timing_.dt;
   }
 
   double closed_part(const ContactPair& pair, const Point& q) const {
@@ -239,7 +244,8 @@ class ContactRows {
   // Where only one end of an interface is closed the other end of its row couple is the end of the closed
   // part: W = kn t/2 times the integral of closure^2 has the slope and the tangent of that part. Returns its
   // share.
-  double close_face(Point& q, const Point& other, const Contact& c, const Contact& far, PointRows& p) const {
+  double close_face(Point& q, const Point& other, const Contact& c, const Contact& far, double size,
+                    PointRows& p) const {
     const double gap = q.gap + q.closure.x, away = other.gap + other.closure.x;
     const PointRows there = arms_of(other, far);
     const double share = closed_share(gap, away, gap + timing_.dt * q.u[0],
@@ -254,6 +260,11 @@ class ContactRows {
     p.arm_b = far_b + share * (p.arm_b - far_b);
     const double here = away + share * (gap - away);
     p.row[0].bias = here / timing_.dt;
+    if (c.memory != Contact::kNone && far.memory != Contact::kNone) {
+      // how far that place has slipped, not the corner that stands open
+      const double corner = off_anchor(c, q.slip), closed = off_anchor(far, other.slip);
+      p.row[1].bias = stuck_bias(closed + share * (corner - closed), joint_of(c), size);
+    }
     q.u = relative_velocity(p, before_);
     return share;
   }

@@ -145,8 +145,6 @@ TEST_CASE("a block slides over an open joint of the course below with the streng
                     mode == "drawn, deformable" ? "deformable" : "rigid"};
         const std::vector<double> smooth = slide_over(c).column("a.velocity_y");
         for (const double open : {0.0, 1e-6, 1e-4, 5e-3}) {
-          // not yet: at hard joints the corner may stop at the side beyond the gap
-          if (stiffness.empty() && open > 1e-6) continue;
           CAPTURE(stiffness);
           CAPTURE(friction);
           CAPTURE(mode);
@@ -171,8 +169,8 @@ TEST_CASE("a block slides over an open joint of the course below with the streng
           if (friction > 0) {
             check_close("over an open joint: shear / normal", ratio, kMu, 1e-2, 1e-3);
             check_below("over an open joint: largest shear / strength", shear, 1.01, 1.0001);
-          } else if (open <
-                     1e-4) {  // not yet: gap/width at an elastic joint that stands open wider than it closes
+          } else if (stiffness.empty() || open < 1e-4) {
+            // not yet: gap over width at an elastic joint that stands open wider than it closes
             check_below("over an open joint without friction: shear / normal", shear, 1e-4, 1e-8);
           }
           check_below("over an open joint: normal force off the load / load", normal, 1e-2, 1e-3);
@@ -390,16 +388,25 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
     std::vector<double> leans;  // of the lower side from the floor [deg]
   };
   const std::vector<double> all{0, 15, 35};
-  // not yet: other corners between two blocks, where the tip alone bears
   const Corner corners[] = {
+      {"wall on the floor",
+       block("floor", box(-1, -1, 2, 0), "fixed") + block("wall", box(-1, 0, 0, 2), "fixed"), all},
+      {"floor beside the wall",
+       block("floor", box(0, -1, 2, 0), "fixed") + block("wall", box(-1, -1, 0, 2), "fixed"), all},
+      {"crossing",
+       block("floor", box(0, -1, 2, 0), "fixed") + block("wall", box(-1, 0, 0, 2), "fixed") +
+           block("third", box(-1, -1, 0, 0), "fixed"),
+       all},
       {"mitre",
        block("floor", {{0, 0}, {-1, -1}, {2, -1}, {2, 0}}, "fixed") +
            block("wall", {{0, 0}, {0, 2}, {-1, 2}, {-1, -1}}, "fixed"),
-       {0}},
+       all},
       {"one block", block("floor", {{-1, -1}, {2, -1}, {2, 0}, {0, 0}, {0, 2}, {-1, 2}}, "fixed"), all}};
   for (const std::string& stiffness : {kHard, kElastic})
     for (const Corner& corner : corners)
       for (const double lean : corner.leans) {
+        // not yet: a tip that sinks past the end of the floor into the wall beside it, by elastic joints
+        if (!stiffness.empty() && lean > 0 && corner.name != "one block") continue;
         CAPTURE(stiffness);
         CAPTURE(corner.name);
         CAPTURE(lean);
@@ -417,7 +424,8 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
                 -a * std::cos(axis), -a * std::sin(axis)) +
             "[[load]]\nname = \"push\"\nacceleration_x = \"ax\"\nacceleration_y = \"ay\"\n" +
             stage("push", true, 0.25, 1e-4, "damping_mass = 250") + between("floor", "wedge", "floor") +
-            (two ? between("wall", "wedge", "wall") : "");
+            (two ? between("wall", "wedge", "wall") : "") +
+            (corner.name == "crossing" ? between("third", "wedge", "third") : "");
         const CaseResult r = audited(text);
         const size_t from = row_at(r, 0.2);
         const auto mean = [&](const char* name) {
@@ -433,6 +441,9 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
           check_below("wedge in a corner: wall upwards / load", std::abs(mean("wall.impulse_y")) / aside,
                       1e-4, 1e-8);
         }
+        if (corner.name == "crossing")
+          check_below("wedge in a corner: force of the block behind / load",
+                      mean("third.normal_impulse") / aside, 1e-4, 1e-8);
       }
 }
 
@@ -581,9 +592,9 @@ void shear_along_a_set(const std::string& stiffness) {
   };
   for (const auto& [glued, steep, load, first] :
        {Pushed{true, true, 1.05, 0.0137}, Pushed{true, false, 1.05, 0.03}, Pushed{false, true, 1.05, 0.0137},
-        Pushed{false, false, 1.05, 0.03}, Pushed{false, true, 0.95, 0.0137}}) {
-    // not yet: the audit takes the line for a covered side at one acute corner; and lines that end the upper
-    // body 14 mm from its corner
+        Pushed{false, false, 1.05, 0.03}, Pushed{false, true, 0.95, 0.0137},
+        Pushed{true, false, 1.05, 0.0137}, Pushed{false, false, 1.05, 0.0137}}) {
+    // not yet: the audit takes the line for a covered side at one acute corner
     if (!stiffness.empty() && !glued && !steep) continue;
     CAPTURE(stiffness);
     CAPTURE(glued);
@@ -734,24 +745,37 @@ TEST_CASE("a rocked side bears by Winkler's foundation: closed, partly open, and
 
 TEST_CASE("a side that is rocked to 0.05 rad and back gives back the work that it took") {
   const double kn = 1e9, c = 2e-3, duration = 2;
-  // deeper on the way there than on the way back, open at both ends of the cycle
-  const Rocked r = rocked("friction_angle = 0\nnormal_stiffness = 1e9", "0.025*(1 - cos(_pi*t))",
-                          fmt::format("{}*sin(_pi*t/2)*(1 + 0.5*sin(_pi*t))", c), duration, 1e-4, 0);
-  const auto& time = r.run.column("t [s]");
-  double most = 0, off = 0;
-  for (size_t i = 0; i < time.size(); ++i) {
-    const double t = time[i], pi = std::numbers::pi, slope = std::tan(0.025 * (1 - std::cos(pi * t)));
-    const double depth = c * std::sin(pi * t / 2) * (1 + 0.5 * std::sin(pi * t)),
-                 open = std::max(0.0, depth - slope);
-    // integrals of the closure along both sides of the corner; slope 0: nothing is closed
-    const double exact =
-        slope > 0 ? kn / 6 * ((std::pow(depth, 3) - std::pow(open, 3)) / slope + std::pow(depth, 3) * slope)
-                  : 0;
-    most = std::max(most, exact), off = std::max(off, std::abs(r.stored[i] - exact));
+  for (const std::string& joint :
+       {std::string("friction_angle = 0\nnormal_stiffness = 1e9"),
+        std::string("friction_angle = \"89 deg\"\nnormal_stiffness = 1e9\nshear_stiffness = 1e9")}) {
+    CAPTURE(joint);
+    // deeper on the way there than on the way back, open at both ends of the cycle
+    const Rocked r = rocked(joint, "0.025*(1 - cos(_pi*t))",
+                            fmt::format("{}*sin(_pi*t/2)*(1 + 0.5*sin(_pi*t))", c), duration, 1e-4, 0);
+    const auto& time = r.run.column("t [s]");
+    double most = 0, off = 0, shear = 0;
+    for (size_t i = 0; i < time.size(); ++i) {
+      const double t = time[i], pi = std::numbers::pi, slope = std::tan(0.025 * (1 - std::cos(pi * t)));
+      const double depth = c * std::sin(pi * t / 2) * (1 + 0.5 * std::sin(pi * t)),
+                   open = std::max(0.0, depth - slope);
+      // integrals of the closure along both sides of the corner; slope 0: nothing is closed
+      const double exact =
+          slope > 0 ? kn / 6 * ((std::pow(depth, 3) - std::pow(open, 3)) / slope + std::pow(depth, 3) * slope)
+                    : 0;
+      most = std::max(most, exact), off = std::max(off, std::abs(r.stored[i] - exact));
+      // the corner stays where it is (400 N: 1 % of the normal force): at the distance s from it the side has
+      // slipped by s (1 - cos), where it is closed
+      const double length = slope > 0 ? std::min(1.0, depth / slope) : 1,
+                   slip = 1 - std::cos(std::atan(slope));
+      shear = std::max(shear, std::abs(r.run.column("joint.force_x")[i]) - 1e9 * slip * length * length / 2);
+    }
+    check_below("rocked to 0.05 rad and back: work off that of the foundation / largest", off / most, 1e-2,
+                1e-3);
+    check_below("rocked to 0.05 rad and back: work left over / largest", std::abs(r.stored.back()) / most,
+                1e-3, 1e-5);
+    check_below("rocked to 0.05 rad and back: ledger / largest", r.left_over / most, 1e-3, 1e-9);
+    // not yet: as it comes back the shear of a side that slides is not that of its slip
+    if (joint.find("89") == std::string::npos)
+      check_below("rocked to 0.05 rad and back: shear beyond that of its slip [N]", shear, 400, 1);
   }
-  check_below("rocked to 0.05 rad and back: work off that of the foundation / largest", off / most, 1e-2,
-              1e-3);
-  check_below("rocked to 0.05 rad and back: work left over / largest", std::abs(r.stored.back()) / most, 1e-3,
-              1e-5);
-  check_below("rocked to 0.05 rad and back: ledger / largest", r.left_over / most, 1e-3, 1e-9);
 }

@@ -32,6 +32,12 @@ constexpr double kLongStretch = 5000, kLongerThanDeep = 20;
 // degrees.
 constexpr double kWedge = 0.25;
 
+// Corners are equally sharp when the cosines of their angles differ by less.
+constexpr double kBlunter = 0.05;
+
+// Two corners that have gone into each other and are nearer than this many overlaps are one place.
+constexpr double kBothIn = 5;
+
 // Gaps beside a side up to the depth of the overlap are none, but never wider than this share of the smaller
 // block.
 constexpr double kMostReach = 0.05;
@@ -157,10 +163,16 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
   const bool x_stays = x.held && !x.covered, y_stays = y.held && !y.covered;
   if (x_stays != y_stays) return x_stays;
+  // tip on corner, both in: the sharper one bears on a side of the other
+  const bool tips = x.lone && y.lone && x.point.key.block_a != y.point.key.block_a;
+  if (tips && std::max(x.point.gap, y.point.gap) <= same_ && std::abs(x.blunt - y.blunt) > kBlunter)
+    return x.blunt < y.blunt;
   found_.clearance = std::min(found_.clearance, std::abs(std::abs(x.point.gap - y.point.gap) - same_));
   if (std::abs(x.point.gap - y.point.gap) > same_) return x.point.gap > y.point.gap;
   found_.clearance = 0;
   const double tie = 1e-3 * same_;
+  // rates without rows point into what a corner slides along: they come second
+  if (std::abs(x.as_before - y.as_before) > tie) return x.as_before > y.as_before;
   if (std::abs(x.expected - y.expected) > tie) return x.expected > y.expected;
   return x.point.key < y.point.key;
 }
@@ -295,8 +307,12 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       const Vec2 b0 = blocks.corner(b.block, e), b1 = blocks.corner(b.block, b.after(e));
       const double along = std::clamp(c.along, 0.0, 1.0);
       const Vec2 foot = b0 + along * (b1 - b0);
-      const Vec2 u = velocity_at(s.rate[ia], acting_arm(blocks, s, ia, blocks.corner(a.block, v))) -
-                     velocity_at(s.rate[ib], acting_arm(blocks, s, ib, foot));
+      const Vec2 arm_a = acting_arm(blocks, s, ia, blocks.corner(a.block, v)),
+                 arm_b = acting_arm(blocks, s, ib, foot);
+      const auto moves = [&](const std::vector<BlockRate>& rate) {
+        return velocity_at(rate[ia], arm_a) - velocity_at(rate[ib], arm_b);
+      };
+      const Vec2 u = moves(s.rate);
       const double expected = c.gap + range_.look_ahead * dot(c.normal, u);
       const double in_front = c.along * c.length + before, behind = beyond - (c.along - 1) * c.length;
       const bool above = in_front >= 0 && behind >= 0;
@@ -319,6 +335,15 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.point.gap = c.gap;
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
       hit.expected = expected;
+      const auto kb = static_cast<size_t>(a.before(v));
+      const auto antiparallel = [&](size_t f) {
+        return dot(a.edge[f], b.edge[ke]) < 0 &&
+               std::abs(cross(a.edge[f], b.edge[ke])) <= kParallel * a.length[f] * b.length[ke];
+      };
+      hit.lone = !antiparallel(kv) && !antiparallel(kb);
+      hit.blunt = dot(a.edge[kb], a.edge[kv]) / (a.length[kb] * a.length[kv]);
+      hit.as_before =
+          c.gap + range_.look_ahead * dot(c.normal, moves(range_.before ? *range_.before : s.rate));
       hit.coming = !above;
       hit.held = held;
       if (c.along * c.length < same_) hit.at_corner = e;
@@ -327,9 +352,11 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.apart = hit.at_corner >= 0 && c.gap > same_ && is_flush(blocks, s, a, v, b, e, hit.at_corner);
       hits_.push_back(hit);
     }
+    // the far side of a thin tip is no overlap
     double reach = same_;
-    for (size_t i = first; i < hits_.size(); ++i) reach = std::max(reach, -hits_[i].point.gap);
-    reach = std::min(reach, kMostReach / kSamePlace * same_);
+    const double most = kMostReach / kSamePlace * same_;
+    for (size_t i = first; i < hits_.size(); ++i)
+      if (-hits_[i].point.gap <= most) reach = std::max(reach, -hits_[i].point.gap);
     for (size_t i = first; i < hits_.size(); ++i)
       hits_[i].covered = is_covered(blocks, s, a, b, shift, hits_[i], reach);
     // both are asked with all hits in their places
@@ -355,8 +382,18 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
 }
 
 // Where corner of a meets corner of b there may be hits both ways; one stays.
-void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b) {
+void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 shift) {
+  // a tip and the corner that it went in beside, each in the other
+  const auto both_in = [&](const Hit& x, const Hit& y) {
+    const ContactKey &p = x.point.key, &q = y.point.key;
+    if (!x.lone || !y.lone || p.block_a == q.block_a || x.point.gap >= 0 || y.point.gap >= 0) return false;
+    const bool first = p.block_a == a.block;
+    const Vec2 place_x = (first ? shift : Vec2{}) + (first ? a : b).corner[static_cast<size_t>(p.vertex)];
+    const Vec2 place_y = (first ? Vec2{} : shift) + (first ? b : a).corner[static_cast<size_t>(q.vertex)];
+    return norm(place_x - place_y) <= -kBothIn * std::min(x.point.gap, y.point.gap);
+  };
   const auto same_place = [&](const Hit& x, const Hit& y) {
+    if (both_in(x, y)) return true;
     if (x.at_corner < 0 || y.at_corner < 0) return false;
     const ContactKey &p = x.point.key, &q = y.point.key;
     const Outline& owner = p.block_b == a.block ? a : b;
@@ -501,7 +538,7 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
   corners_over_edges(blocks, state, first_, second_, shift);
   corners_over_edges(blocks, state, second_, first_, -shift);
-  merge_corner_pairs(first_, second_);
+  merge_corner_pairs(first_, second_, shift);
   // they kept the two corners apart, whichever edge was to hold them; they hold nothing themselves
   std::erase_if(hits_, [](const Hit& h) { return h.apart; });
   std::sort(hits_.begin(), hits_.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });

@@ -38,9 +38,11 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int bloc
 
 /// How far, how deep and in whose company the points of a pair are sought.
 struct SearchRange {
-  double margin = 0;                       // gaps up to this are seen [m]
-  double depth = 0;                        // overlaps up to this are seen [m]
-  double look_ahead = 0;                   // [s] what comes together within this time is seen before it does
+  double margin = 0;      // gaps up to this are seen [m]
+  double depth = 0;       // overlaps up to this are seen [m]
+  double look_ahead = 0;  // [s] what comes together within this time is seen before it does
+  const std::vector<BlockRate>* before =
+      nullptr;                             // actual rates: what has come together so far; none: State's
   const Neighbours* neighbours = nullptr;  // none: the two are alone
   std::span<const Contact> known;          // contact points of the pair before
 };
@@ -50,7 +52,7 @@ struct Found {
   std::vector<ContactPoint> points;  // in the order of their keys
   double clearance = 0;         // the least distance, along an edge or between gaps, to another outcome [m]
   bool this_step_only = false;  // velocities or neighbours had a say: the outcome holds for this step only
-  bool plain = false;  // no corner of the two lies on a straight side
+  bool plain = false;           // no corner of the two lies on a straight side
   std::vector<int>
       cover;  // third blocks that cover a side here: were they to leave, there would be more points
 };
@@ -94,6 +96,9 @@ class ContactSearch {
     ContactPoint point;
     int at_corner = -1;    // corner of b at the foot, -1 inside the edge
     double expected = 0;   // gap after the look-ahead
+    double blunt = 0;      // cosine of the angle by which the corner turns
+    bool lone = false;     // none of its sides is antiparallel to the edge
+    double as_before = 0;  // the same if the two go on as they did
     bool apart = false;    // by the side of b, over which a slides flush
     bool coming = false;   // beside the edge still; over it after the look-ahead
     bool held = false;     // in touch on this side before
@@ -120,7 +125,7 @@ class ContactSearch {
   bool is_covered(const BlockSet& blocks, const State& state, const Outline& a, const Outline& b, Vec2 shift,
                   const Hit& hit, double reach);
   bool lies_in_third(const BlockSet& blocks, const State& state, int block, int other, Vec2 place);
-  void merge_corner_pairs(const Outline& a, const Outline& b);
+  void merge_corner_pairs(const Outline& a, const Outline& b, Vec2 shift);
   void share_faces(const Outline& a, const Outline& b, Vec2 shift);
   void find_toes(const Outline& a, const Outline& b);
   void spans_of(const Outline& a, const Outline& b, const Hit& h, std::vector<Span>& list) const;

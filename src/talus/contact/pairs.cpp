@@ -364,6 +364,7 @@ class Updater {
       range.margin = pair.margin;
       range.depth = kDepthShare * std::min(blocks_.thinness[small], blocks_.thinness[large]);
       range.look_ahead = ahead_.dt;
+      range.before = ahead_.before;
       range.neighbours = &s.candidates.neighbours;
       range.known = {s.contacts.data() + pair.begin, static_cast<size_t>(pair.count)};
       const Found& sought = search.touch(blocks_, s, pair.a, pair.b, range);

@@ -84,21 +84,18 @@ struct Toe {
 
 class ContactRows {
  public:
-  ContactRows(const BlockSet& blocks, const Model& model, const State& state,
-              const std::vector<BlockRate>& before, const RowTiming& timing, size_t first, RowSet& rows,
-              std::vector<ContactPlace>& place)
+  ContactRows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
+              const State& state, const std::vector<BlockRate>& before, const RowTiming& timing, size_t first,
+              RowSet& rows, std::vector<ContactPlace>& place)
       : blocks_(blocks),
         model_(model),
+        laws_(laws),
         state_(state),
         before_(before),
         timing_(timing),
         first_(first),
         rows_(rows),
-        place_(place),
-        joints_(model.joints) {
-    joints_.emplace_back();  // the last: neither friction nor stiffness
-    for (const JointProperty& j : joints_) friction_.push_back(std::tan(j.friction_after()));
-  }
+        place_(place) {}
 
   void add(const ContactPair& pair, std::vector<Point>& points) const {
     const auto at = static_cast<size_t>(pair.begin), count = static_cast<size_t>(pair.count);
@@ -116,8 +113,8 @@ class ContactRows {
   }
 
  private:
-  size_t joint_of(const Contact& c) const {
-    return c.joint < 0 ? joints_.size() - 1 : static_cast<size_t>(c.joint);
+  const JointLaw& law_of(const Contact& c) const {
+    return c.joint < 0 ? none_ : laws_[static_cast<size_t>(c.joint)];
   }
   double size_of(const ContactPair& pair) const {
     return std::min(blocks_.size[static_cast<size_t>(pair.a)], blocks_.size[static_cast<size_t>(pair.b)]);
@@ -133,8 +130,7 @@ class ContactRows {
   void look(const ContactPair& pair, size_t i, Point& p) const {
     const Contact& c = state_.contacts[i];
     const auto b = static_cast<size_t>(c.key.block_b);
-    const size_t joint = joint_of(c);
-    const JointProperty& property = joints_[joint];
+    const JointLaw& law = law_of(c);
     p.over = corner_over_edge(blocks_, state_, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
     const int next = c.key.edge + 1 == blocks_.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
     p.b0 = blocks_.corner(c.key.block_b, c.key.edge), p.edge = blocks_.corner(c.key.block_b, next) - p.b0;
@@ -143,10 +139,10 @@ class ContactRows {
     const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
     if (carries && model_.in_situ.given && c.joint >= 0) {
       const double height = blocks_.centroid[b].y + p.b0.y + std::clamp(p.over.along, 0.0, 1.0) * p.edge.y;
-      p.closure = in_situ_closure(property, in_situ_stress(model_.in_situ, model_.gravity, height),
-                                  turn_right(p.edge) / norm(p.edge));
+      p.closure = law.closure(in_situ_stress(model_.in_situ, model_.gravity, height),
+                              turn_right(p.edge) / norm(p.edge));
     }
-    p.gap = p.over.gap - dilation_rise(property, c.slip);
+    p.gap = p.over.gap - law.rise(c.slip);
   }
 
   void write(const ContactPair& pair, size_t at, size_t k, std::vector<Point>& points) const {
@@ -154,8 +150,7 @@ class ContactRows {
     Point& q = points[k];
     const Contact& c = state_.contacts[i];
     const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
-    const size_t joint = joint_of(c);
-    const JointProperty& property = joints_[joint];
+    const JointLaw& law = law_of(c);
     // only what was never disturbed sticks with the stress of the ground
     const double elastic = state_.step == 0 ? q.closure.y : 0;
     place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair),
@@ -166,18 +161,15 @@ class ContactRows {
     p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.block_a, c.key.vertex));
     p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
     p.normal = q.over.normal;
-    p.friction = friction_[joint];
+    p.friction = law.residual().friction;
     p.lower = 0, p.cohesion = 0;
-    const bool soft = property.normal_stiffness > 0, springs = soft || property.shear_stiffness > 0;
+    const bool soft = law.is_soft(0), springs = law.is_soft();
     const double size = size_of(pair), slop = model_.contact.slop * size;
     p.row[0].bias =
         soft ? (q.gap + q.closure.x) / timing_.dt : hard_bias(q.gap + c.allowed, slop, timing_.dt);
     // what a broken face keeps, end by end, while it is in touch
-    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b)) {
-      const double impulse = c.length * blocks_.thickness * timing_.dt_kick;
-      p.lower = -property.residual_tensile_strength * impulse;
-      p.cohesion = property.residual_cohesion * impulse;
-    }
+    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b))
+      bound(law.residual().over(c.length * blocks_.thickness * timing_.dt_kick), p);
 
     Impulse guess{};
     if (c.memory == Contact::kNone) {
@@ -185,12 +177,12 @@ class ContactRows {
     } else {
       guess = {c.force[0] * timing_.dt_kick, c.force[1] * timing_.dt_kick};
       const double off = off_anchor(c, q.slip);
-      p.row[1].bias = (property.shear_stiffness > 0 ? off : beyond(off, slop)) / timing_.dt;
+      p.row[1].bias = (law.is_soft(1) ? off : beyond(off, slop)) / timing_.dt;
     }
-    if (property.restitution >= 0 || springs) {
+    if (law.restitution() >= 0 || springs) {
       q.u = relative_velocity(p, before_);
-      if (property.restitution >= 0 && q.gap + timing_.dt * q.u[0] <= 0 && q.u[0] < 0)
-        p.row[0].bias = std::min(p.row[0].bias, property.restitution * q.u[0]);
+      if (law.restitution() >= 0 && q.gap + timing_.dt * q.u[0] <= 0 && q.u[0] < 0)
+        p.row[0].bias = std::min(p.row[0].bias, law.restitution() * q.u[0]);
     }
     if (springs) {
       const int partner = partner_of(pair, at, k);
@@ -205,7 +197,7 @@ class ContactRows {
       } else if (c.length == 0) {
         length = kCornerLength * size;
       }
-      add_compliance(property, length * blocks_.thickness, partner >= 0, timing_, q.u, p);
+      add_compliance(law, length * blocks_.thickness, partner >= 0, timing_, q.u, p);
     }
     rows_.points[first_ + i] = p;
     rows_.impulse[first_ + i] = guess;
@@ -318,24 +310,24 @@ class ContactRows {
 
   const BlockSet& blocks_;
   const Model& model_;
+  const std::vector<JointLaw>& laws_;
   const State& state_;
   const std::vector<BlockRate>& before_;
   const RowTiming& timing_;
   const size_t first_;
   RowSet& rows_;
   std::vector<ContactPlace>& place_;
-  std::vector<JointProperty> joints_;
-  std::vector<double> friction_;
+  const JointLaw none_;  // of contacts without a joint
 };
 
 }  // namespace
 
-void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
-                      const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
-                      RowSet& rows, std::vector<ContactPlace>& place) {
+void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
+                      const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+                      const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
   const size_t first = rows.add_more(state.contacts.size());
   resize_sparingly(place, state.contacts.size());
-  const ContactRows contact_rows(blocks, model, state, before, timing, first, rows, place);
+  const ContactRows contact_rows(blocks, model, laws, state, before, timing, first, rows, place);
   workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
     std::vector<Point> points;
     for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);

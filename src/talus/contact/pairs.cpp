@@ -52,12 +52,11 @@ double closing_speed(const BlockSet& blocks, const std::vector<BlockRate>& rate,
 }
 
 // Faces that rode up over their roughness are that far apart and in touch: the most that joints can rise [m].
-double highest_rise(const std::vector<JointProperty>& joints, const State& state) {
-  if (std::all_of(joints.begin(), joints.end(), [](const JointProperty& j) { return j.dilation_angle == 0; }))
-    return 0;
+double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
+  if (std::none_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })) return 0;
   double rise = 0;
   for (const Contact& c : state.contacts)
-    if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints[static_cast<size_t>(c.joint)], c.slip));
+    if (c.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(c.joint)].rise(c.slip));
   return rise;
 }
 
@@ -298,14 +297,13 @@ struct Changed {
 class Updater {
  public:
   Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-          const std::vector<JointProperty>& joints, const LookAhead& ahead, State& state)
+          const std::vector<JointLaw>& joints, const LookAhead& ahead, State& state)
       : blocks_(blocks),
         bonds_(bonds),
         joints_of_(joints_of),
         joints_(joints),
         ahead_(ahead),
-        dilates_(std::any_of(joints.begin(), joints.end(),
-                             [](const JointProperty& j) { return j.dilation_angle != 0; })),
+        dilates_(std::any_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })),
         state_(state) {}
 
   SearchReport run(const Workers& workers) {
@@ -329,7 +327,7 @@ class Updater {
     double rise = 0;
     for (int k = 0; dilates_ && k < pair.count; ++k) {
       const Contact& c = state_.contacts[static_cast<size_t>(pair.begin + k)];
-      if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints_[static_cast<size_t>(c.joint)], c.slip));
+      if (c.joint >= 0) rise = std::max(rise, joints_[static_cast<size_t>(c.joint)].rise(c.slip));
     }
     return 2 * ahead_.dt *
                closing_speed(blocks_, *ahead_.before, static_cast<size_t>(pair.a),
@@ -466,7 +464,7 @@ class Updater {
   const BlockSet& blocks_;
   const BondSet& bonds_;
   const Layout& joints_of_;
-  const std::vector<JointProperty>& joints_;
+  const std::vector<JointLaw>& joints_;
   const LookAhead& ahead_;
   const bool dilates_;
   State& state_;
@@ -476,7 +474,7 @@ class Updater {
 
 }  // namespace
 
-bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state) {
   const double rise = highest_rise(joints, state);
   if (blocks.count == 0 || list_holds(blocks, state, ahead, rise, workers)) return false;
@@ -529,7 +527,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
 }
 
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             const std::vector<JointProperty>& joints, const LookAhead& ahead,
+                             const std::vector<JointLaw>& joints, const LookAhead& ahead,
                              const Workers& workers, State& state) {
   return Updater(blocks, bonds, joints_of, joints, ahead, state).run(workers);
 }

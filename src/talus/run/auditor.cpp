@@ -6,14 +6,16 @@
 #include "talus/audit/check_frame.h"
 #include "talus/audit/read_results.h"
 #include "talus/blocks/in_situ.h"
+#include "talus/model/joint_law.h"
 #include "talus/run/joint_report.h"
 
 namespace talus {
 
 namespace {
 
+// From the properties, not by JointLaw: what judges the rows shares no law with them. fmax: NaN is none.
 audit::Law law_of(const JointProperty& joint) {
-  return {.friction = std::tan(std::max(joint.friction_angle, joint.friction_after())),
+  return {.friction = std::tan(std::fmax(joint.friction_angle, joint.residual_friction_angle)),
           .cohesion = std::max(joint.cohesion, joint.residual_cohesion),
           .tension = std::max(joint.tensile_strength, joint.residual_tensile_strength),
           .normal_stiffness = joint.normal_stiffness,
@@ -36,9 +38,8 @@ double closed_by_ground(const Scene& scene, const ContactPair& pair, const Conta
   const Vec2 from = scene.blocks.corner(c.key.block_b, c.key.edge),
              side = scene.blocks.corner(c.key.block_b, next) - from;
   const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, scene.blocks.centroid[b].y + from.y);
-  const Vec2 closure =
-      in_situ_closure(model.joints[static_cast<size_t>(c.joint)], stress, turn_right(side) / norm(side));
-  return std::abs(closure.x);
+  const JointLaw law(model.joints[static_cast<size_t>(c.joint)]);
+  return std::abs(law.closure(stress, turn_right(side) / norm(side)).x);
 }
 
 }  // namespace
@@ -152,7 +153,7 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
       p.normal_force = c.force[0], p.shear_force = c.force[1];
       p.joint = c.joint < 0 ? audit::kNoJoint : c.joint;
       if (c.joint >= 0) {
-        const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];
+        const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];  // as law_of
         p.rise = std::tan(joint.dilation_angle) * std::min(c.slip, joint.dilation_slip);
       }
       p.in_situ = closed_by_ground(scene_, pair, c);

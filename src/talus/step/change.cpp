@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/model/joint_law.h"
+
 namespace talus {
 
 namespace {
@@ -15,9 +17,7 @@ void set_value(double& value, double to) {
 bool apply(const ChangeInput& change, Scene& scene) {
   if (change.joint >= 0) {
     JointProperty& joint = scene.model.joints[static_cast<size_t>(change.joint)];
-    set_value(joint.friction_angle, change.friction_angle);
-    set_value(joint.cohesion, change.cohesion);
-    set_value(joint.tensile_strength, change.tensile_strength);
+    joint = changed(joint, change);
     return false;
   }
   if (change.block.empty()) {

@@ -57,7 +57,7 @@ void drift(const Scene& scene, const StepSettings& settings, double dt, double t
     state.column_displacement[i] += dt * state.column_rate[i];
   state.work += work.work.before;
   state.work += work.work.after;
-  report.broken_faces = update_bonds(blocks, scene.bonds, scene.model.joints, dt, work.workers, state);
+  report.broken_faces = update_bonds(blocks, scene.bonds, work.laws, dt, work.workers, state);
   state.time = time_end;
   if (settings.histories_run) state.history_time += dt;
   state.dt_before = dt;

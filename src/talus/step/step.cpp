@@ -115,6 +115,7 @@ class Kick {
   StepReport run() {
     work_.dt_kick = 0.5 * (state_.dt_before + dt_);
     work_.work = {};
+    work_.laws = joint_laws(scene_.model.joints);
     work_.rate_before = state_.rate;
     damping_ = 0.5 * settings_.damping_mass * work_.dt_kick;
     {
@@ -124,11 +125,10 @@ class Kick {
     {
       const Timed timed(work_.profile.seconds[Profile::kDetect]);
       check_travel(blocks_, state_, dt_);
-      const std::vector<JointProperty>& joints = scene_.model.joints;
       const LookAhead ahead{dt_, &work_.rate_before};
-      renew_pairs(blocks_, scene_.bonds, joints, ahead, work_.workers, state_);
+      renew_pairs(blocks_, scene_.bonds, work_.laws, ahead, work_.workers, state_);
       report_.searched =
-          update_contacts(blocks_, scene_.bonds, scene_.layout, joints, ahead, work_.workers, state_)
+          update_contacts(blocks_, scene_.bonds, scene_.layout, work_.laws, ahead, work_.workers, state_)
               .searched;
     }
     {
@@ -274,11 +274,11 @@ class Kick {
   void gather_rows() {
     work_.rows.restart();
     const Model& model = scene_.model;
-    add_bond_rows(blocks_, scene_.bonds, model.joints, state_, work_.rate_before, timing(), work_.workers,
+    add_bond_rows(blocks_, scene_.bonds, work_.laws, state_, work_.rate_before, timing(), work_.workers,
                   work_.rows, work_.bond_owner);
     work_.first_contact = work_.rows.size();
-    add_contact_rows(blocks_, model, state_, work_.rate_before, timing(), work_.workers, work_.rows,
-                     work_.places);
+    add_contact_rows(blocks_, model, work_.laws, state_, work_.rate_before, timing(), work_.workers,
+                     work_.rows, work_.places);
     work_.first_support = work_.rows.size();
     add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
     work_.first_boundary = work_.rows.size();

@@ -67,6 +67,7 @@ struct StepWork {
   Workers workers;
   Profile profile;
   GaussSeidel gauss_seidel;
+  std::vector<JointLaw> laws;        // of the model's joints, in this stage
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts

@@ -63,8 +63,9 @@ Scene small_pile(unsigned seed) {
 
 int update(const Scene& scene, State& state) {
   const LookAhead ahead{1e-3, &state.rate};
-  renew_pairs(scene.blocks, scene.bonds, scene.model.joints, ahead, Workers(), state);
-  return update_contacts(scene.blocks, scene.bonds, scene.layout, scene.model.joints, ahead, Workers(), state)
+  renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), ahead, Workers(), state);
+  return update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead,
+                         Workers(), state)
       .searched;
 }
 
@@ -232,8 +233,8 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   CHECK(all == static_cast<int>(state.pairs.size()));
   const auto first = keys_of(state.contacts);
   CHECK(update(scene, state) == 0);
-  CHECK_FALSE(
-      renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state));
+  CHECK_FALSE(renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), {1e-3, &state.rate},
+                          Workers(), state));
   for (Vec2& d : state.displacement) d += Vec2{0.25, -0.5};
   CHECK(update(scene, state) == 0);
   CHECK(keys_of(state.contacts) == first);
@@ -393,8 +394,8 @@ TEST_CASE("the list holds all pairs that are closer than the margin, however blo
   State state = start_state(scene);
   int rebuilds = 0;
   for (int step = 0; step < 60; ++step) {
-    rebuilds +=
-        renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state);
+    rebuilds += renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), {1e-3, &state.rate},
+                            Workers(), state);
     std::vector<Box> boxes;
     for (int i = 0; i < scene.blocks.count; ++i) boxes.push_back(bounding_box(corners_now(scene, state, i)));
     // of stones, which all are as large as each other

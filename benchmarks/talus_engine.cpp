@@ -49,7 +49,7 @@ std::string TalusEngine::name() const { return fmt::format("talus-{}", kVersion)
 
 void TalusEngine::step(double dt) {
   report_ = kick(scene_, settings_, dt, work_, state_);
-  drift(scene_, settings_, dt, state_.time + dt, work_, state_, report_);
+  drift(scene_, state_.time + dt, work_, state_, report_);
 }
 
 std::vector<BenchBlock> TalusEngine::blocks() const {

@@ -102,7 +102,7 @@ void rest(const std::string& name, int threads) {
                                  s.blocks.size[static_cast<size_t>(p.block_b)]);
     double closure = p.row[0].compliance * impulse[0];
     if (p.partner >= 0) closure += p.cross(0) * w.rows.impulse[static_cast<size_t>(p.partner)][0];
-    closure *= kDt / position_factor(s.model.contact.alpha);
+    closure *= kDt / StepClock{.alpha = s.model.contact.alpha}.position_factor();
     const double slop = p.row[0].compliance > 0 ? 0 : s.model.contact.slop * size;
     beyond = std::max(beyond, (-w.places[i].gap - closure - slop) / size);
   }

@@ -211,7 +211,7 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
 }
 
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
-                   const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+                   const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                    const Workers& workers, RowSet& rows, std::vector<int>& owner) {
   owner.clear();
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
@@ -233,16 +233,16 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       p.arm_a = acting_arm(blocks, state, a, face.arm_a[end]);
       p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
       p.normal = apart.normal;
-      p.row[0].bias = apart.opening[end] / timing.dt;
-      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[end]) / timing.dt;
+      p.row[0].bias = apart.opening[end] / clock.dt;
+      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[end]) / clock.dt;
       if (!face.unbreakable) {
         const JointLaw& law = laws[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
-        bound(law.peak().over(half_area).over(timing.dt_kick), p);
+        bound(law.peak().over(half_area).over(clock.dt_kick), p);
         if (stands_open(law, apart.opening[end], noticeable(blocks, a, b))) p.cohesion = 0;
         if (law.is_soft()) {
           u[end] = relative_velocity(p, before);
-          add_compliance(law, half_area, true, timing, u[end], p);
+          add_compliance(law, half_area, true, clock, u[end], p);
           p.partner = static_cast<int>(end == 0 ? at + 1 : at);
         }
       }
@@ -253,7 +253,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       const double shear =
           rigid ? 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]) : force[1];
       rows.points[at + end] = p;
-      rows.impulse[at + end] = {force[0] * timing.dt_kick, shear * timing.dt_kick};
+      rows.impulse[at + end] = {force[0] * clock.dt_kick, shear * clock.dt_kick};
     }
     guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});
   };
@@ -263,18 +263,18 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
 }
 
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const RowTiming& timing, const Workers& workers,
+                    const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
                     State& state) {
   const auto remember = [&](size_t r) {
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
     const auto point = static_cast<size_t>(owner[r]);
-    state.bond_force[point] = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+    state.bond_force[point] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
     if (p.row[1].compliance == 0 || !slides(p, impulse)) return;
     // what is off after the step, but for the elastic slip under its force
     state.face[point / 2].slip[point % 2] =
         face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
-        timing.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, timing);
+        clock.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, clock);
   };
   workers.for_chunks(owner.size(), 2 * kGrain, [&](size_t begin, size_t end) {
     for (size_t r = begin; r < end; ++r) remember(r);

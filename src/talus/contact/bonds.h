@@ -41,13 +41,13 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 /// @param before  rates half a step ago
 /// @param owner   becomes 2 * face + end for each row
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
-                   const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+                   const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                    const Workers& workers, RowSet& rows, std::vector<int>& owner);
 
 /// After the solution: forces, and the slip of points that slide at the limit of an elastic shear.
 /// @param owner  of each row, as from add_bond_rows
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const RowTiming& timing, const Workers& workers,
+                    const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
                     State& state);
 
 /// How far the tied points of a face are apart, material point from material point, counted from the joint

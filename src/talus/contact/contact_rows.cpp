@@ -85,14 +85,14 @@ struct Toe {
 class ContactRows {
  public:
   ContactRows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
-              const State& state, const std::vector<BlockRate>& before, const RowTiming& timing, size_t first,
+              const State& state, const std::vector<BlockRate>& before, const StepClock& clock, size_t first,
               RowSet& rows, std::vector<ContactPlace>& place)
       : blocks_(blocks),
         model_(model),
         laws_(laws),
         state_(state),
         before_(before),
-        timing_(timing),
+        clock_(clock),
         first_(first),
         rows_(rows),
         place_(place) {}
@@ -165,23 +165,22 @@ class ContactRows {
     p.lower = 0, p.cohesion = 0;
     const bool soft = law.is_soft(0), springs = law.is_soft();
     const double size = size_of(pair), slop = model_.contact.slop * size;
-    p.row[0].bias =
-        soft ? (q.gap + q.closure.x) / timing_.dt : hard_bias(q.gap + c.allowed, slop, timing_.dt);
+    p.row[0].bias = soft ? (q.gap + q.closure.x) / clock_.dt : hard_bias(q.gap + c.allowed, slop, clock_.dt);
     // what a broken face keeps, end by end, while it is in touch
     if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b))
-      bound(law.residual().over(c.length * blocks_.thickness * timing_.dt_kick), p);
+      bound(law.residual().over(c.length * blocks_.thickness * clock_.dt_kick), p);
 
     Impulse guess{};
     if (c.memory == Contact::kNone) {
-      p.row[1].bias = elastic / timing_.dt;
+      p.row[1].bias = elastic / clock_.dt;
     } else {
-      guess = {c.force[0] * timing_.dt_kick, c.force[1] * timing_.dt_kick};
+      guess = {c.force[0] * clock_.dt_kick, c.force[1] * clock_.dt_kick};
       const double off = off_anchor(c, q.slip);
-      p.row[1].bias = (law.is_soft(1) ? off : beyond(off, slop)) / timing_.dt;
+      p.row[1].bias = (law.is_soft(1) ? off : beyond(off, slop)) / clock_.dt;
     }
     if (law.restitution() >= 0 || springs) {
       q.u = relative_velocity(p, before_);
-      if (law.restitution() >= 0 && q.gap + timing_.dt * q.u[0] <= 0 && q.u[0] < 0)
+      if (law.restitution() >= 0 && q.gap + clock_.dt * q.u[0] <= 0 && q.u[0] < 0)
         p.row[0].bias = std::min(p.row[0].bias, law.restitution() * q.u[0]);
     }
     if (springs) {
@@ -197,7 +196,7 @@ class ContactRows {
       } else if (c.length == 0) {
         length = kCornerLength * size;
       }
-      add_compliance(law, length * blocks_.thickness, partner >= 0, timing_, q.u, p);
+      add_compliance(law, length * blocks_.thickness, partner >= 0, clock_, q.u, p);
     }
     rows_.points[first_ + i] = p;
     rows_.impulse[first_ + i] = guess;
@@ -232,10 +231,10 @@ class ContactRows {
   double close_face(Point& q, const Point& other, const Contact& c, const Contact& far, PointRows& p) const {
     const double gap = q.gap + q.closure.x, away = other.gap + other.closure.x;
     const PointRows there = arms_of(other, far);
-    const double share = closed_share(gap, away, gap + timing_.dt * q.u[0],
-                                      away + timing_.dt * relative_velocity(there, before_)[0]);
+    const double share = closed_share(gap, away, gap + clock_.dt * q.u[0],
+                                      away + clock_.dt * relative_velocity(there, before_)[0]);
     if (share == 1) return 1;
-    const bool open = (gap >= 0 && away >= 0) ? gap + timing_.dt * q.u[0] >= 0 : gap >= 0;
+    const bool open = (gap >= 0 && away >= 0) ? gap + clock_.dt * q.u[0] >= 0 : gap >= 0;
     if (!open) return share;
     // this end goes to the end of the closed part
     const bool same = far.key.block_a == c.key.block_a;
@@ -243,7 +242,7 @@ class ContactRows {
     p.arm_a = far_a + share * (p.arm_a - far_a);
     p.arm_b = far_b + share * (p.arm_b - far_b);
     const double here = away + share * (gap - away);
-    p.row[0].bias = here / timing_.dt;
+    p.row[0].bias = here / clock_.dt;
     q.u = relative_velocity(p, before_);
     return share;
   }
@@ -261,10 +260,10 @@ class ContactRows {
 
   // A corner alone: the part of its two sides that has gone into the edge.
   double close_corner(Point& q, const Contact& c, double size, PointRows& p) const {
-    const double gap = q.gap + q.closure.x, then = gap + timing_.dt * q.u[0];
+    const double gap = q.gap + q.closure.x, then = gap + clock_.dt * q.u[0];
     const Toe toe = toe_of(q, c, -(gap < 0 ? gap : then));
     if (gap < 0 && toe.length > 0) {
-      p.row[0].bias = -toe.closure / timing_.dt;
+      p.row[0].bias = -toe.closure / clock_.dt;
       shift_arms(q, c, toe.shift, p);
       q.u = relative_velocity(p, before_);
     }
@@ -313,7 +312,7 @@ class ContactRows {
   const std::vector<JointLaw>& laws_;
   const State& state_;
   const std::vector<BlockRate>& before_;
-  const RowTiming& timing_;
+  const StepClock& clock_;
   const size_t first_;
   RowSet& rows_;
   std::vector<ContactPlace>& place_;
@@ -323,11 +322,11 @@ class ContactRows {
 }  // namespace
 
 void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
-                      const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+                      const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                       const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
   const size_t first = rows.add_more(state.contacts.size());
   resize_sparingly(place, state.contacts.size());
-  const ContactRows contact_rows(blocks, model, laws, state, before, timing, first, rows, place);
+  const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
   workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
     std::vector<Point> points;
     for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);
@@ -335,27 +334,27 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
 }
 
 void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
-                       const RowTiming& timing, const Workers& workers, State& state) {
+                       const StepClock& clock, const Workers& workers, State& state) {
   workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const PointRows& p = rows.points[first + i];
       const Impulse& impulse = rows.impulse[first + i];
       Contact& c = state.contacts[i];
-      const double elastic = elastic_slip(rows, first + i, timing);
+      const double elastic = elastic_slip(rows, first + i, clock);
       const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
       const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0;
       c.touched = c.touched || held;
       if (held && slides(p, impulse)) {
         // the place where it would stick goes along with the slip that is not elastic
         const double gone =
-            off_anchor(c, place[i].slip) + timing.dt * relative_velocity(p, state.rate)[1] - elastic;
+            off_anchor(c, place[i].slip) + clock.dt * relative_velocity(p, state.rate)[1] - elastic;
         c.slip += std::abs(gone), c.slip_signed += gone;
       }
       if (slides(p, impulse))
         c.anchor = std::nan("");
       else if (!anchored)
         c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
-      c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+      c.force = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
       if (c.allowed > 0) {
         c.allowed = std::min(c.allowed, -place[i].gap);
         c.allowed -= std::min(kPushedOut * c.allowed, kMostPushedOut * place[i].size);

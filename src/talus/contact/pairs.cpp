@@ -62,7 +62,8 @@ double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
 
 // How far block i has to look ahead: with the same of the other block at least the margin of their pair [m].
 double reach_of(const BlockSet& blocks, const LookAhead& ahead, size_t i) {
-  return std::max(0.5 * kMarginShare * blocks.size[i], 4 * ahead.dt * speed_of(blocks, *ahead.before, i));
+  return std::max(0.5 * kMarginShare * blocks.size[i],
+                  4 * ahead.clock.dt * speed_of(blocks, ahead.before, i));
 }
 
 bool list_holds(const BlockSet& blocks, const State& state, const LookAhead& ahead, double rise,
@@ -329,8 +330,8 @@ class Updater {
       const Contact& c = state_.contacts[static_cast<size_t>(pair.begin + k)];
       if (c.joint >= 0) rise = std::max(rise, joints_[static_cast<size_t>(c.joint)].rise(c.slip));
     }
-    return 2 * ahead_.dt *
-               closing_speed(blocks_, *ahead_.before, static_cast<size_t>(pair.a),
+    return 2 * ahead_.clock.dt *
+               closing_speed(blocks_, ahead_.before, static_cast<size_t>(pair.a),
                              static_cast<size_t>(pair.b)) +
            2 * rise;
   }
@@ -356,7 +357,7 @@ class Updater {
       SearchRange range;
       range.margin = pair.margin;
       range.depth = kDepthShare * std::min(blocks_.thinness[small], blocks_.thinness[large]);
-      range.look_ahead = ahead_.dt;
+      range.look_ahead = ahead_.clock.dt;
       range.neighbours = &s.candidates.neighbours;
       range.known = {s.contacts.data() + pair.begin, static_cast<size_t>(pair.count)};
       const Found& sought = search.touch(blocks_, s, pair.a, pair.b, range);

@@ -12,8 +12,8 @@ namespace talus {
 
 /// How far the blocks of a step look ahead.
 struct LookAhead {
-  double dt = 0;                                   // length of the step [s]
-  const std::vector<BlockRate>* before = nullptr;  // rates of the blocks half a step ago
+  const StepClock& clock;
+  const std::vector<BlockRate>& before;  // rates of the blocks half a step ago
 };
 
 /// Renews state.pairs when some block has moved half its skin since they were made, or looks further ahead

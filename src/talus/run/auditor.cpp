@@ -138,8 +138,8 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
     audit::Point p;
     p.block_a = face.block_a, p.block_b = face.block_b, p.joint = face.joint;
     p.place = point_now(scene_, i.state, row);
-    p.normal_force = i.work.rows.impulse[r][0] / i.work.dt_kick;
-    p.shear_force = i.work.rows.impulse[r][1] / i.work.dt_kick;
+    p.normal_force = i.work.rows.impulse[r][0] / i.work.clock.dt_kick;
+    p.shear_force = i.work.rows.impulse[r][1] / i.work.clock.dt_kick;
     p.partner = static_cast<int>(r % 2 == 0 ? r + 1 : r - 1);
     frame.points.push_back(p);
   }

@@ -157,7 +157,7 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
     step[0] += f.x, step[1] += f.y, step[2] += rows.impulse[r][0];
   }
   // the impulse of a kick acts from half a step before to half a step after; the first one only after
-  const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.dt_kick;
+  const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.clock.dt_kick;
   const bool first = c.knots.empty();
   if (first) c.knots.push_back({t, {0, 0, 0}});
   for (const double s : step) row.push_back(s / dt_kick);

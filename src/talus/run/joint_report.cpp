@@ -68,8 +68,8 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size
   const PointRows& p = i.work.rows.points[row];
   out->block_a = p.block_a, out->block_b = p.block_b;
   out->point = point_now(scene, i.state, p);
-  out->normal_force = i.work.rows.impulse[row][0] / i.work.dt_kick;
-  out->shear_force = i.work.rows.impulse[row][1] / i.work.dt_kick;
+  out->normal_force = i.work.rows.impulse[row][0] / i.work.clock.dt_kick;
+  out->shear_force = i.work.rows.impulse[row][1] / i.work.clock.dt_kick;
   return out;
 }
 

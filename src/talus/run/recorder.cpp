@@ -36,9 +36,9 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     const PointRows& p = rows.points[r];
     ContactFrame f;
     f.point = point_now(scene, i.state, p);
-    f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.dt_kick;
-    f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
-    f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
+    f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.clock.dt_kick;
+    f.normal_force = rows.impulse[r][0] / i.work.clock.dt_kick;
+    f.shear_force = rows.impulse[r][1] / i.work.clock.dt_kick;
     f.kind = r < i.work.first_contact    ? 1
              : r < i.work.first_support  ? 0
              : r < i.work.first_boundary ? 2

@@ -153,8 +153,8 @@ class Runner {
     try {
       note(report);
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-      drift(scene_, settings_, plan.dt, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1),
-            work_, state_, report);
+      drift(scene_, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1), work_, state_,
+            report);
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;

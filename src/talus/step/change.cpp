@@ -95,7 +95,7 @@ std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector
     const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
     if (blocks[a] == blocks[b]) continue;
     const bool on_a = blocks[b] != 0;
-    force[on_a ? a : b] += (1 / work.dt_kick) * impulse_on(p, rows.impulse[r], on_a ? 1 : -1);
+    force[on_a ? a : b] += (1 / work.clock.dt_kick) * impulse_on(p, rows.impulse[r], on_a ? 1 : -1);
   }
   return force;
 }

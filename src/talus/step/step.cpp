@@ -110,22 +110,24 @@ struct Attempt {
 class Kick {
  public:
   Kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state)
-      : scene_(scene), blocks_(scene.blocks), settings_(settings), dt_(dt), work_(work), state_(state) {}
+      : scene_(scene), blocks_(scene.blocks), settings_(settings), work_(work), state_(state) {
+    work_.clock = {dt, 0.5 * (state.dt_before + dt), scene.model.contact.alpha, state.history_time,
+                   settings.histories_run};
+  }
 
   StepReport run() {
-    work_.dt_kick = 0.5 * (state_.dt_before + dt_);
     work_.work = {};
     work_.laws = joint_laws(scene_.model.joints);
     work_.rate_before = state_.rate;
-    damping_ = 0.5 * settings_.damping_mass * work_.dt_kick;
+    damping_ = 0.5 * settings_.damping_mass * clock_.dt_kick;
     {
       const Timed timed(work_.profile.seconds[Profile::kIntegrate]);
       predict();
     }
     {
       const Timed timed(work_.profile.seconds[Profile::kDetect]);
-      check_travel(blocks_, state_, dt_);
-      const LookAhead ahead{dt_, &work_.rate_before};
+      check_travel(blocks_, state_, clock_.dt);
+      const LookAhead ahead{clock_, work_.rate_before};
       renew_pairs(blocks_, scene_.bonds, work_.laws, ahead, work_.workers, state_);
       report_.searched =
           update_contacts(blocks_, scene_.bonds, scene_.layout, work_.laws, ahead, work_.workers, state_)
@@ -147,8 +149,6 @@ class Kick {
   }
 
  private:
-  RowTiming timing() const { return {dt_, work_.dt_kick, scene_.model.contact.alpha}; }
-  double history_end() const { return state_.history_time + (settings_.histories_run ? dt_ : 0); }
   double share() const { return 1 / (1 + damping_); }
   bool implicit(size_t i) const { return settings_.implicit && blocks_.kind[i] == BlockKind::kDeformable; }
 
@@ -167,7 +167,7 @@ class Kick {
       for (size_t i = begin; i < end; ++i) predict_block(i, renew);
     });
     work_.mobility_share = settings_.implicit ? 0 : share();
-    drive_blocks(blocks_, model, scene_.layout, state_, history_end(), dt_, state_.rate);
+    drive_blocks(blocks_, model, scene_.layout, state_, clock_, state_.rate);
     work_.rate_free = state_.rate;
   }
 
@@ -184,19 +184,17 @@ class Kick {
     work_.bolt_forces.assign(state_.bolts.empty() ? 0 : load_.size(), {});
     if (!state_.bolts.empty()) add_bolt_forces(blocks_, state_, work_.bolt_forces);
 
-    kick_free_field(time, acceleration);
-    work_.column_velocity = boundary_.column_velocity;
+    kick_free_field(acceleration);
   }
 
-  void kick_free_field(double time, const std::vector<Vec2>& acceleration) {
-    boundary_ = {!settings_.histories_run, dt_, work_.dt_kick, time, state_.column_rate};
-    if (boundary_.is_static) return;
-    kick_columns(scene_.boundaries.free_field, scene_.model.histories,
-                 {dt_, work_.dt_kick, time, settings_.damping_mass, scene_.model.inertia == Inertia::kLumped},
-                 acceleration, state_);
+  void kick_free_field(const std::vector<Vec2>& acceleration) {
+    work_.column_velocity = state_.column_rate;
+    if (!clock_.histories_run) return;
+    kick_columns(scene_.boundaries.free_field, scene_.model.histories, clock_, settings_.damping_mass,
+                 scene_.model.inertia == Inertia::kLumped, acceleration, state_);
     if (state_.dt_before == 0) return;  // at the start: the velocity of the start
     for (size_t i = 0; i < state_.column_rate.size(); ++i)
-      boundary_.column_velocity[i] = 0.5 * (boundary_.column_velocity[i] + state_.column_rate[i]);
+      work_.column_velocity[i] = 0.5 * (work_.column_velocity[i] + state_.column_rate[i]);
   }
 
   void predict_block(size_t k, bool renew) {
@@ -217,7 +215,7 @@ class Kick {
     else if (renew)
       work_.mobility[k] = mobility_of(blocks_, k, share());
     BlockRate& v = state_.rate[k];
-    BlockForce impulse = work_.dt_kick * force;
+    BlockForce impulse = clock_.dt_kick * force;
     if (settings_.damping_local > 0) impulse += local_damping_[k] = local_damping_impulse(k);
     if (explicitly_damped(k)) impulse += stiffness_damping(k, v, v);
     if (!implicit(k) && damping_ == 0) {
@@ -228,25 +226,21 @@ class Kick {
     impulse += (-2 * damping_) * momentum(blocks_, k, v);
     if (implicit(k))
       impulse += BlockForce{
-          {}, (-(1 - old_share()) * tangent_time2() - 2 * damping_time2()) * tangent_force(k, v.G)};
+          {}, (-(1 - clock_.old_share()) * tangent_time2() - 2 * damping_time2()) * tangent_force(k, v.G)};
     v = v + accelerate(work_.mobility[k], impulse);
   }
 
   // Block-implicit elasticity: the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family of 4.6.
-  double tangent_time2() const { return dt_ * work_.dt_kick / position_factor(scene_.model.contact.alpha); }
+  double tangent_time2() const { return clock_.dt * clock_.dt_kick / clock_.position_factor(); }
   // Stiffness-proportional damping (4.5): of the rates before the kick where elasticity is explicit, of their
   // mean where it is implicit.
-  double damping_time2() const { return 0.5 * settings_.damping_stiffness * work_.dt_kick; }
+  double damping_time2() const { return 0.5 * settings_.damping_stiffness * clock_.dt_kick; }
   bool explicitly_damped(size_t i) const {
     return settings_.damping_stiffness > 0 && !settings_.implicit &&
            blocks_.kind[i] == BlockKind::kDeformable;
   }
   BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const {
     return {{}, (-damping_time2()) * tangent_force(i, before.G + after.G)};
-  }
-  double old_share() const {
-    const double alpha = scene_.model.contact.alpha, r = (1 - alpha) / (1 + alpha);
-    return r * r;
   }
 
   // V K : G, the elastic tangent in the frame turned with the block.
@@ -268,25 +262,26 @@ class Kick {
     if (speed == 0) return {};
     const BlockForce unbalanced = forces_[i] + state_.contact_force[i];
     const double push = std::sqrt(std::max(0.0, work(unbalanced, accelerate(blocks_, i, unbalanced))));
-    return -std::min(settings_.damping_local * push * work_.dt_kick / speed, 1.0) * moving;
+    return -std::min(settings_.damping_local * push * clock_.dt_kick / speed, 1.0) * moving;
   }
 
   void gather_rows() {
     work_.rows.restart();
     const Model& model = scene_.model;
-    add_bond_rows(blocks_, scene_.bonds, work_.laws, state_, work_.rate_before, timing(), work_.workers,
+    add_bond_rows(blocks_, scene_.bonds, work_.laws, state_, work_.rate_before, clock_, work_.workers,
                   work_.rows, work_.bond_owner);
     work_.first_contact = work_.rows.size();
-    add_contact_rows(blocks_, model, work_.laws, state_, work_.rate_before, timing(), work_.workers,
-                     work_.rows, work_.places);
+    add_contact_rows(blocks_, model, work_.laws, state_, work_.rate_before, clock_, work_.workers, work_.rows,
+                     work_.places);
     work_.first_support = work_.rows.size();
-    add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
+    add_support_rows(blocks_, model, scene_.supported, state_, clock_, work_.rows);
     work_.first_boundary = work_.rows.size();
-    add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, boundary_, work_.rows);
+    add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, clock_,
+                      work_.column_velocity, work_.rows);
     work_.first_tie = work_.rows.size();
-    add_tie_rows(blocks_, scene_.boundaries.ties, state_, dt_, work_.dt_kick, work_.rows);
+    add_tie_rows(blocks_, scene_.boundaries.ties, state_, clock_, work_.rows);
     work_.first_bolt = work_.rows.size();
-    add_bolt_rows(blocks_, state_, work_.rate_before, {dt_, work_.dt_kick, model.contact.alpha}, work_.rows);
+    add_bolt_rows(blocks_, state_, work_.rate_before, clock_, work_.rows);
     work_.rows.finish();
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
@@ -345,11 +340,11 @@ class Kick {
     report_.method = kind;
     if (kind == SolverKind::kNewton) {
       report_.solve =
-          solve_newton(work_.mobility, state_.rate, options, wanted / dt_, work_.rows, smoothing());
+          solve_newton(work_.mobility, state_.rate, options, wanted / clock_.dt, work_.rows, smoothing());
       apply_impulses(work_.mobility, work_.rows, state_.rate);
     } else {
-      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, {wanted, stop}, dt_, work_.workers,
-                                               work_.rows, state_.rate);
+      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, {wanted, stop}, clock_.dt,
+                                               work_.workers, work_.rows, state_.rate);
     }
     judge();
   }
@@ -357,7 +352,7 @@ class Kick {
   Smoothing smoothing() const {
     const ContactInput& c = scene_.model.contact;
     if (c.law == ContactLaw::kExact) return {};
-    return {true, c.smoothing_force * work_.dt_kick, c.smoothing_slip / dt_};
+    return {true, c.smoothing_force * clock_.dt_kick, c.smoothing_slip / clock_.dt};
   }
 
   // The error of the result, and in the same look at the rows the work they do.
@@ -396,8 +391,8 @@ class Kick {
     if (contact && work_.places[r - work_.first_contact].closed > s.closed_share)
       s.closed_share = work_.places[r - work_.first_contact].closed, s.closed_row = static_cast<int>(r);
     const auto u1 = relative_velocity(p, state_.rate);
-    s.error +=
-        {dt_ * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / dt_), static_cast<int>(r)};
+    s.error += {clock_.dt * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / clock_.dt),
+                static_cast<int>(r)};
     if (impulse[0] == 0 && impulse[1] == 0) return;
     for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
       if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
@@ -434,7 +429,7 @@ class Kick {
 
   // Share of a kick that belongs to the step after it: half, unless the step length changes; all of it at the
   // start.
-  double late_share() const { return 0.5 * dt_ / work_.dt_kick; }
+  double late_share() const { return 0.5 * clock_.dt / clock_.dt_kick; }
 
   void tally_blocks() {
     const BlockSums sums = work_.workers.sum_chunks<BlockSums>(
@@ -462,7 +457,7 @@ class Kick {
   void tally_block(size_t i, BlockSums& s) {
     const BlockRate &v0 = work_.rate_before[i], &v1 = state_.rate[i];
     if (!blocks_.moves_freely(static_cast<int>(i))) return;
-    const double late = late_share(), kick = work_.dt_kick;
+    const double late = late_share(), kick = clock_.dt_kick;
     const BlockForce viscous = (-settings_.damping_mass * kick) * momentum(blocks_, i, mean(v0, v1));
     tally(s.work.before.loads, s.work.after.loads, kick * load_[i], v0, v1, late);
     tally(s.work.before.damping, s.work.after.damping, viscous, v0, v1, late);
@@ -475,7 +470,7 @@ class Kick {
 
     BlockForce force = forces_[i];
     if (implicit(i)) {
-      const BlockForce more{{}, (-tangent_time2()) * tangent_force(i, v1.G - old_share() * v0.G)};
+      const BlockForce more{{}, (-tangent_time2()) * tangent_force(i, v1.G - clock_.old_share() * v0.G)};
       tally(s.work.before.implicit, s.work.after.implicit, more, v0, v1, late);
       force += (1 / kick) * more;
     }
@@ -510,28 +505,28 @@ class Kick {
   }
 
   void remember() {
-    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, timing(), work_.workers, state_);
-    remember_contacts(work_.rows, work_.first_contact, work_.places, timing(), work_.workers, state_);
+    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, clock_, work_.workers, state_);
+    remember_contacts(work_.rows, work_.first_contact, work_.places, clock_, work_.workers, state_);
     const auto keep = [this](size_t row, const auto& points, double sign,
                              std::vector<std::array<double, 2>>& force) {
       for (size_t i = 0; i < force.size(); ++i) {
         force[i] = {0, 0};
         if (!points[i].active) continue;
         const Impulse& p = work_.rows.impulse[row++];
-        force[i] = {p[0] / work_.dt_kick, sign * p[1] / work_.dt_kick};
+        force[i] = {p[0] / clock_.dt_kick, sign * p[1] / clock_.dt_kick};
       }
     };
     keep(work_.first_support, scene_.supported, -1, state_.support_force);
     keep(work_.first_boundary, scene_.boundaries.points, 1, state_.boundary_force);
     keep(work_.first_tie, scene_.boundaries.ties, 1, state_.tie_force);
-    remember_bolts(work_.rows, work_.first_bolt, work_.dt_kick, state_);
+    remember_bolts(work_.rows, work_.first_bolt, clock_, state_);
   }
 
   const Scene& scene_;
   const BlockSet& blocks_;
   const StepSettings& settings_;
-  const double dt_;
   StepWork& work_;
+  const StepClock& clock_ = work_.clock;
   State& state_;
   StepReport report_;
   RowSums rows_;
@@ -540,7 +535,6 @@ class Kick {
   std::vector<BlockForce>& local_damping_ = work_.local_damping;
   std::vector<ElasticState>& elastic_ = work_.elastic;
   std::vector<BlockForce> load_;  // by loads
-  BoundaryStep boundary_;
 };
 
 }  // namespace

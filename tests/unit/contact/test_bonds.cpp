@@ -327,7 +327,7 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   // the upper block (b) pushed to the right, against the tangent
   const double off = 3e-3, dt = 1e-4, dt_kick = 1e-4;
   state.displacement[1] = {off, -1e-4};
-  const RowTiming timing{dt, dt_kick, 0.2};
+  const StepClock timing{dt, dt_kick, 0.2};
   RowSet rows;
   std::vector<int> owner;
   const auto make_rows = [&] {

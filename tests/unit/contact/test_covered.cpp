@@ -23,7 +23,8 @@ Scene crossing() {
 }
 
 void update(const Scene& scene, State& state) {
-  const LookAhead ahead{1e-3, &state.rate};
+  const StepClock clock{1e-3};
+  const LookAhead ahead{clock, state.rate};
   renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), ahead, Workers(), state);
   update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead, Workers(),
                   state);

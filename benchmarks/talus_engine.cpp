@@ -66,7 +66,8 @@ std::vector<BenchBlock> TalusEngine::blocks() const {
 
 std::vector<BenchContact> TalusEngine::contacts() const {
   std::vector<BenchContact> list;
-  for (size_t r = work_.first_contact; r < work_.first_support; ++r) {
+  const RowRange range = work_.rows.range(RowFamily::kContacts);
+  for (size_t r = range.begin; r < range.end; ++r) {
     const PointRows& p = work_.rows.points[r];
     const auto a = static_cast<size_t>(p.block_a);
     const auto u = relative_velocity(p, state_.rate);

@@ -220,6 +220,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     owner.push_back(static_cast<int>(2 * f));
     owner.push_back(static_cast<int>(2 * f) + 1);
   }
+  rows.begin(RowFamily::kBonds);
   const size_t first = rows.add_more(owner.size());
 
   const auto add = [&](size_t f, size_t at) {
@@ -265,10 +266,12 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
                     const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
                     State& state) {
-  const auto remember = [&](size_t r) {
+  const size_t first = rows.range(RowFamily::kBonds).begin;
+  const auto remember = [&](size_t i) {
+    const size_t r = first + i;
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
-    const auto point = static_cast<size_t>(owner[r]);
+    const auto point = static_cast<size_t>(owner[i]);
     state.bond_force[point] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
     if (p.row[1].compliance == 0 || !slides(p, impulse)) return;
     // what is off after the step, but for the elastic slip under its force
@@ -277,7 +280,7 @@ void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& 
         clock.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, clock);
   };
   workers.for_chunks(owner.size(), 2 * kGrain, [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) remember(r);
+    for (size_t i = begin; i < end; ++i) remember(i);
   });
 }
 

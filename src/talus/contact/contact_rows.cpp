@@ -324,6 +324,7 @@ class ContactRows {
 void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
                       const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                       const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
+  rows.begin(RowFamily::kContacts);
   const size_t first = rows.add_more(state.contacts.size());
   resize_sparingly(place, state.contacts.size());
   const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
@@ -333,8 +334,9 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
   });
 }
 
-void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
-                       const StepClock& clock, const Workers& workers, State& state) {
+void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
+                       const Workers& workers, State& state) {
+  const size_t first = rows.range(RowFamily::kContacts).begin;
   workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const PointRows& p = rows.points[first + i];

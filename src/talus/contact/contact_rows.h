@@ -29,8 +29,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
 
 /// Stores force, anchor and slip of each contact in the state.
 /// @pre  state.rate are the rates after the kick
-/// @param first  index of the first contact row in `rows`
-void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
-                       const StepClock& clock, const Workers& workers, State& state);
+void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
+                       const Workers& workers, State& state);
 
 }  // namespace talus

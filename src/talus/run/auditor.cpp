@@ -131,8 +131,8 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
   audit::Frame frame;
   frame.time = i.state.time, frame.step = i.plan.dt;
   for (int k = 0; k < scene_.blocks.count; ++k) frame.blocks.push_back(shape(i, k));
-  const size_t bonds = i.work.first_contact;
-  for (size_t r = 0; r < bonds; ++r) {
+  const size_t bonds = i.work.rows.range(RowFamily::kBonds).end;
+  for (size_t r = 0; r < bonds; ++r) {  // the first family
     const PointRows& row = i.work.rows.points[r];
     const BondFace& face = scene_.bonds.faces[static_cast<size_t>(i.work.bond_owner[r]) / 2];
     audit::Point p;

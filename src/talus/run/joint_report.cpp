@@ -17,8 +17,8 @@ std::string set_of(const Scene& scene, int block, int edge) {
 }
 
 // An intact end of a face: what parts it is elastic, unless it stands open or slid at its limit.
-std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t row) {
-  const auto owner = static_cast<size_t>(i.work.bond_owner[row]);
+std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t index) {
+  const auto owner = static_cast<size_t>(i.work.bond_owner[index]);
   const BondFace& face = scene.bonds.faces[owner / 2];
   if (face.unbreakable) return std::nullopt;
   JointPoint out;
@@ -32,8 +32,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   return out;
 }
 
-JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
-  const size_t k = row - i.work.first_contact;
+JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   const Contact& c = i.state.contacts[k];
   JointPoint out;
   out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
@@ -61,9 +60,10 @@ Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
 }
 
 std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size_t row) {
-  if (row >= i.work.first_support) return std::nullopt;
-  const bool is_face = row < i.work.first_contact;
-  std::optional<JointPoint> out = is_face ? face_point(scene, i, row) : contact_point(scene, i, row);
+  const auto [family, index] = i.work.rows.place(row);
+  if (!is_joint(family)) return std::nullopt;
+  std::optional<JointPoint> out =
+      family == RowFamily::kBonds ? face_point(scene, i, index) : contact_point(scene, i, index);
   if (!out) return out;
   const PointRows& p = i.work.rows.points[row];
   out->block_a = p.block_a, out->block_b = p.block_b;
@@ -75,14 +75,15 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size
 
 std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
   std::vector<std::pair<size_t, size_t>> out;
-  for (size_t r = 0; r + 1 < i.work.first_contact; r += 2)
-    out.emplace_back(r, r + 1);  // the two ends of a face
+  const RowRange bonds = i.work.rows.range(RowFamily::kBonds);
+  const size_t first = i.work.rows.range(RowFamily::kContacts).begin;
+  for (size_t r = bonds.begin; r < bonds.end; r += 2) out.emplace_back(r, r + 1);  // the two ends of a face
   for (const ContactPair& pair : i.state.pairs) {
     for (int k = 0; k < pair.count; ++k) {
       const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
       if (partner > k)
-        out.emplace_back(i.work.first_contact + static_cast<size_t>(pair.begin + k),
-                         i.work.first_contact + static_cast<size_t>(pair.begin + partner));
+        out.emplace_back(first + static_cast<size_t>(pair.begin + k),
+                         first + static_cast<size_t>(pair.begin + partner));
     }
   }
   return out;

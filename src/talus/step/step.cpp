@@ -99,6 +99,23 @@ struct BlockSums {
   }
 };
 
+// Where the work of hard rows goes that are no contact's: those do two kinds.
+double WorkDone::*cause_of(RowFamily family) {
+  switch (family) {
+    case RowFamily::kSupports:
+      return &WorkDone::supports;
+    case RowFamily::kBoundaries:
+    case RowFamily::kTies:
+      return &WorkDone::boundary;
+    case RowFamily::kBolts:
+      return &WorkDone::bolts;
+    case RowFamily::kBonds:
+    case RowFamily::kContacts:
+      break;
+  }
+  return &WorkDone::bonds;
+}
+
 // What one solver made of a step.
 struct Attempt {
   std::vector<Impulse> impulse;
@@ -270,17 +287,12 @@ class Kick {
     const Model& model = scene_.model;
     add_bond_rows(blocks_, scene_.bonds, work_.laws, state_, work_.rate_before, clock_, work_.workers,
                   work_.rows, work_.bond_owner);
-    work_.first_contact = work_.rows.size();
     add_contact_rows(blocks_, model, work_.laws, state_, work_.rate_before, clock_, work_.workers, work_.rows,
                      work_.places);
-    work_.first_support = work_.rows.size();
     add_support_rows(blocks_, model, scene_.supported, state_, clock_, work_.rows);
-    work_.first_boundary = work_.rows.size();
     add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, clock_,
                       work_.column_velocity, work_.rows);
-    work_.first_tie = work_.rows.size();
     add_tie_rows(blocks_, scene_.boundaries.ties, state_, clock_, work_.rows);
-    work_.first_bolt = work_.rows.size();
     add_bolt_rows(blocks_, state_, work_.rate_before, clock_, work_.rows);
     work_.rows.finish();
     report_.contacts = static_cast<int>(state_.contacts.size());
@@ -326,7 +338,8 @@ class Kick {
   // Points of faces that are tied without any give.
   size_t hard_ties() const {
     size_t count = 0;
-    for (size_t r = 0; r < work_.first_contact; ++r) count += work_.rows.points[r].row[0].compliance == 0;
+    const RowRange bonds = work_.rows.range(RowFamily::kBonds);
+    for (size_t r = bonds.begin; r < bonds.end; ++r) count += work_.rows.points[r].row[0].compliance == 0;
     return count;
   }
 
@@ -385,11 +398,11 @@ class Kick {
   void tally_row(size_t r, RowSums& s) const {
     const PointRows& p = work_.rows.points[r];
     const Impulse& impulse = work_.rows.impulse[r];
-    const bool contact = r >= work_.first_contact && r < work_.first_support;
-    if (contact && p.row[0].compliance == 0)
-      s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
-    if (contact && work_.places[r - work_.first_contact].closed > s.closed_share)
-      s.closed_share = work_.places[r - work_.first_contact].closed, s.closed_row = static_cast<int>(r);
+    const RowPlace place = work_.rows.place(r);
+    const bool contact = place.family == RowFamily::kContacts;
+    if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -work_.places[place.index].gap);
+    if (contact && work_.places[place.index].closed > s.closed_share)
+      s.closed_share = work_.places[place.index].closed, s.closed_row = static_cast<int>(r);
     const auto u1 = relative_velocity(p, state_.rate);
     s.error += {clock_.dt * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / clock_.dt),
                 static_cast<int>(r)};
@@ -402,19 +415,15 @@ class Kick {
       s.work.before.*cause += 0.5 * impulse[k] * u0[k];
       s.work.after.*cause += 0.5 * impulse[k] * u1[k];
     };
-    if (r < work_.first_support && p.row[0].compliance + p.row[1].compliance > 0) {
+    if (is_joint(place.family) && p.row[0].compliance + p.row[1].compliance > 0) {
       add(0, p.row[0].compliance > 0 ? &WorkDone::joints : &WorkDone::contact_closing);
       add(1, slides(p, impulse) ? &WorkDone::friction : &WorkDone::joints);
       ++s.closed;
-    } else if (r < work_.first_contact) {
-      add(0, &WorkDone::bonds), add(1, &WorkDone::bonds);
     } else if (contact) {
       add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
       ++s.closed;
     } else {
-      const auto cause = r < work_.first_boundary ? &WorkDone::supports
-                         : r < work_.first_bolt   ? &WorkDone::boundary
-                                                  : &WorkDone::bolts;
+      const auto cause = cause_of(place.family);
       add(0, cause), add(1, cause);
     }
   }
@@ -506,9 +515,10 @@ class Kick {
 
   void remember() {
     remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, clock_, work_.workers, state_);
-    remember_contacts(work_.rows, work_.first_contact, work_.places, clock_, work_.workers, state_);
-    const auto keep = [this](size_t row, const auto& points, double sign,
+    remember_contacts(work_.rows, work_.places, clock_, work_.workers, state_);
+    const auto keep = [this](RowFamily family, const auto& points, double sign,
                              std::vector<std::array<double, 2>>& force) {
+      size_t row = work_.rows.range(family).begin;
       for (size_t i = 0; i < force.size(); ++i) {
         force[i] = {0, 0};
         if (!points[i].active) continue;
@@ -516,10 +526,10 @@ class Kick {
         force[i] = {p[0] / clock_.dt_kick, sign * p[1] / clock_.dt_kick};
       }
     };
-    keep(work_.first_support, scene_.supported, -1, state_.support_force);
-    keep(work_.first_boundary, scene_.boundaries.points, 1, state_.boundary_force);
-    keep(work_.first_tie, scene_.boundaries.ties, 1, state_.tie_force);
-    remember_bolts(work_.rows, work_.first_bolt, clock_, state_);
+    keep(RowFamily::kSupports, scene_.supported, -1, state_.support_force);
+    keep(RowFamily::kBoundaries, scene_.boundaries.points, 1, state_.boundary_force);
+    keep(RowFamily::kTies, scene_.boundaries.ties, 1, state_.tie_force);
+    remember_bolts(work_.rows, clock_, state_);
   }
 
   const Scene& scene_;
@@ -552,30 +562,37 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {
   const PointRows& p = work.rows.points[row];
   const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
-  if (row < work.first_contact) return fmt::format("joint {} - {}", name(p.block_a), name(p.block_b));
-  if (row < work.first_support) {
-    const ContactKey& k = state.contacts[row - work.first_contact].key;
-    return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
-                       k.edge);
-  }
-  const auto boundary = [&](int index, int block) {
-    return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(index)].name,
-                       name(block));
+  const auto [family, index] = work.rows.place(row);
+  const auto boundary = [&](int which) {
+    return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(which)].name,
+                       name(p.block_a));
   };
-  if (row >= work.first_bolt) {
-    const auto [bolt, crossing] = crossing_of_row(state, row - work.first_bolt);
-    return fmt::format("bolt {} between {} and {}",
-                       scene.model.bolts[static_cast<size_t>(state.bolts[bolt].input)].name, name(p.block_a),
-                       name(p.block_b));
-  }
   const BoundarySet& b = scene.boundaries;
-  if (row >= work.first_tie)
-    return boundary(b.ties[nth_active(b.ties, row - work.first_tie)].boundary, p.block_a);
-  if (row >= work.first_boundary)
-    return boundary(b.points[nth_active(b.points, row - work.first_boundary)].boundary, p.block_a);
-  const SupportedPoint& s = scene.supported[nth_active(scene.supported, row - work.first_support)];
-  return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
-                     name(s.block));
+  switch (family) {
+    case RowFamily::kBonds:
+      break;
+    case RowFamily::kContacts: {
+      const ContactKey& k = state.contacts[index].key;
+      return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
+                         k.edge);
+    }
+    case RowFamily::kSupports: {
+      const SupportedPoint& s = scene.supported[nth_active(scene.supported, index)];
+      return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
+                         name(s.block));
+    }
+    case RowFamily::kBoundaries:
+      return boundary(b.points[nth_active(b.points, index)].boundary);
+    case RowFamily::kTies:
+      return boundary(b.ties[nth_active(b.ties, index)].boundary);
+    case RowFamily::kBolts: {
+      const auto [bolt, crossing] = crossing_of_row(state, index);
+      return fmt::format("bolt {} between {} and {}",
+                         scene.model.bolts[static_cast<size_t>(state.bolts[bolt].input)].name,
+                         name(p.block_a), name(p.block_b));
+    }
+  }
+  return fmt::format("joint {} - {}", name(p.block_a), name(p.block_b));
 }
 
 }  // namespace talus

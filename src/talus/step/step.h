@@ -72,9 +72,8 @@ struct StepWork {
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts
-  RowSet rows;                       // bonds, contacts, supports, boundaries, ties, bolts, in this order
+  RowSet rows;                       // of all families
   std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
-  size_t first_contact = 0, first_support = 0, first_boundary = 0, first_tie = 0, first_bolt = 0;
   std::vector<BlockRate> rate_before;
   std::vector<Vec2> column_velocity;  // [n_column_nodes] of the free field at this instant [m/s]
   KickWork work;

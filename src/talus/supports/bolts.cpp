@@ -172,6 +172,7 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
 
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
                    const StepClock& clock, RowSet& rows) {
+  rows.begin(RowFamily::kBolts);
   for (const Bolt& bolt : state.bolts) {
     for (const BoltCrossing& c : bolt.crossings) {
       const auto j = static_cast<size_t>(c.segment);
@@ -210,10 +211,11 @@ void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector
   }
 }
 
-void remember_bolts(const RowSet& rows, size_t first, const StepClock& clock, State& state) {
+void remember_bolts(const RowSet& rows, const StepClock& clock, State& state) {
+  size_t next = rows.range(RowFamily::kBolts).begin;
   for (Bolt& bolt : state.bolts)
     for (BoltCrossing& c : bolt.crossings) {
-      const Impulse& p = rows.impulse[first++];
+      const Impulse& p = rows.impulse[next++];
       c.row = {p[0] / clock.dt_kick, p[1] / clock.dt_kick};
     }
 }

@@ -33,8 +33,8 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
                    const StepClock& clock, RowSet& rows);
 
-/// Takes over the impulses of the rows from `first` on.
-void remember_bolts(const RowSet& rows, size_t first, const StepClock& clock, State& state);
+/// Takes over the impulses of the rows.
+void remember_bolts(const RowSet& rows, const StepClock& clock, State& state);
 
 /// Bolt and crossing of row `index` of those rows.
 std::pair<size_t, size_t> crossing_of_row(const State& state, size_t index);

@@ -200,6 +200,7 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
                        const std::vector<BlockRate>& before, const StepClock& clock,
                        const std::vector<Vec2>& column_velocity, RowSet& rows) {
+  rows.begin(RowFamily::kBoundaries);
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& point = set.points[i];
     if (!point.active) continue;

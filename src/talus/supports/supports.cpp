@@ -19,6 +19,7 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
 
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
                       const State& state, const StepClock& clock, RowSet& rows) {
+  rows.begin(RowFamily::kSupports);
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].active) continue;
     const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];

@@ -113,6 +113,7 @@ std::vector<TiePoint> tie_sides(const Model& model, const Layout& layout, const 
 
 void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state,
                   const StepClock& clock, RowSet& rows) {
+  rows.begin(RowFamily::kTies);
   for (size_t i = 0; i < ties.size(); ++i) {
     const TiePoint& t = ties[i];
     if (!t.active) continue;

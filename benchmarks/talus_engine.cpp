@@ -49,7 +49,7 @@ std::string TalusEngine::name() const { return fmt::format("talus-{}", kVersion)
 
 void TalusEngine::step(double dt) {
   report_ = kick(scene_, settings_, dt, work_, state_);
-  drift(scene_, settings_, dt, state_.time + dt, work_, state_, report_);
+  drift(scene_, state_.time + dt, work_, state_, report_);
 }
 
 std::vector<BenchBlock> TalusEngine::blocks() const {
@@ -66,7 +66,8 @@ std::vector<BenchBlock> TalusEngine::blocks() const {
 
 std::vector<BenchContact> TalusEngine::contacts() const {
   std::vector<BenchContact> list;
-  for (size_t r = work_.first_contact; r < work_.first_support; ++r) {
+  const RowRange range = work_.rows.range(RowFamily::kContacts);
+  for (size_t r = range.begin; r < range.end; ++r) {
     const PointRows& p = work_.rows.points[r];
     const auto a = static_cast<size_t>(p.block_a);
     const auto u = relative_velocity(p, state_.rate);

@@ -96,13 +96,13 @@ void rest(const std::string& name, int threads) {
   const Scene& s = engine.scene();
   const StepWork& w = engine.work();
   for (size_t i = 0; i < engine.state().contacts.size(); ++i) {
-    const PointRows& p = w.rows.points[w.first_contact + i];
-    const Impulse& impulse = w.rows.impulse[w.first_contact + i];
+    const PointRows& p = w.rows.points[w.rows.range(RowFamily::kContacts).begin + i];
+    const Impulse& impulse = w.rows.impulse[w.rows.range(RowFamily::kContacts).begin + i];
     const double size = std::min(s.blocks.size[static_cast<size_t>(p.block_a)],
                                  s.blocks.size[static_cast<size_t>(p.block_b)]);
     double closure = p.row[0].compliance * impulse[0];
     if (p.partner >= 0) closure += p.cross(0) * w.rows.impulse[static_cast<size_t>(p.partner)][0];
-    closure *= kDt / position_factor(s.model.contact.alpha);
+    closure *= kDt / StepClock{.alpha = s.model.contact.alpha}.position_factor();
     const double slop = p.row[0].compliance > 0 ? 0 : s.model.contact.slop * size;
     beyond = std::max(beyond, (-w.places[i].gap - closure - slop) / size);
   }

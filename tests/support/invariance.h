@@ -391,7 +391,7 @@ class SnapshotObserver : public Observer {
   static Vec2 force_of(const Instant& i, size_t row) {
     const PointRows& p = i.work.rows.points[row];
     const Impulse& q = i.work.rows.impulse[row];
-    return (1 / i.work.dt_kick) * (q[0] * p.normal + q[1] * turn_right(p.normal));
+    return (1 / i.work.clock.dt_kick) * (q[0] * p.normal + q[1] * turn_right(p.normal));
   }
 
   // The side of a block whose outward normal now is nearest to `direction`, within 0.1 rad.

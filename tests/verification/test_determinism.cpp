@@ -138,7 +138,7 @@ Seen march(Scene& scene, int steps, const Workers& workers, State& state) {
   for (int i = 0; i < steps; ++i) {
     scene.model.gravity = shaken(state.time);
     StepReport report = kick(scene, settings, kStep, work, state);
-    drift(scene, settings, kStep, state.time + kStep, work, state, report);
+    drift(scene, state.time + kStep, work, state, report);
     seen.closed = report.closed;
     seen.sweeps = std::max(seen.sweeps, report.solve.iterations);
     seen.second_phase += report.solve.second_phase;

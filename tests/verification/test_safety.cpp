@@ -3,6 +3,7 @@
 
 #include "support/limit_models.h"
 #include "support/tolerance.h"
+#include "talus/model/joint_law.h"
 #include "talus/model/toml_source.h"
 #include "talus/talus.h"
 

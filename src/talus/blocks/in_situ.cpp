@@ -12,13 +12,6 @@ Mat2 in_situ_stress(const InSituInput& input, Vec2 gravity, double height) {
   return {-horizontal, 0, 0, -vertical};
 }
 
-Vec2 in_situ_closure(const JointProperty& joint, const Mat2& stress, Vec2 normal) {
-  const Vec2 traction = stress * normal;
-  const auto over = [](double force, double stiffness) { return stiffness > 0 ? force / stiffness : 0; };
-  return {over(dot(normal, traction), joint.normal_stiffness),
-          over(dot(turn_right(normal), traction), joint.shear_stiffness)};
-}
-
 std::vector<Mat2> initial_stresses(const Model& model, const BlockSet& blocks) {
   if (!model.in_situ.given) return {};
   std::vector<Mat2> stress(static_cast<size_t>(blocks.count));

@@ -9,11 +9,6 @@ namespace talus {
 /// @param gravity  of the model [m/s2]
 Mat2 in_situ_stress(const InSituInput& input, Vec2 gravity, double height);
 
-/// Closure and elastic slip [m] that make a joint carry this stress in the reference shape, zero for hard
-/// ones: stress over stiffness.
-/// @param normal  of the joint, unit
-Vec2 in_situ_closure(const JointProperty& joint, const Mat2& stress, Vec2 normal);
-
 /// T0 of all deformable blocks, each that of its centroid [count] [Pa]; empty when the model gives none.
 std::vector<Mat2> initial_stresses(const Model& model, const BlockSet& blocks);
 

@@ -20,10 +20,8 @@ constexpr double kAtLimit = 0.99999;
 // Faces to a chunk.
 constexpr size_t kGrain = 256;
 
-bool has_strength(const std::vector<JointProperty>& joints, int joint) {
-  if (joint < 0) return false;
-  const JointProperty& j = joints[static_cast<size_t>(joint)];
-  return j.bonded || j.can_break();
+bool holds(const std::vector<JointLaw>& laws, int joint) {
+  return joint >= 0 && laws[static_cast<size_t>(joint)].holds();
 }
 
 // Overlaps of antiparallel edges of two blocks in contact, as faces.
@@ -93,9 +91,9 @@ bool has_edge_joints(const Layout& layout, int block) {
   return !layout.blocks[static_cast<size_t>(block)].edge_joint.empty();
 }
 
-bool has_bonded_edge(const Model& model, const Layout& layout, int block) {
+bool has_bonded_edge(const std::vector<JointLaw>& laws, const Layout& layout, int block) {
   for (const int j : layout.blocks[static_cast<size_t>(block)].edge_joint)
-    if (j >= 0 && model.joints[static_cast<size_t>(j)].bonded) return true;
+    if (j >= 0 && laws[static_cast<size_t>(j)].bonded()) return true;
   return false;
 }
 
@@ -106,58 +104,51 @@ double transit_time(const Model& model, const BlockSet& blocks, int i) {
   return blocks.size[k] / std::sqrt(blocks.moduli[k].c11 / density);
 }
 
-void close_face(const Model& model, const BlockSet& blocks, BondFace& face) {
+void close_face(const Model& model, const BlockSet& blocks, const JointLaw& law, BondFace& face) {
   const Vec2 along = face.arm_b[1] - face.arm_b[0];
   for (int end = 0; end < 2; ++end) {
     const double height = blocks.centroid[static_cast<size_t>(face.block_b)].y + face.arm_b[end].y;
-    face.closure[end] = in_situ_closure(model.joints[static_cast<size_t>(face.joint)],
-                                        in_situ_stress(model.in_situ, model.gravity, height),
-                                        turn_right(along) / norm(along));
+    face.closure[end] =
+        law.closure(in_situ_stress(model.in_situ, model.gravity, height), turn_right(along) / norm(along));
   }
 }
 
 // What two ends without tensile strength show when they part, and a face without cohesion when it slips.
-bool stands_open(const JointProperty& joint, double opening, double noticed) {
-  return joint.tensile_strength == 0 && opening > noticed;
-}
-
-std::vector<double> friction_of(const std::vector<JointProperty>& joints) {
-  std::vector<double> friction;
-  for (const JointProperty& j : joints) friction.push_back(std::tan(j.friction_angle));
-  return friction;
+bool stands_open(const JointLaw& law, double opening, double noticed) {
+  return law.peak().tension == 0 && opening > noticed;
 }
 
 // Whether a face has come to its limit at both ends: pulled or open, or at the limit of its shear.
-// @param friction  of the joint, tan of its angle
-bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointProperty& joint, double friction,
-                 const FaceState& now, const FaceOffset& offset) {
+bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointLaw& law, const FaceState& now,
+                 const FaceOffset& offset) {
   const double half_area = 0.5 * face.length * blocks.thickness;
   const double noticed =
       noticeable(blocks, static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
+  const JointStrength bears = law.peak().over(half_area);
+  const double most_pull = law.peak().over(kAtLimit).over(half_area).tension;
   int pulled = 0;                               // ends at their tensile strength, or open
   double shear = 0, shear_limit = 0, slip = 0;  // of the other ends
   for (size_t end = 0; end < 2; ++end) {
     const double normal = now.mean_force[2 * end], along = now.mean_force[2 * end + 1];
-    if (stands_open(joint, offset.opening[end], noticed) ||
-        (normal < 0 && normal <= -kAtLimit * joint.tensile_strength * half_area)) {
+    if (stands_open(law, offset.opening[end], noticed) || (normal < 0 && normal <= -most_pull)) {
       ++pulled;
       continue;
     }
     shear += along;
-    shear_limit += std::max(0.0, joint.cohesion * half_area + friction * normal);
-    const double elastic = joint.shear_stiffness > 0 ? -along / (joint.shear_stiffness * half_area) : 0;
-    slip = std::max(slip, std::abs(offset.tangential[end] - elastic));
+    shear_limit += bears.limit(normal);
+    slip = std::max(slip, std::abs(offset.tangential[end] - law.give(1, -along, half_area)));
   }
   // shear as a resultant: how two rigid blocks share it between the ends of a face is not determined
   const bool sheared = shear != 0 && std::abs(shear) >= kAtLimit * shear_limit;
   // without cohesion the limit falls to nothing wherever nothing presses, which breaks nothing
-  return pulled == 2 || (sheared && (joint.cohesion > 0 || slip > noticed));
+  return pulled == 2 || (sheared && (bears.cohesion > 0 || slip > noticed));
 }
 
 }  // namespace
 
 BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks) {
   BondSet bonds;
+  const std::vector<JointLaw> laws = joint_laws(model.joints);
   std::vector<Box> boxes;
   for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
   // near enough for the largest pair; each pair is then judged by its own size
@@ -169,21 +160,21 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
         layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
     const bool by_edges = pair == Layout::kNoPair && has_edge_joints(layout, a) && has_edge_joints(layout, b);
     const int whole = pair == Layout::kNoPair ? layout.default_joint : pair;
-    if (!by_edges && !has_strength(model.joints, whole)) continue;
-    const bool may_be_tied = by_edges ? has_bonded_edge(model, layout, a) && has_bonded_edge(model, layout, b)
-                                      : model.joints[static_cast<size_t>(whole)].bonded;
+    if (!by_edges && !holds(laws, whole)) continue;
+    const bool may_be_tied = by_edges ? has_bonded_edge(laws, layout, a) && has_bonded_edge(laws, layout, b)
+                                      : laws[static_cast<size_t>(whole)].bonded();
     std::vector<BondFace> faces;
     add_faces(blocks, a, b, layout.touching, faces);
     bool all_bonded = !faces.empty();
     for (BondFace& face : faces) {
       face.joint = layout.joint_at(a, face.edge_a, b, face.edge_b);
-      face.unbreakable = face.joint >= 0 && model.joints[static_cast<size_t>(face.joint)].bonded;
-      if (model.in_situ.given && face.joint >= 0 && !face.unbreakable) close_face(model, blocks, face);
-      face.elastic_shear =
-          face.joint >= 0 && model.joints[static_cast<size_t>(face.joint)].shear_stiffness > 0;
+      const JointLaw law = face.joint < 0 ? JointLaw() : laws[static_cast<size_t>(face.joint)];
+      face.unbreakable = law.bonded();
+      if (model.in_situ.given && face.joint >= 0 && !face.unbreakable) close_face(model, blocks, law, face);
+      face.elastic_shear = law.is_soft(1);
       face.memory = std::max(transit_time(model, blocks, a), transit_time(model, blocks, b));
       all_bonded = all_bonded && face.unbreakable;
-      if (has_strength(model.joints, face.joint)) bonds.faces.push_back(face);
+      if (holds(laws, face.joint)) bonds.faces.push_back(face);
     }
     if (all_bonded) bonds.tied.emplace_back(a, b);
     if (faces.empty() && may_be_tied) without_face.emplace_back(a, b);
@@ -219,8 +210,8 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
   return false;
 }
 
-void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                   const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
+                   const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                    const Workers& workers, RowSet& rows, std::vector<int>& owner) {
   owner.clear();
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
@@ -229,8 +220,8 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     owner.push_back(static_cast<int>(2 * f));
     owner.push_back(static_cast<int>(2 * f) + 1);
   }
+  rows.begin(RowFamily::kBonds);
   const size_t first = rows.add_more(owner.size());
-  const std::vector<double> friction = friction_of(joints);
 
   const auto add = [&](size_t f, size_t at) {
     const BondFace& face = bonds.faces[f];
@@ -243,20 +234,18 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       p.arm_a = acting_arm(blocks, state, a, face.arm_a[end]);
       p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
       p.normal = apart.normal;
-      p.row[0].bias = apart.opening[end] / timing.dt;
-      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[end]) / timing.dt;
+      p.row[0].bias = apart.opening[end] / clock.dt;
+      p.row[1].bias = (apart.tangential[end] - state.face[f].slip[end]) / clock.dt;
       if (!face.unbreakable) {
-        const JointProperty& joint = joints[static_cast<size_t>(face.joint)];
+        const JointLaw& law = laws[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
-        p.lower = -joint.tensile_strength * half_area * timing.dt_kick;
-        if (joint.normal_stiffness > 0 || joint.shear_stiffness > 0) {
+        bound(law.peak().over(half_area).over(clock.dt_kick), p);
+        if (stands_open(law, apart.opening[end], noticeable(blocks, a, b))) p.cohesion = 0;
+        if (law.is_soft()) {
           u[end] = relative_velocity(p, before);
-          add_compliance(joint, half_area, true, timing, u[end], p);
+          add_compliance(law, half_area, true, clock, u[end], p);
           p.partner = static_cast<int>(end == 0 ? at + 1 : at);
         }
-        p.friction = friction[static_cast<size_t>(face.joint)];
-        const bool open = stands_open(joint, apart.opening[end], noticeable(blocks, a, b));
-        p.cohesion = open ? 0 : joint.cohesion * half_area * timing.dt_kick;
       }
       // the two tangential rows of a face between rigid blocks say the same: from equal guesses they stay
       // equal. Where a block deforms, unequal ones belong to a balance that must not be disturbed
@@ -265,7 +254,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       const double shear =
           rigid ? 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]) : force[1];
       rows.points[at + end] = p;
-      rows.impulse[at + end] = {force[0] * timing.dt_kick, shear * timing.dt_kick};
+      rows.impulse[at + end] = {force[0] * clock.dt_kick, shear * clock.dt_kick};
     }
     guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});
   };
@@ -275,29 +264,31 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
 }
 
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const RowTiming& timing, const Workers& workers,
+                    const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
                     State& state) {
-  const auto remember = [&](size_t r) {
+  const size_t first = rows.range(RowFamily::kBonds).begin;
+  const auto remember = [&](size_t i) {
+    const size_t r = first + i;
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
-    const auto point = static_cast<size_t>(owner[r]);
-    state.bond_force[point] = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+    const auto point = static_cast<size_t>(owner[i]);
+    state.bond_force[point] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
     if (p.row[1].compliance == 0 || !slides(p, impulse)) return;
     // what is off after the step, but for the elastic slip under its force
     state.face[point / 2].slip[point % 2] =
         face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
-        timing.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, timing);
+        clock.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, clock);
   };
   workers.for_chunks(owner.size(), 2 * kGrain, [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) remember(r);
+    for (size_t i = begin; i < end; ++i) remember(i);
   });
 }
 
 namespace {
 
 // Follows the mean forces of a face over a step of length dt; whether it has come to its limit.
-bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointProperty& joint, double friction,
-                 double dt, size_t f, State& state) {
+bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointLaw& law, double dt, size_t f,
+                 State& state) {
   const BondFace& face = bonds.faces[f];
   FaceState& now = state.face[f];
   const double share = dt / (face.memory + dt);
@@ -307,7 +298,7 @@ bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointProper
       mean += share * (state.bond_force[2 * f + end][k] - mean);
     }
   const FaceOffset offset = face_offset(blocks, state, face);
-  if (!is_at_limit(blocks, face, joint, friction, now, offset)) return false;
+  if (!is_at_limit(blocks, face, law, now, offset)) return false;
   now.broken = true;
   now.broken_step = state.step;
   now.offset = {offset.tangential[0] - now.slip[0], offset.tangential[1] - now.slip[1]};
@@ -317,14 +308,13 @@ bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointProper
 
 }  // namespace
 
-int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                 double dt, const Workers& workers, State& state) {
-  const std::vector<double> friction = friction_of(joints);
+int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws, double dt,
+                 const Workers& workers, State& state) {
   return workers.sum_chunks<int>(bonds.faces.size(), kGrain, [&](size_t begin, size_t end, int& broken) {
     for (size_t f = begin; f < end; ++f) {
       if (bonds.faces[f].unbreakable || state.face[f].broken) continue;
       const auto j = static_cast<size_t>(bonds.faces[f].joint);
-      broken += follow_face(blocks, bonds, joints[j], friction[j], dt, f, state);
+      broken += follow_face(blocks, bonds, laws[j], dt, f, state);
     }
   });
 }

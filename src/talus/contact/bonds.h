@@ -8,6 +8,7 @@
 #include "talus/base/parallel.h"
 #include "talus/blocks/state.h"
 #include "talus/contact/compliance.h"
+#include "talus/model/joint_law.h"
 #include "talus/rows/rows.h"
 
 namespace talus {
@@ -39,14 +40,14 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 /// Rows of all intact faces (two points each), with the first guess from the last step.
 /// @param before  rates half a step ago
 /// @param owner   becomes 2 * face + end for each row
-void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                   const State& state, const std::vector<BlockRate>& before, const RowTiming& timing,
+void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
+                   const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                    const Workers& workers, RowSet& rows, std::vector<int>& owner);
 
 /// After the solution: forces, and the slip of points that slide at the limit of an elastic shear.
 /// @param owner  of each row, as from add_bond_rows
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const RowTiming& timing, const Workers& workers,
+                    const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
                     State& state);
 
 /// How far the tied points of a face are apart, material point from material point, counted from the joint
@@ -60,7 +61,7 @@ FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFac
 
 /// Follows the mean forces of breakable faces over a step of length dt and breaks those at their limit, or
 /// open, at both ends. Returns the number broken.
-int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
-                 double dt, const Workers& workers, State& state);
+int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws, double dt,
+                 const Workers& workers, State& state);
 
 }  // namespace talus

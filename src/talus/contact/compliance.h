@@ -1,22 +1,21 @@
 #pragma once
-// Elastic joints as compliant rows: the alpha family of theory 4.6.
+// Joints as rows: strength as bounds, stiffness as compliance by the alpha family of theory 4.6.
 
 #include <algorithm>
 #include <array>
 
+#include "talus/model/joint_law.h"
 #include "talus/rows/rows.h"
+#include "talus/rows/step_clock.h"
 
 namespace talus {
 
-/// Over which time the impulses and velocities of a step act, and how compliant rows are damped.
-struct RowTiming {
-  double dt = 0;       // velocities [s]
-  double dt_kick = 0;  // impulses [s]
-  double alpha = 0.2;
-};
-
-/// Factor 4 / (1 + alpha)^2 on the position in a compliant row.
-inline double position_factor(double alpha) { return 4 / ((1 + alpha) * (1 + alpha)); }
+/// Bounds of a point that bears these impulses [N s].
+inline void bound(const JointStrength& impulses, PointRows& p) {
+  p.friction = impulses.friction;
+  p.cohesion = impulses.cohesion;
+  p.lower = -impulses.tension;
+}
 
 /// Turns rows of a point, whose biases are still position / dt, into compliant ones where a stiffness is
 /// given.
@@ -24,15 +23,14 @@ inline double position_factor(double alpha) { return 4 / ((1 + alpha) * (1 + alp
 /// @param in_face    the point ends a face whose other end is its partner: the two share the 2 x 2 compliance
 ///                   2/(k l t) [[2, -1], [-1, 2]] of a linear closure
 /// @param u_before   relative velocity of the point half a step ago [m/s]
-inline void add_compliance(const JointProperty& joint, double half_area, bool in_face,
-                           const RowTiming& timing, const std::array<double, 2>& u_before, PointRows& p) {
-  const double r = (1 - timing.alpha) / (1 + timing.alpha), k = position_factor(timing.alpha);
+inline void add_compliance(const JointLaw& law, double half_area, bool in_face, const StepClock& clock,
+                           const std::array<double, 2>& u_before, PointRows& p) {
+  const double k = clock.position_factor();
   for (int i = 0; i < 2; ++i) {
-    const double stiffness = i == 0 ? joint.normal_stiffness : joint.shear_stiffness;
-    if (stiffness <= 0) continue;
-    const double one = k / (stiffness * half_area * timing.dt * timing.dt_kick);
+    if (!law.is_soft(i)) continue;
+    const double one = k / (law.stiffness(i, half_area) * clock.dt * clock.dt_kick);
     p.row[i].compliance = in_face ? 2 * one : one;
-    p.row[i].bias = k * p.row[i].bias - r * r * u_before[static_cast<size_t>(i)];
+    p.row[i].bias = k * p.row[i].bias - clock.old_share() * u_before[static_cast<size_t>(i)];
   }
 }
 
@@ -67,11 +65,11 @@ inline void guess_compliant(const std::array<const PointRows*, 2>& p,
 }
 
 /// Elastic slip of point r of a compliant joint under the impulses of a step, along the tangent [m].
-inline double elastic_slip(const RowSet& rows, size_t r, const RowTiming& timing) {
+inline double elastic_slip(const RowSet& rows, size_t r, const StepClock& clock) {
   const PointRows& p = rows.points[r];
   double rate = p.row[1].compliance * rows.impulse[r][1];
   if (p.partner >= 0) rate += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
-  return -rate * (timing.dt / position_factor(timing.alpha));
+  return -rate * (clock.dt / clock.position_factor());
 }
 
 }  // namespace talus

@@ -84,21 +84,19 @@ struct Toe {
 
 class ContactRows {
  public:
-  ContactRows(const BlockSet& blocks, const Model& model, const State& state,
-              const std::vector<BlockRate>& before, const RowTiming& timing, size_t first, RowSet& rows,
-              std::vector<ContactPlace>& place)
+  ContactRows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
+              const State& state, const std::vector<BlockRate>& before, const StepClock& clock, size_t first,
+              RowSet& rows, std::vector<ContactPlace>& place)
       : blocks_(blocks),
         model_(model),
+        laws_(laws),
         state_(state),
         before_(before),
-        timing_(timing),
+        clock_(clock),
         first_(first),
         rows_(rows),
-        place_(place),
-        joints_(model.joints) {
-    joints_.emplace_back();  // the last: neither friction nor stiffness
+        place_(place) {
     if (blocks.count > 0) thinnest_ = *std::min_element(blocks.thinness.begin(), blocks.thinness.end());
-    for (const JointProperty& j : joints_) friction_.push_back(std::tan(j.friction_after()));
   }
 
   void add(const ContactPair& pair, std::vector<Point>& points) const {
@@ -117,8 +115,8 @@ class ContactRows {
   }
 
  private:
-  size_t joint_of(const Contact& c) const {
-    return c.joint < 0 ? joints_.size() - 1 : static_cast<size_t>(c.joint);
+  const JointLaw& law_of(const Contact& c) const {
+    return c.joint < 0 ? none_ : laws_[static_cast<size_t>(c.joint)];
   }
   double size_of(const ContactPair& pair) const {
     return std::min(blocks_.size[static_cast<size_t>(pair.a)], blocks_.size[static_cast<size_t>(pair.b)]);
@@ -134,8 +132,7 @@ class ContactRows {
   void look(const ContactPair& pair, size_t i, Point& p) const {
     const Contact& c = state_.contacts[i];
     const auto b = static_cast<size_t>(c.key.block_b);
-    const size_t joint = joint_of(c);
-    const JointProperty& property = joints_[joint];
+    const JointLaw& law = law_of(c);
     p.over = corner_over_edge(blocks_, state_, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
     const int next = c.key.edge + 1 == blocks_.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
     p.b0 = blocks_.corner(c.key.block_b, c.key.edge), p.edge = blocks_.corner(c.key.block_b, next) - p.b0;
@@ -144,10 +141,10 @@ class ContactRows {
     const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
     if (carries && model_.in_situ.given && c.joint >= 0) {
       const double height = blocks_.centroid[b].y + p.b0.y + std::clamp(p.over.along, 0.0, 1.0) * p.edge.y;
-      p.closure = in_situ_closure(property, in_situ_stress(model_.in_situ, model_.gravity, height),
-                                  turn_right(p.edge) / norm(p.edge));
+      p.closure = law.closure(in_situ_stress(model_.in_situ, model_.gravity, height),
+                              turn_right(p.edge) / norm(p.edge));
     }
-    p.gap = p.over.gap - dilation_rise(property, c.slip);
+    p.gap = p.over.gap - law.rise(c.slip);
   }
 
   void write(const ContactPair& pair, size_t at, size_t k, std::vector<Point>& points) const {
@@ -155,8 +152,7 @@ class ContactRows {
     Point& q = points[k];
     const Contact& c = state_.contacts[i];
     const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
-    const size_t joint = joint_of(c);
-    const JointProperty& property = joints_[joint];
+    const JointLaw& law = law_of(c);
     // only what was never disturbed sticks with the stress of the ground
     const double elastic = state_.step == 0 ? q.closure.y : 0;
     place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair),
@@ -167,30 +163,26 @@ class ContactRows {
     p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.block_a, c.key.vertex));
     p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
     p.normal = q.over.normal;
-    p.friction = friction_[joint];
+    p.friction = law.residual().friction;
     p.lower = 0, p.cohesion = 0;
-    const bool soft = property.normal_stiffness > 0, springs = soft || property.shear_stiffness > 0;
+    const bool soft = law.is_soft(0), springs = law.is_soft();
     const double size = size_of(pair), slop = model_.contact.slop * size;
-    p.row[0].bias =
-        soft ? (q.gap + q.closure.x) / timing_.dt : hard_bias(q.gap + c.allowed, slop, timing_.dt);
+    p.row[0].bias = soft ? (q.gap + q.closure.x) / clock_.dt : hard_bias(q.gap + c.allowed, slop, clock_.dt);
     // what a broken face keeps, end by end, while it is in touch
-    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b)) {
-      const double impulse = c.length * blocks_.thickness * timing_.dt_kick;
-      p.lower = -property.residual_tensile_strength * impulse;
-      p.cohesion = property.residual_cohesion * impulse;
-    }
+    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b))
+      bound(law.residual().over(c.length * blocks_.thickness * clock_.dt_kick), p);
 
     Impulse guess{};
     if (c.memory == Contact::kNone) {
-      p.row[1].bias = elastic / timing_.dt;
+      p.row[1].bias = elastic / clock_.dt;
     } else {
-      guess = {c.force[0] * timing_.dt_kick, c.force[1] * timing_.dt_kick};
-      p.row[1].bias = stuck_bias(off_anchor(c, q.slip), joint, size);
+      guess = {c.force[0] * clock_.dt_kick, c.force[1] * clock_.dt_kick};
+      p.row[1].bias = stuck_bias(off_anchor(c, q.slip), law, size);
     }
-    if (property.restitution >= 0 || springs) {
+    if (law.restitution() >= 0 || springs) {
       q.u = relative_velocity(p, before_);
-      if (property.restitution >= 0 && q.gap + timing_.dt * q.u[0] <= 0 && q.u[0] < 0)
-        p.row[0].bias = std::min(p.row[0].bias, property.restitution * q.u[0]);
+      if (law.restitution() >= 0 && q.gap + clock_.dt * q.u[0] <= 0 && q.u[0] < 0)
+        p.row[0].bias = std::min(p.row[0].bias, law.restitution() * q.u[0]);
     }
     if (springs) {
       const int partner = partner_of(pair, at, k);
@@ -205,16 +197,15 @@ class ContactRows {
       } else if (c.length == 0) {
         length = kCornerLength * size;
       }
-      add_compliance(property, length * blocks_.thickness, partner >= 0, timing_, q.u, p);
+      add_compliance(law, length * blocks_.thickness, partner >= 0, clock_, q.u, p);
     }
     rows_.points[first_ + i] = p;
     rows_.impulse[first_ + i] = guess;
   }
 
   // Bias of the shear row of a place that is `off` from where it sticks [m/s].
-  double stuck_bias(double off, size_t joint, double size) const {
-    const bool elastic = joints_[joint].shear_stiffness > 0;
-    return (elastic ? off : beyond(off, model_.contact.slop * size)) / timing_.dt;
+  double stuck_bias(double off, const JointLaw& law, double size) const {
+    return (law.is_soft(1) ? off : beyond(off, model_.contact.slop * size)) / clock_.dt;
   }
 
   double closed_part(const ContactPair& pair, const Point& q) const {
@@ -248,10 +239,10 @@ class ContactRows {
                     PointRows& p) const {
     const double gap = q.gap + q.closure.x, away = other.gap + other.closure.x;
     const PointRows there = arms_of(other, far);
-    const double share = closed_share(gap, away, gap + timing_.dt * q.u[0],
-                                      away + timing_.dt * relative_velocity(there, before_)[0]);
+    const double share = closed_share(gap, away, gap + clock_.dt * q.u[0],
+                                      away + clock_.dt * relative_velocity(there, before_)[0]);
     if (share == 1) return 1;
-    const bool open = (gap >= 0 && away >= 0) ? gap + timing_.dt * q.u[0] >= 0 : gap >= 0;
+    const bool open = (gap >= 0 && away >= 0) ? gap + clock_.dt * q.u[0] >= 0 : gap >= 0;
     if (!open) return share;
     // this end goes to the end of the closed part
     const bool same = far.key.block_a == c.key.block_a;
@@ -259,11 +250,11 @@ class ContactRows {
     p.arm_a = far_a + share * (p.arm_a - far_a);
     p.arm_b = far_b + share * (p.arm_b - far_b);
     const double here = away + share * (gap - away);
-    p.row[0].bias = here / timing_.dt;
+    p.row[0].bias = here / clock_.dt;
     if (c.memory != Contact::kNone && far.memory != Contact::kNone) {
       // how far that place has slipped, not the corner that stands open
       const double corner = off_anchor(c, q.slip), closed = off_anchor(far, other.slip);
-      p.row[1].bias = stuck_bias(closed + share * (corner - closed), joint_of(c), size);
+      p.row[1].bias = stuck_bias(closed + share * (corner - closed), law_of(c), size);
     }
     q.u = relative_velocity(p, before_);
     return share;
@@ -282,10 +273,10 @@ class ContactRows {
 
   // A corner alone: the part of its two sides that has gone into the edge.
   double close_corner(Point& q, const Contact& c, double size, PointRows& p) const {
-    const double gap = q.gap + q.closure.x, then = gap + timing_.dt * q.u[0];
+    const double gap = q.gap + q.closure.x, then = gap + clock_.dt * q.u[0];
     const Toe toe = toe_of(q, c, -(gap < 0 ? gap : then));
     if (gap < 0 && toe.length > 0) {
-      p.row[0].bias = -toe.closure / timing_.dt;
+      p.row[0].bias = -toe.closure / clock_.dt;
       shift_arms(q, c, toe.shift, p);
       q.u = relative_velocity(p, before_);
     }
@@ -331,53 +322,55 @@ class ContactRows {
 
   const BlockSet& blocks_;
   const Model& model_;
+  const std::vector<JointLaw>& laws_;
   const State& state_;
   const std::vector<BlockRate>& before_;
-  const RowTiming& timing_;
+  const StepClock& clock_;
   const size_t first_;
   RowSet& rows_;
   std::vector<ContactPlace>& place_;
-  std::vector<JointProperty> joints_;
-  std::vector<double> friction_;
+  const JointLaw none_;  // of contacts without a joint
   double thinnest_ = 0;  // least thinness of a block [m]
 };
 
 }  // namespace
 
-void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
-                      const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
-                      RowSet& rows, std::vector<ContactPlace>& place) {
+void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
+                      const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
+                      const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
+  rows.begin(RowFamily::kContacts);
   const size_t first = rows.add_more(state.contacts.size());
   resize_sparingly(place, state.contacts.size());
-  const ContactRows contact_rows(blocks, model, state, before, timing, first, rows, place);
+  const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
   workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
     std::vector<Point> points;
     for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);
   });
 }
 
-void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
-                       const RowTiming& timing, const Workers& workers, State& state) {
+void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
+                       const Workers& workers, State& state) {
+  const size_t first = rows.range(RowFamily::kContacts).begin;
   workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const PointRows& p = rows.points[first + i];
       const Impulse& impulse = rows.impulse[first + i];
       Contact& c = state.contacts[i];
-      const double elastic = elastic_slip(rows, first + i, timing);
+      const double elastic = elastic_slip(rows, first + i, clock);
       const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
       const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0;
       c.touched = c.touched || held;
       if (held && slides(p, impulse)) {
         // the place where it would stick goes along with the slip that is not elastic
         const double gone =
-            off_anchor(c, place[i].slip) + timing.dt * relative_velocity(p, state.rate)[1] - elastic;
+            off_anchor(c, place[i].slip) + clock.dt * relative_velocity(p, state.rate)[1] - elastic;
         c.slip += std::abs(gone), c.slip_signed += gone;
       }
       if (slides(p, impulse))
         c.anchor = std::nan("");
       else if (!anchored)
         c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
-      c.force = {impulse[0] / timing.dt_kick, impulse[1] / timing.dt_kick};
+      c.force = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
       if (c.allowed > 0) {
         c.allowed = std::min(c.allowed, -place[i].gap);
         c.allowed -= std::min(kPushedOut * c.allowed, kMostPushedOut * place[i].size);

@@ -20,16 +20,16 @@ struct ContactPlace {
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has
 /// stiffness. First guess and anchor come from the memory of each contact.
+/// @param laws    of the model's joints
 /// @param before  rates half a step ago
 /// @param place   gets gap and slip of each contact [n_contacts]
-void add_contact_rows(const BlockSet& blocks, const Model& model, const State& state,
-                      const std::vector<BlockRate>& before, const RowTiming& timing, const Workers& workers,
-                      RowSet& rows, std::vector<ContactPlace>& place);
+void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
+                      const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
+                      const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place);
 
 /// Stores force, anchor and slip of each contact in the state.
 /// @pre  state.rate are the rates after the kick
-/// @param first  index of the first contact row in `rows`
-void remember_contacts(const RowSet& rows, size_t first, const std::vector<ContactPlace>& place,
-                       const RowTiming& timing, const Workers& workers, State& state);
+void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
+                       const Workers& workers, State& state);
 
 }  // namespace talus

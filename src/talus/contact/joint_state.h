@@ -1,9 +1,8 @@
 #pragma once
-// What has become of a joint at a point: how far it slipped, rose over its roughness and opened. Theory:
+// What has become of a joint at a point: whether it holds, slipped or opened. Theory:
 // docs/theory.md sections 3.5 and 4.19.
 
 #include <algorithm>
-#include <cmath>
 
 #include "talus/blocks/state.h"
 
@@ -12,12 +11,6 @@ namespace talus {
 /// Slip and opening of a joint below this share of the smaller block are none [m].
 inline double noticeable(const BlockSet& blocks, size_t a, size_t b) {
   return 1e-6 * std::min(blocks.size[a], blocks.size[b]);
-}
-
-/// Rise of a joint that has slipped by `slip`, both ways added up (4.8) [m].
-inline double dilation_rise(const JointProperty& joint, double slip) {
-  if (joint.dilation_angle == 0) return 0;
-  return std::tan(joint.dilation_angle) * std::min(slip, joint.dilation_slip);
 }
 
 /// kApart: near each other, but never in touch.

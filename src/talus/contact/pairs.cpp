@@ -51,18 +51,18 @@ double speed_of(const BlockSet& blocks, const std::vector<BlockRate>& rate, size
 }
 
 // Faces that rode up over their roughness are that far apart and in touch: the most that joints can rise [m].
-double highest_rise(const std::vector<JointProperty>& joints, const State& state) {
-  if (std::all_of(joints.begin(), joints.end(), [](const JointProperty& j) { return j.dilation_angle == 0; }))
-    return 0;
+double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
+  if (std::none_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })) return 0;
   double rise = 0;
   for (const Contact& c : state.contacts)
-    if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints[static_cast<size_t>(c.joint)], c.slip));
+    if (c.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(c.joint)].rise(c.slip));
   return rise;
 }
 
 // How far block i has to look ahead: with the same of the other block at least the margin of their pair [m].
 double reach_of(const BlockSet& blocks, const LookAhead& ahead, size_t i) {
-  return std::max(0.5 * kMarginShare * blocks.size[i], 4 * ahead.dt * speed_of(blocks, *ahead.before, i));
+  return std::max(0.5 * kMarginShare * blocks.size[i],
+                  4 * ahead.clock.dt * speed_of(blocks, ahead.before, i));
 }
 
 bool list_holds(const BlockSet& blocks, const State& state, const LookAhead& ahead, double rise,
@@ -300,20 +300,19 @@ struct Changed {
 class Updater {
  public:
   Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-          const std::vector<JointProperty>& joints, const LookAhead& ahead, State& state)
+          const std::vector<JointLaw>& joints, const LookAhead& ahead, State& state)
       : blocks_(blocks),
         bonds_(bonds),
         joints_of_(joints_of),
         joints_(joints),
         ahead_(ahead),
-        dilates_(std::any_of(joints.begin(), joints.end(),
-                             [](const JointProperty& j) { return j.dilation_angle != 0; })),
+        dilates_(std::any_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })),
         state_(state) {}
 
   SearchReport run(const Workers& workers) {
     turning_.resize(static_cast<size_t>(blocks_.count));
     workers.for_chunks(turning_.size(), 4096, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) turning_[i] = turning_speed(blocks_, *ahead_.before, i);
+      for (size_t i = begin; i < end; ++i) turning_[i] = turning_speed(blocks_, ahead_.before, i);
     });
     const size_t n = state_.pairs.size();
     changed_.resize((n + kGrain - 1) / kGrain);
@@ -335,11 +334,11 @@ class Updater {
     double rise = 0;
     for (int k = 0; dilates_ && k < pair.count; ++k) {
       const Contact& c = state_.contacts[static_cast<size_t>(pair.begin + k)];
-      if (c.joint >= 0) rise = std::max(rise, dilation_rise(joints_[static_cast<size_t>(c.joint)], c.slip));
+      if (c.joint >= 0) rise = std::max(rise, joints_[static_cast<size_t>(c.joint)].rise(c.slip));
     }
     const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
-    const std::vector<BlockRate>& rate = *ahead_.before;
-    return 2 * ahead_.dt * (norm(rate[a].a - rate[b].a) + turning_[a] + turning_[b]) + 2 * rise;
+    const std::vector<BlockRate>& rate = ahead_.before;
+    return 2 * ahead_.clock.dt * (norm(rate[a].a - rate[b].a) + turning_[a] + turning_[b]) + 2 * rise;
   }
 
   void look_at(size_t begin, size_t end) {
@@ -363,8 +362,8 @@ class Updater {
       SearchRange range;
       range.margin = pair.margin;
       range.depth = kDepthShare * std::min(blocks_.thinness[small], blocks_.thinness[large]);
-      range.look_ahead = ahead_.dt;
-      range.before = ahead_.before;
+      range.look_ahead = ahead_.clock.dt;
+      range.before = &ahead_.before;
       range.neighbours = &s.candidates.neighbours;
       range.known = {s.contacts.data() + pair.begin, static_cast<size_t>(pair.count)};
       const Found& sought = search.touch(blocks_, s, pair.a, pair.b, range);
@@ -472,7 +471,7 @@ class Updater {
   const BlockSet& blocks_;
   const BondSet& bonds_;
   const Layout& joints_of_;
-  const std::vector<JointProperty>& joints_;
+  const std::vector<JointLaw>& joints_;
   const LookAhead& ahead_;
   const bool dilates_;
   State& state_;
@@ -483,7 +482,7 @@ class Updater {
 
 }  // namespace
 
-bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state) {
   const double rise = highest_rise(joints, state);
   if (blocks.count == 0 || list_holds(blocks, state, ahead, rise, workers)) return false;
@@ -536,7 +535,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
 }
 
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             const std::vector<JointProperty>& joints, const LookAhead& ahead,
+                             const std::vector<JointLaw>& joints, const LookAhead& ahead,
                              const Workers& workers, State& state) {
   return Updater(blocks, bonds, joints_of, joints, ahead, state).run(workers);
 }

@@ -6,19 +6,20 @@
 #include "talus/base/parallel.h"
 #include "talus/contact/bonds.h"
 #include "talus/contact/find.h"
+#include "talus/model/joint_law.h"
 
 namespace talus {
 
 /// How far the blocks of a step look ahead.
 struct LookAhead {
-  double dt = 0;                                   // length of the step [s]
-  const std::vector<BlockRate>* before = nullptr;  // rates of the blocks half a step ago
+  const StepClock& clock;
+  const std::vector<BlockRate>& before;  // rates of the blocks half a step ago
 };
 
 /// Renews state.pairs when some block has moved half its skin since they were made, or looks further ahead
 /// than then: all pairs (a < b), at least one moving freely, that may come into touch and are not glued for
 /// good. Pairs and contacts known before stay. Returns whether it did.
-bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointProperty>& joints,
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state);
 
 struct SearchReport {
@@ -32,7 +33,7 @@ struct SearchReport {
 /// passes by place: to the same key, to the end of the same interface, to a corner that passed on to another
 /// edge of the same block.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             const std::vector<JointProperty>& joints, const LookAhead& ahead,
+                             const std::vector<JointLaw>& joints, const LookAhead& ahead,
                              const Workers& workers, State& state);
 
 /// All contact points of blocks not tied by bonds, pair by pair, from scratch.

@@ -26,6 +26,7 @@ struct Material {
   double poisson = std::numeric_limits<double>::quiet_NaN();  // [-]
 };
 
+/// As the file gives them; what they mean is in joint_law.h.
 struct JointProperty {
   std::string name;
   bool bonded = false;          // never opens or slides
@@ -39,15 +40,6 @@ struct JointProperty {
   double dilation_slip = std::numeric_limits<double>::infinity();             // [m] slip up to which it rises
   double residual_friction_angle = std::numeric_limits<double>::quiet_NaN();  // [rad], NaN = friction_angle
   double residual_cohesion = 0, residual_tensile_strength = 0;                // [Pa]
-
-  /// Friction angle once a face has slipped or opened [rad].
-  double friction_after() const {
-    return std::isnan(residual_friction_angle) ? friction_angle : residual_friction_angle;
-  }
-  /// Whether a face that touches at the start has anything to lose.
-  bool can_break() const {
-    return !bonded && (cohesion > 0 || tensile_strength > 0 || friction_after() < friction_angle);
-  }
 };
 
 enum class ContactLaw { kExact, kSmoothed };

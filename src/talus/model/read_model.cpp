@@ -9,6 +9,7 @@
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
+#include "talus/model/joint_law.h"
 #include "talus/model/read_action.h"
 #include "talus/model/read_bolt.h"
 #include "talus/model/read_cut.h"
@@ -204,10 +205,8 @@ class ModelReader : private SectionReader {
       j.residual_friction_angle = f.get("residual_friction_angle", j.residual_friction_angle);
       j.residual_cohesion = f.get("residual_cohesion", 0.0);
       j.residual_tensile_strength = f.get("residual_tensile_strength", 0.0);
-      if (f.given("restitution") && (j.normal_stiffness > 0 || j.can_break() || j.dilation_angle > 0))
-        findings_.error(f.where("restitution"), f.path_of("restitution"),
-                        "is only for hard joints without strength, weakening and dilation",
-                        "leave out the stiffness, the strengths and the dilation");
+      for (const JointDefect& d : JointLaw::defects(j))
+        findings_.error(f.where(d.key), f.path_of(d.key), d.text, d.hint);
       for (const char* key : {"friction_angle", "cohesion", "tensile_strength", "normal_stiffness",
                               "shear_stiffness", "restitution", "dilation_angle", "dilation_slip",
                               "residual_friction_angle", "residual_cohesion", "residual_tensile_strength"}) {
@@ -216,31 +215,9 @@ class ModelReader : private SectionReader {
                           "has no meaning for a bonded joint, which never breaks",
                           "leave it out, or make the joint kind = \"frictional\"");
       }
-      if (!j.bonded) check_residual(f, j);
       model_.joints.push_back(j);
       joint_where_.push_back(f.where());
     });
-  }
-
-  // What is left of a joint is no more than what it had, and its rise costs no less than friction takes.
-  void check_residual(const Fields& f, const JointProperty& j) {
-    for (const auto& [key, peak] :
-         {std::pair("residual_friction_angle", "friction_angle"), std::pair("residual_cohesion", "cohesion"),
-          std::pair("residual_tensile_strength", "tensile_strength")})
-      if (f.given(key) && f.get(key, 0.0) > f.get(peak, 0.0))
-        findings_.error(f.where(key), f.path_of(key), fmt::format("is larger than {}", peak),
-                        fmt::format("give at most {}, or leave it out", peak));
-    if (j.dilation_angle > j.friction_after())
-      findings_.error(
-          f.where("dilation_angle"), f.path_of("dilation_angle"),
-          fmt::format("is {}, larger than the {} of {}: slip would give energy",
-                      with_unit(j.dilation_angle, Dimension::kAngle),
-                      f.given("residual_friction_angle") ? "residual_friction_angle" : "friction_angle",
-                      with_unit(j.friction_after(), Dimension::kAngle)),
-          "give at most that");
-    if (f.given("dilation_slip") && j.dilation_angle == 0)
-      findings_.error(f.where("dilation_slip"), f.path_of("dilation_slip"),
-                      "has no meaning without dilation_angle", "give dilation_angle, or leave it out");
   }
 
   void read_histories() {

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "talus/model/joint_law.h"
 #include "talus/model/section_reader.h"
+#include "talus/model/units.h"
 
 namespace talus {
 
@@ -23,6 +27,7 @@ class StageReader : private SectionReader {
     });
     warn_left();
     for_list("change", [this](const Fields& f) { read_change(f); });
+    check_changed_joints();
   }
 
  private:
@@ -155,6 +160,7 @@ class StageReader : private SectionReader {
     value("density", c.density), value("young", c.young), value("poisson", c.poisson);
     check_change(f, c);
     model_.changes.push_back(c);
+    if (c.stage >= 0 && c.joint >= 0) joint_changes_.emplace_back(c, f);
   }
 
   static bool any_given(const Fields& f, std::initializer_list<const char*> keys) {
@@ -187,6 +193,44 @@ class StageReader : private SectionReader {
             fmt::format("joint \"{}\" has no strength at the start, so that none of its faces is intact",
                         joint.name),
             "give it cohesion or tensile_strength in [joint." + joint.name + "]");
+  }
+
+  // What a joint may not be at the start it may not become. It is judged when all changes of a stage are
+  // made.
+  void check_changed_joints() {
+    std::vector<JointProperty> joints = model_.joints;
+    for (int stage = 0; stage < static_cast<int>(model_.stages.size()); ++stage) {
+      const std::vector<JointProperty> before = joints;
+      for (const auto& [c, f] : joint_changes_) {
+        JointProperty& joint = joints[static_cast<size_t>(c.joint)];
+        if (c.stage == stage) joint = changed(joint, c);
+      }
+      for (size_t j = 0; j < joints.size(); ++j) {
+        std::set<std::string_view> known;
+        for (const JointDefect& d : JointLaw::defects(before[j])) known.insert(d.key);
+        for (const JointDefect& d : JointLaw::defects(joints[j]))
+          if (!known.count(d.key)) tell_defect(stage, static_cast<int>(j), joints[j].name, d);
+      }
+    }
+  }
+
+  // At the last change of the stage that gives the value at fault.
+  void tell_defect(int stage, int joint, const std::string& name, const JointDefect& d) {
+    for (auto it = joint_changes_.rbegin(); it != joint_changes_.rend(); ++it) {
+      const auto& [c, f] = *it;
+      if (c.stage != stage || c.joint != joint) continue;
+      for (const auto& [key, unit] :
+           {std::pair("friction_angle", Dimension::kAngle), std::pair("cohesion", Dimension::kStress),
+            std::pair("tensile_strength", Dimension::kStress)}) {
+        if (!f.given(key) || (*d.bound != 0 && std::string_view(d.bound) != key)) continue;
+        return error(f, key,
+                     fmt::format("is {}, with which the {} of joint \"{}\" {}",
+                                 with_unit(f.get(key, 0.0), unit), d.key, name, d.text),
+                     std::isnan(d.least) ? d.hint
+                                         : fmt::format("give at least {}, or a smaller {} in [joint.{}]",
+                                                       with_unit(d.least, unit), d.key, name));
+      }
+    }
   }
 
   // --- stress of the ground ---
@@ -232,6 +276,7 @@ class StageReader : private SectionReader {
   }
 
   Model& model_;
+  std::vector<std::pair<ChangeInput, Fields>> joint_changes_;
   double share_ = 1;      // of the tractions of the last excavation that is gone
   bool pending_ = false;  // whether some stand at the end of the stages read so far
 };

@@ -159,7 +159,11 @@ SectionSpec change_section() {
         .type = K::kChoice,
         .choices = {"fixed", "free"},
         .doc = "With `block`: `fixed`: they stay where they are; `free`: they move again."},
-       value("friction_angle", D::kAngle, {.min = 0, .max = 1.5707, .max_open = true}, "Of the joint."),
+       value("friction_angle", D::kAngle, {.min = 0, .max = 1.5707, .max_open = true},
+             "Of the joint. What a change leaves has to be a joint that `[joint.NAME]` could give: no less "
+             "than "
+             "`dilation_angle` and `residual_friction_angle`; strengths likewise no less than the residual "
+             "ones."),
        value("cohesion", D::kStress, kNonNegative,
              "Of the joint; more than 0 only where it had strength at the start."),
        value("tensile_strength", D::kStress, kNonNegative, "The same."),

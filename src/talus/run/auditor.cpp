@@ -6,14 +6,16 @@
 #include "talus/audit/check_frame.h"
 #include "talus/audit/read_results.h"
 #include "talus/blocks/in_situ.h"
+#include "talus/model/joint_law.h"
 #include "talus/run/joint_report.h"
 
 namespace talus {
 
 namespace {
 
+// From the properties, not by JointLaw: what judges the rows shares no law with them. fmax: NaN is none.
 audit::Law law_of(const JointProperty& joint) {
-  return {.friction = std::tan(std::max(joint.friction_angle, joint.friction_after())),
+  return {.friction = std::tan(std::fmax(joint.friction_angle, joint.residual_friction_angle)),
           .cohesion = std::max(joint.cohesion, joint.residual_cohesion),
           .tension = std::max(joint.tensile_strength, joint.residual_tensile_strength),
           .normal_stiffness = joint.normal_stiffness,
@@ -36,9 +38,8 @@ double closed_by_ground(const Scene& scene, const ContactPair& pair, const Conta
   const Vec2 from = scene.blocks.corner(c.key.block_b, c.key.edge),
              side = scene.blocks.corner(c.key.block_b, next) - from;
   const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, scene.blocks.centroid[b].y + from.y);
-  const Vec2 closure =
-      in_situ_closure(model.joints[static_cast<size_t>(c.joint)], stress, turn_right(side) / norm(side));
-  return std::abs(closure.x);
+  const JointLaw law(model.joints[static_cast<size_t>(c.joint)]);
+  return std::abs(law.closure(stress, turn_right(side) / norm(side)).x);
 }
 
 }  // namespace
@@ -133,15 +134,15 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
   audit::Frame frame;
   frame.time = i.state.time, frame.step = i.plan.dt;
   for (int k = 0; k < scene_.blocks.count; ++k) frame.blocks.push_back(shape(i, k));
-  const size_t bonds = i.work.first_contact;
-  for (size_t r = 0; r < bonds; ++r) {
+  const size_t bonds = i.work.rows.range(RowFamily::kBonds).end;
+  for (size_t r = 0; r < bonds; ++r) {  // the first family
     const PointRows& row = i.work.rows.points[r];
     const BondFace& face = scene_.bonds.faces[static_cast<size_t>(i.work.bond_owner[r]) / 2];
     audit::Point p;
     p.block_a = face.block_a, p.block_b = face.block_b, p.joint = face.joint;
     p.place = point_now(scene_, i.state, row);
-    p.normal_force = i.work.rows.impulse[r][0] / i.work.dt_kick;
-    p.shear_force = i.work.rows.impulse[r][1] / i.work.dt_kick;
+    p.normal_force = i.work.rows.impulse[r][0] / i.work.clock.dt_kick;
+    p.shear_force = i.work.rows.impulse[r][1] / i.work.clock.dt_kick;
     p.partner = static_cast<int>(r % 2 == 0 ? r + 1 : r - 1);
     frame.points.push_back(p);
   }
@@ -155,7 +156,7 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
       p.normal_force = c.force[0], p.shear_force = c.force[1];
       p.joint = c.joint < 0 ? audit::kNoJoint : c.joint;
       if (c.joint >= 0) {
-        const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];
+        const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];  // as law_of
         p.rise = std::tan(joint.dilation_angle) * std::min(c.slip, joint.dilation_slip);
       }
       p.in_situ = closed_by_ground(scene_, pair, c);

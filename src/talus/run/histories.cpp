@@ -148,7 +148,7 @@ void Histories::add_columns(const std::string& name, const std::vector<std::stri
 void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<double>& row) const {
   const RowSet& rows = instant.work.rows;
   double step[3] = {0, 0, 0};
-  for (size_t r = 0; r < instant.work.first_support; ++r) {
+  for (size_t r = 0; r < rows.joints().end; ++r) {
     const PointRows& p = rows.points[r];
     const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
     const bool forward = c.in_a[a] && c.in_b[b], backward = c.in_b[a] && c.in_a[b];
@@ -157,7 +157,7 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
     step[0] += f.x, step[1] += f.y, step[2] += rows.impulse[r][0];
   }
   // the impulse of a kick acts from half a step before to half a step after; the first one only after
-  const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.dt_kick;
+  const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.clock.dt_kick;
   const bool first = c.knots.empty();
   if (first) c.knots.push_back({t, {0, 0, 0}});
   for (const double s : step) row.push_back(s / dt_kick);

@@ -17,8 +17,8 @@ std::string set_of(const Scene& scene, int block, int edge) {
 }
 
 // An intact end of a face: what parts it is elastic, unless it stands open or slid at its limit.
-std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t row) {
-  const auto owner = static_cast<size_t>(i.work.bond_owner[row]);
+std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t index) {
+  const auto owner = static_cast<size_t>(i.work.bond_owner[index]);
   const BondFace& face = scene.bonds.faces[owner / 2];
   if (face.unbreakable) return std::nullopt;
   JointPoint out;
@@ -32,8 +32,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   return out;
 }
 
-JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
-  const size_t k = row - i.work.first_contact;
+JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   const Contact& c = i.state.contacts[k];
   JointPoint out;
   out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
@@ -42,7 +41,7 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t row) {
   if (out.set.empty()) out.set = set_of(scene, c.key.block_a, c.key.vertex);
   out.length = c.length;
   out.slip = c.slip, out.slip_signed = c.slip_signed;
-  if (c.joint >= 0) out.rise = dilation_rise(scene.model.joints[static_cast<size_t>(c.joint)], c.slip);
+  if (c.joint >= 0) out.rise = i.work.laws[static_cast<size_t>(c.joint)].rise(c.slip);
   out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
   out.state = joint_state(
       c.touched, c.force[0], out.slip, out.opening,
@@ -61,28 +60,30 @@ Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
 }
 
 std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size_t row) {
-  if (row >= i.work.first_support) return std::nullopt;
-  const bool is_face = row < i.work.first_contact;
-  std::optional<JointPoint> out = is_face ? face_point(scene, i, row) : contact_point(scene, i, row);
+  const auto [family, index] = i.work.rows.place(row);
+  if (!is_joint(family)) return std::nullopt;
+  std::optional<JointPoint> out =
+      family == RowFamily::kBonds ? face_point(scene, i, index) : contact_point(scene, i, index);
   if (!out) return out;
   const PointRows& p = i.work.rows.points[row];
   out->block_a = p.block_a, out->block_b = p.block_b;
   out->point = point_now(scene, i.state, p);
-  out->normal_force = i.work.rows.impulse[row][0] / i.work.dt_kick;
-  out->shear_force = i.work.rows.impulse[row][1] / i.work.dt_kick;
+  out->normal_force = i.work.rows.impulse[row][0] / i.work.clock.dt_kick;
+  out->shear_force = i.work.rows.impulse[row][1] / i.work.clock.dt_kick;
   return out;
 }
 
 std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
   std::vector<std::pair<size_t, size_t>> out;
-  for (size_t r = 0; r + 1 < i.work.first_contact; r += 2)
-    out.emplace_back(r, r + 1);  // the two ends of a face
+  const RowRange bonds = i.work.rows.range(RowFamily::kBonds);
+  const size_t first = i.work.rows.range(RowFamily::kContacts).begin;
+  for (size_t r = bonds.begin; r < bonds.end; r += 2) out.emplace_back(r, r + 1);  // the two ends of a face
   for (const ContactPair& pair : i.state.pairs) {
     for (int k = 0; k < pair.count; ++k) {
       const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
       if (partner > k)
-        out.emplace_back(i.work.first_contact + static_cast<size_t>(pair.begin + k),
-                         i.work.first_contact + static_cast<size_t>(pair.begin + partner));
+        out.emplace_back(first + static_cast<size_t>(pair.begin + k),
+                         first + static_cast<size_t>(pair.begin + partner));
     }
   }
   return out;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "talus/model/joint_law.h"
 #include "talus/output/text_table.h"
 
 namespace talus {
@@ -52,12 +53,13 @@ ordered_json joints(const Model& model) {
   for (const JointProperty& p : model.joints) {
     ordered_json j = {{"name", p.name}, {"bonded", p.bonded}};
     if (!p.bonded) {
-      j["friction_angle [deg]"] = p.friction_angle / kDegree;
-      j["friction_angle_after [deg]"] = p.friction_after() / kDegree;
-      j["cohesion [Pa]"] = p.cohesion;
-      j["cohesion_after [Pa]"] = p.residual_cohesion;
-      j["tensile_strength [Pa]"] = p.tensile_strength;
-      j["tensile_strength_after [Pa]"] = p.residual_tensile_strength;
+      const JointLaw law(p);
+      j["friction_angle [deg]"] = law.peak().friction_angle / kDegree;
+      j["friction_angle_after [deg]"] = law.residual().friction_angle / kDegree;
+      j["cohesion [Pa]"] = law.peak().cohesion;
+      j["cohesion_after [Pa]"] = law.residual().cohesion;
+      j["tensile_strength [Pa]"] = law.peak().tension;
+      j["tensile_strength_after [Pa]"] = law.residual().tension;
     }
     j["normal_stiffness [Pa/m]"] = p.normal_stiffness;  // 0: hard
     j["shear_stiffness [Pa/m]"] = p.shear_stiffness;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "talus/contact/pairs.h"
+#include "talus/model/joint_law.h"
 #include "talus/run/histories.h"
 #include "talus/run/resolution.h"
 #include "talus/step/change.h"
@@ -232,7 +233,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies
   const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {
-    return f.unbreakable || scene.model.joints[static_cast<size_t>(f.joint)].normal_stiffness == 0;
+    return f.unbreakable || !JointLaw(scene.model.joints[static_cast<size_t>(f.joint)]).is_soft(0);
   });
   const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
                                      2 * static_cast<size_t>(hard)) == SolverKind::kNewton;

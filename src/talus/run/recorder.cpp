@@ -29,6 +29,13 @@ bool is_due(double time, double dt, double interval, double& next) {
   return true;
 }
 
+// Number of a family in frames: ties are counted with the boundaries.
+int kind_of(RowFamily family) {
+  constexpr int kKind[] = {1, 0, 2, 3, 3, 4};
+  static_assert(std::size(kKind) == kRowFamilies);
+  return kKind[static_cast<size_t>(family)];
+}
+
 std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
   std::vector<ContactFrame> frames;
   const RowSet& rows = i.work.rows;
@@ -36,25 +43,19 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     const PointRows& p = rows.points[r];
     ContactFrame f;
     f.point = point_now(scene, i.state, p);
-    f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.dt_kick;
-    f.normal_force = rows.impulse[r][0] / i.work.dt_kick;
-    f.shear_force = rows.impulse[r][1] / i.work.dt_kick;
-    f.kind = r < i.work.first_contact    ? 1
-             : r < i.work.first_support  ? 0
-             : r < i.work.first_boundary ? 2
-             : r < i.work.first_bolt     ? 3
-                                         : 4;
+    f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.clock.dt_kick;
+    f.normal_force = rows.impulse[r][0] / i.work.clock.dt_kick;
+    f.shear_force = rows.impulse[r][1] / i.work.clock.dt_kick;
+    const auto [family, index] = rows.place(r);
+    f.kind = kind_of(family);
     f.block_a = p.block_a, f.block_b = p.block_b;
-    f.corner = static_cast<int>(r);
-    if (f.kind == 1) f.corner = static_cast<int>(i.work.bond_owner[r]);
-    if (f.kind == 0) {
-      const ContactKey& key = i.state.contacts[r - i.work.first_contact].key;
-      f.corner = key.vertex, f.edge = key.edge;
+    f.corner = static_cast<int>(index);
+    if (family == RowFamily::kBonds) f.corner = i.work.bond_owner[index];
+    if (family == RowFamily::kTies) f.corner += static_cast<int>(rows.range(RowFamily::kBoundaries).size());
+    if (family == RowFamily::kContacts) {
+      const ContactKey& key = i.state.contacts[index].key;
+      f.corner = key.vertex, f.edge = key.edge, f.gap = i.work.places[index].gap;
     }
-    if (f.kind == 2) f.corner -= static_cast<int>(i.work.first_support);
-    if (f.kind == 3) f.corner -= static_cast<int>(i.work.first_boundary);
-    if (f.kind == 4) f.corner -= static_cast<int>(i.work.first_bolt);
-    if (f.kind == 0) f.gap = i.work.places[r - i.work.first_contact].gap;
     if (const auto joint = joint_point(scene, i, r)) {
       f.slip = joint->slip, f.opening = joint->opening;
       f.state = static_cast<int>(joint->state);
@@ -333,7 +334,7 @@ void Recorder::write_joints(const Instant& i, int stage) {
   joint_summary_ = {};
   SlipList slipped;
   if (joints_.empty()) joints_ = joint_header();
-  for (size_t r = 0; r < i.work.first_support; ++r) {
+  for (size_t r = 0; r < i.work.rows.joints().end; ++r) {
     const auto point = joint_point(scene_, i, r);
     if (!point || point->state == JointState::kApart) continue;
     joint_summary_.add(*point);

@@ -154,8 +154,8 @@ class Runner {
     try {
       note(report);
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-      drift(scene_, settings_, plan.dt, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1),
-            work_, state_, report);
+      drift(scene_, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1), work_, state_,
+            report);
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
@@ -335,7 +335,7 @@ class Runner {
   // How deep a contact has gone, where, and what would keep it from it.
   std::string closed_text(const StepReport& r) const {
     const auto row = static_cast<size_t>(r.closed_row);
-    const Contact& c = state_.contacts[row - work_.first_contact];
+    const Contact& c = state_.contacts[work_.rows.place(row).index];
     const auto a = static_cast<size_t>(c.key.block_a);
     const Vec2 at =
         scene_.blocks.centroid[a] + offset_now(state_, a, scene_.blocks.corner(c.key.block_a, c.key.vertex));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/model/joint_law.h"
 
 namespace talus {
 
@@ -87,19 +88,6 @@ SafetyTrial run_trial(const PreparedRun& prepared, double factor, const Workers&
 }
 
 }  // namespace
-
-JointProperty reduced(const JointProperty& joint, double factor) {
-  JointProperty j = joint;
-  if (j.bonded) return j;
-  j.friction_angle = std::atan(std::tan(joint.friction_angle) / factor);
-  if (!std::isnan(joint.residual_friction_angle))
-    j.residual_friction_angle = std::atan(std::tan(joint.residual_friction_angle) / factor);
-  for (double* strength :
-       {&j.cohesion, &j.tensile_strength, &j.residual_cohesion, &j.residual_tensile_strength})
-    *strength /= factor;
-  j.dilation_angle = std::min(joint.dilation_angle, j.friction_after());
-  return j;
-}
 
 SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
                          const std::function<void(const SafetyTrial&)>& told) {

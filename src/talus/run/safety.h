@@ -32,10 +32,6 @@ struct SafetyResult {
   double factor() const { return 0.5 * (stands + fails); }
 };
 
-/// The joint with its strength divided by `factor`, residual strength too; dilation is not reduced, but
-/// lowered to the reduced residual friction angle where it would exceed it.
-JointProperty reduced(const JointProperty& joint, double factor);
-
 /// Seeks the factor between model.safety.lowest and .highest. Throws NumericalError naming the factor when a
 /// trial ends for another reason than failure of the model, InputError when the model has no leading static
 /// stage.

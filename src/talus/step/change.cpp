@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/model/joint_law.h"
+
 namespace talus {
 
 namespace {
@@ -15,9 +17,7 @@ void set_value(double& value, double to) {
 bool apply(const ChangeInput& change, Scene& scene) {
   if (change.joint >= 0) {
     JointProperty& joint = scene.model.joints[static_cast<size_t>(change.joint)];
-    set_value(joint.friction_angle, change.friction_angle);
-    set_value(joint.cohesion, change.cohesion);
-    set_value(joint.tensile_strength, change.tensile_strength);
+    joint = changed(joint, change);
     return false;
   }
   if (change.block.empty()) {
@@ -95,7 +95,7 @@ std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector
     const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
     if (blocks[a] == blocks[b]) continue;
     const bool on_a = blocks[b] != 0;
-    force[on_a ? a : b] += (1 / work.dt_kick) * impulse_on(p, rows.impulse[r], on_a ? 1 : -1);
+    force[on_a ? a : b] += (1 / work.clock.dt_kick) * impulse_on(p, rows.impulse[r], on_a ? 1 : -1);
   }
   return force;
 }

@@ -30,10 +30,10 @@ bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
 
 }  // namespace
 
-void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
-           State& state, StepReport& report) {
+void drift(const Scene& scene, double time_end, StepWork& work, State& state, StepReport& report) {
   const Timed timed(work.profile.seconds[Profile::kIntegrate]);
   const BlockSet& blocks = scene.blocks;
+  const double dt = work.clock.dt;
   std::atomic<size_t> bad{state.rate.size()};
   work.workers.for_chunks(state.rate.size(), kBlocks, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
@@ -53,13 +53,13 @@ void drift(const Scene& scene, const StepSettings& settings, double dt, double t
         fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
                     blocks.name[k], det(kIdentity + state.strain_part[k]), time_end, state.step));
   }
-  for (size_t i = 0; settings.histories_run && i < state.column_rate.size(); ++i)
+  for (size_t i = 0; work.clock.histories_run && i < state.column_rate.size(); ++i)
     state.column_displacement[i] += dt * state.column_rate[i];
   state.work += work.work.before;
   state.work += work.work.after;
-  report.broken_faces = update_bonds(blocks, scene.bonds, scene.model.joints, dt, work.workers, state);
+  report.broken_faces = update_bonds(blocks, scene.bonds, work.laws, dt, work.workers, state);
   state.time = time_end;
-  if (settings.histories_run) state.history_time += dt;
+  state.history_time = work.clock.history_end();
   state.dt_before = dt;
   ++state.step;
 }

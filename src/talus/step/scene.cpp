@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "talus/blocks/in_situ.h"
+#include "talus/model/joint_law.h"
 #include "talus/step/energy.h"
 
 namespace talus {
@@ -19,10 +20,11 @@ bool slides_hard(const Scene& scene) {
   if (layout.blocks.size() < 2 || std::none_of(scene.blocks.kind.begin(), scene.blocks.kind.end(),
                                                [](BlockKind k) { return k == BlockKind::kDeformable; }))
     return false;
+  const std::vector<JointLaw> laws = joint_laws(scene.model.joints);
   const auto hard = [&](int joint) {
     if (joint < 0) return false;
-    const JointProperty& j = scene.model.joints[static_cast<size_t>(joint)];
-    return !j.bonded && j.normal_stiffness == 0 && j.friction_after() > 0;
+    const JointLaw& law = laws[static_cast<size_t>(joint)];
+    return !law.bonded() && !law.is_soft(0) && law.residual().friction > 0;
   };
   if (hard(layout.default_joint)) return true;
   for (const auto& [pair, joint] : layout.pair_joint)

@@ -99,6 +99,23 @@ struct BlockSums {
   }
 };
 
+// Where the work of hard rows goes that are no contact's: those do two kinds.
+double WorkDone::*cause_of(RowFamily family) {
+  switch (family) {
+    case RowFamily::kSupports:
+      return &WorkDone::supports;
+    case RowFamily::kBoundaries:
+    case RowFamily::kTies:
+      return &WorkDone::boundary;
+    case RowFamily::kBolts:
+      return &WorkDone::bolts;
+    case RowFamily::kBonds:
+    case RowFamily::kContacts:
+      break;
+  }
+  return &WorkDone::bonds;
+}
+
 // What one solver made of a step.
 struct Attempt {
   std::vector<Impulse> impulse;
@@ -110,25 +127,27 @@ struct Attempt {
 class Kick {
  public:
   Kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state)
-      : scene_(scene), blocks_(scene.blocks), settings_(settings), dt_(dt), work_(work), state_(state) {}
+      : scene_(scene), blocks_(scene.blocks), settings_(settings), work_(work), state_(state) {
+    work_.clock = {dt, 0.5 * (state.dt_before + dt), scene.model.contact.alpha, state.history_time,
+                   settings.histories_run};
+  }
 
   StepReport run() {
-    work_.dt_kick = 0.5 * (state_.dt_before + dt_);
     work_.work = {};
+    work_.laws = joint_laws(scene_.model.joints);
     work_.rate_before = state_.rate;
-    damping_ = 0.5 * settings_.damping_mass * work_.dt_kick;
+    damping_ = 0.5 * settings_.damping_mass * clock_.dt_kick;
     {
       const Timed timed(work_.profile.seconds[Profile::kIntegrate]);
       predict();
     }
     {
       const Timed timed(work_.profile.seconds[Profile::kDetect]);
-      check_travel(blocks_, state_, dt_);
-      const std::vector<JointProperty>& joints = scene_.model.joints;
-      const LookAhead ahead{dt_, &work_.rate_before};
-      renew_pairs(blocks_, scene_.bonds, joints, ahead, work_.workers, state_);
+      check_travel(blocks_, state_, clock_.dt);
+      const LookAhead ahead{clock_, work_.rate_before};
+      renew_pairs(blocks_, scene_.bonds, work_.laws, ahead, work_.workers, state_);
       report_.searched =
-          update_contacts(blocks_, scene_.bonds, scene_.layout, joints, ahead, work_.workers, state_)
+          update_contacts(blocks_, scene_.bonds, scene_.layout, work_.laws, ahead, work_.workers, state_)
               .searched;
     }
     {
@@ -147,8 +166,6 @@ class Kick {
   }
 
  private:
-  RowTiming timing() const { return {dt_, work_.dt_kick, scene_.model.contact.alpha}; }
-  double history_end() const { return state_.history_time + (settings_.histories_run ? dt_ : 0); }
   double share() const { return 1 / (1 + damping_); }
   bool implicit(size_t i) const { return settings_.implicit && blocks_.kind[i] == BlockKind::kDeformable; }
 
@@ -167,7 +184,7 @@ class Kick {
       for (size_t i = begin; i < end; ++i) predict_block(i, renew);
     });
     work_.mobility_share = settings_.implicit ? 0 : share();
-    drive_blocks(blocks_, model, scene_.layout, state_, history_end(), dt_, state_.rate);
+    drive_blocks(blocks_, model, scene_.layout, state_, clock_, state_.rate);
     work_.rate_free = state_.rate;
   }
 
@@ -184,19 +201,17 @@ class Kick {
     work_.bolt_forces.assign(state_.bolts.empty() ? 0 : load_.size(), {});
     if (!state_.bolts.empty()) add_bolt_forces(blocks_, state_, work_.bolt_forces);
 
-    kick_free_field(time, acceleration);
-    work_.column_velocity = boundary_.column_velocity;
+    kick_free_field(acceleration);
   }
 
-  void kick_free_field(double time, const std::vector<Vec2>& acceleration) {
-    boundary_ = {!settings_.histories_run, dt_, work_.dt_kick, time, state_.column_rate};
-    if (boundary_.is_static) return;
-    kick_columns(scene_.boundaries.free_field, scene_.model.histories,
-                 {dt_, work_.dt_kick, time, settings_.damping_mass, scene_.model.inertia == Inertia::kLumped},
-                 acceleration, state_);
+  void kick_free_field(const std::vector<Vec2>& acceleration) {
+    work_.column_velocity = state_.column_rate;
+    if (!clock_.histories_run) return;
+    kick_columns(scene_.boundaries.free_field, scene_.model.histories, clock_, settings_.damping_mass,
+                 scene_.model.inertia == Inertia::kLumped, acceleration, state_);
     if (state_.dt_before == 0) return;  // at the start: the velocity of the start
     for (size_t i = 0; i < state_.column_rate.size(); ++i)
-      boundary_.column_velocity[i] = 0.5 * (boundary_.column_velocity[i] + state_.column_rate[i]);
+      work_.column_velocity[i] = 0.5 * (work_.column_velocity[i] + state_.column_rate[i]);
   }
 
   void predict_block(size_t k, bool renew) {
@@ -217,7 +232,7 @@ class Kick {
     else if (renew)
       work_.mobility[k] = mobility_of(blocks_, k, share());
     BlockRate& v = state_.rate[k];
-    BlockForce impulse = work_.dt_kick * force;
+    BlockForce impulse = clock_.dt_kick * force;
     if (settings_.damping_local > 0) impulse += local_damping_[k] = local_damping_impulse(k);
     if (explicitly_damped(k)) impulse += stiffness_damping(k, v, v);
     if (!implicit(k) && damping_ == 0) {
@@ -228,25 +243,21 @@ class Kick {
     impulse += (-2 * damping_) * momentum(blocks_, k, v);
     if (implicit(k))
       impulse += BlockForce{
-          {}, (-(1 - old_share()) * tangent_time2() - 2 * damping_time2()) * tangent_force(k, v.G)};
+          {}, (-(1 - clock_.old_share()) * tangent_time2() - 2 * damping_time2()) * tangent_force(k, v.G)};
     v = v + accelerate(work_.mobility[k], impulse);
   }
 
   // Block-implicit elasticity: the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family of 4.6.
-  double tangent_time2() const { return dt_ * work_.dt_kick / position_factor(scene_.model.contact.alpha); }
+  double tangent_time2() const { return clock_.dt * clock_.dt_kick / clock_.position_factor(); }
   // Stiffness-proportional damping (4.5): of the rates before the kick where elasticity is explicit, of their
   // mean where it is implicit.
-  double damping_time2() const { return 0.5 * settings_.damping_stiffness * work_.dt_kick; }
+  double damping_time2() const { return 0.5 * settings_.damping_stiffness * clock_.dt_kick; }
   bool explicitly_damped(size_t i) const {
     return settings_.damping_stiffness > 0 && !settings_.implicit &&
            blocks_.kind[i] == BlockKind::kDeformable;
   }
   BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const {
     return {{}, (-damping_time2()) * tangent_force(i, before.G + after.G)};
-  }
-  double old_share() const {
-    const double alpha = scene_.model.contact.alpha, r = (1 - alpha) / (1 + alpha);
-    return r * r;
   }
 
   // V K : G, the elastic tangent in the frame turned with the block.
@@ -268,25 +279,21 @@ class Kick {
     if (speed == 0) return {};
     const BlockForce unbalanced = forces_[i] + state_.contact_force[i];
     const double push = std::sqrt(std::max(0.0, work(unbalanced, accelerate(blocks_, i, unbalanced))));
-    return -std::min(settings_.damping_local * push * work_.dt_kick / speed, 1.0) * moving;
+    return -std::min(settings_.damping_local * push * clock_.dt_kick / speed, 1.0) * moving;
   }
 
   void gather_rows() {
     work_.rows.restart();
     const Model& model = scene_.model;
-    add_bond_rows(blocks_, scene_.bonds, model.joints, state_, work_.rate_before, timing(), work_.workers,
+    add_bond_rows(blocks_, scene_.bonds, work_.laws, state_, work_.rate_before, clock_, work_.workers,
                   work_.rows, work_.bond_owner);
-    work_.first_contact = work_.rows.size();
-    add_contact_rows(blocks_, model, state_, work_.rate_before, timing(), work_.workers, work_.rows,
+    add_contact_rows(blocks_, model, work_.laws, state_, work_.rate_before, clock_, work_.workers, work_.rows,
                      work_.places);
-    work_.first_support = work_.rows.size();
-    add_support_rows(blocks_, model, scene_.supported, state_, history_end(), dt_, work_.dt_kick, work_.rows);
-    work_.first_boundary = work_.rows.size();
-    add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, boundary_, work_.rows);
-    work_.first_tie = work_.rows.size();
-    add_tie_rows(blocks_, scene_.boundaries.ties, state_, dt_, work_.dt_kick, work_.rows);
-    work_.first_bolt = work_.rows.size();
-    add_bolt_rows(blocks_, state_, work_.rate_before, {dt_, work_.dt_kick, model.contact.alpha}, work_.rows);
+    add_support_rows(blocks_, model, scene_.supported, state_, clock_, work_.rows);
+    add_boundary_rows(blocks_, model, scene_.boundaries, state_, work_.rate_before, clock_,
+                      work_.column_velocity, work_.rows);
+    add_tie_rows(blocks_, scene_.boundaries.ties, state_, clock_, work_.rows);
+    add_bolt_rows(blocks_, state_, work_.rate_before, clock_, work_.rows);
     work_.rows.finish();
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
@@ -331,7 +338,8 @@ class Kick {
   // Points of faces that are tied without any give.
   size_t hard_ties() const {
     size_t count = 0;
-    for (size_t r = 0; r < work_.first_contact; ++r) count += work_.rows.points[r].row[0].compliance == 0;
+    const RowRange bonds = work_.rows.range(RowFamily::kBonds);
+    for (size_t r = bonds.begin; r < bonds.end; ++r) count += work_.rows.points[r].row[0].compliance == 0;
     return count;
   }
 
@@ -345,11 +353,11 @@ class Kick {
     report_.method = kind;
     if (kind == SolverKind::kNewton) {
       report_.solve =
-          solve_newton(work_.mobility, state_.rate, options, wanted / dt_, work_.rows, smoothing());
+          solve_newton(work_.mobility, state_.rate, options, wanted / clock_.dt, work_.rows, smoothing());
       apply_impulses(work_.mobility, work_.rows, state_.rate);
     } else {
-      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, {wanted, stop}, dt_, work_.workers,
-                                               work_.rows, state_.rate);
+      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, {wanted, stop}, clock_.dt,
+                                               work_.workers, work_.rows, state_.rate);
     }
     judge();
   }
@@ -357,7 +365,7 @@ class Kick {
   Smoothing smoothing() const {
     const ContactInput& c = scene_.model.contact;
     if (c.law == ContactLaw::kExact) return {};
-    return {true, c.smoothing_force * work_.dt_kick, c.smoothing_slip / dt_};
+    return {true, c.smoothing_force * clock_.dt_kick, c.smoothing_slip / clock_.dt};
   }
 
   // The error of the result, and in the same look at the rows the work they do.
@@ -390,14 +398,14 @@ class Kick {
   void tally_row(size_t r, RowSums& s) const {
     const PointRows& p = work_.rows.points[r];
     const Impulse& impulse = work_.rows.impulse[r];
-    const bool contact = r >= work_.first_contact && r < work_.first_support;
-    if (contact && p.row[0].compliance == 0)
-      s.drift = std::max(s.drift, -work_.places[r - work_.first_contact].gap);
-    if (contact && work_.places[r - work_.first_contact].closed > s.closed_share)
-      s.closed_share = work_.places[r - work_.first_contact].closed, s.closed_row = static_cast<int>(r);
+    const RowPlace place = work_.rows.place(r);
+    const bool contact = place.family == RowFamily::kContacts;
+    if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -work_.places[place.index].gap);
+    if (contact && work_.places[place.index].closed > s.closed_share)
+      s.closed_share = work_.places[place.index].closed, s.closed_row = static_cast<int>(r);
     const auto u1 = relative_velocity(p, state_.rate);
-    s.error +=
-        {dt_ * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / dt_), static_cast<int>(r)};
+    s.error += {clock_.dt * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / clock_.dt),
+                static_cast<int>(r)};
     if (impulse[0] == 0 && impulse[1] == 0) return;
     for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
       if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
@@ -407,19 +415,15 @@ class Kick {
       s.work.before.*cause += 0.5 * impulse[k] * u0[k];
       s.work.after.*cause += 0.5 * impulse[k] * u1[k];
     };
-    if (r < work_.first_support && p.row[0].compliance + p.row[1].compliance > 0) {
+    if (is_joint(place.family) && p.row[0].compliance + p.row[1].compliance > 0) {
       add(0, p.row[0].compliance > 0 ? &WorkDone::joints : &WorkDone::contact_closing);
       add(1, slides(p, impulse) ? &WorkDone::friction : &WorkDone::joints);
       ++s.closed;
-    } else if (r < work_.first_contact) {
-      add(0, &WorkDone::bonds), add(1, &WorkDone::bonds);
     } else if (contact) {
       add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
       ++s.closed;
     } else {
-      const auto cause = r < work_.first_boundary ? &WorkDone::supports
-                         : r < work_.first_bolt   ? &WorkDone::boundary
-                                                  : &WorkDone::bolts;
+      const auto cause = cause_of(place.family);
       add(0, cause), add(1, cause);
     }
   }
@@ -434,7 +438,7 @@ class Kick {
 
   // Share of a kick that belongs to the step after it: half, unless the step length changes; all of it at the
   // start.
-  double late_share() const { return 0.5 * dt_ / work_.dt_kick; }
+  double late_share() const { return 0.5 * clock_.dt / clock_.dt_kick; }
 
   void tally_blocks() {
     const BlockSums sums = work_.workers.sum_chunks<BlockSums>(
@@ -462,7 +466,7 @@ class Kick {
   void tally_block(size_t i, BlockSums& s) {
     const BlockRate &v0 = work_.rate_before[i], &v1 = state_.rate[i];
     if (!blocks_.moves_freely(static_cast<int>(i))) return;
-    const double late = late_share(), kick = work_.dt_kick;
+    const double late = late_share(), kick = clock_.dt_kick;
     const BlockForce viscous = (-settings_.damping_mass * kick) * momentum(blocks_, i, mean(v0, v1));
     tally(s.work.before.loads, s.work.after.loads, kick * load_[i], v0, v1, late);
     tally(s.work.before.damping, s.work.after.damping, viscous, v0, v1, late);
@@ -475,7 +479,7 @@ class Kick {
 
     BlockForce force = forces_[i];
     if (implicit(i)) {
-      const BlockForce more{{}, (-tangent_time2()) * tangent_force(i, v1.G - old_share() * v0.G)};
+      const BlockForce more{{}, (-tangent_time2()) * tangent_force(i, v1.G - clock_.old_share() * v0.G)};
       tally(s.work.before.implicit, s.work.after.implicit, more, v0, v1, late);
       force += (1 / kick) * more;
     }
@@ -510,28 +514,29 @@ class Kick {
   }
 
   void remember() {
-    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, timing(), work_.workers, state_);
-    remember_contacts(work_.rows, work_.first_contact, work_.places, timing(), work_.workers, state_);
-    const auto keep = [this](size_t row, const auto& points, double sign,
+    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, clock_, work_.workers, state_);
+    remember_contacts(work_.rows, work_.places, clock_, work_.workers, state_);
+    const auto keep = [this](RowFamily family, const auto& points, double sign,
                              std::vector<std::array<double, 2>>& force) {
+      size_t row = work_.rows.range(family).begin;
       for (size_t i = 0; i < force.size(); ++i) {
         force[i] = {0, 0};
         if (!points[i].active) continue;
         const Impulse& p = work_.rows.impulse[row++];
-        force[i] = {p[0] / work_.dt_kick, sign * p[1] / work_.dt_kick};
+        force[i] = {p[0] / clock_.dt_kick, sign * p[1] / clock_.dt_kick};
       }
     };
-    keep(work_.first_support, scene_.supported, -1, state_.support_force);
-    keep(work_.first_boundary, scene_.boundaries.points, 1, state_.boundary_force);
-    keep(work_.first_tie, scene_.boundaries.ties, 1, state_.tie_force);
-    remember_bolts(work_.rows, work_.first_bolt, work_.dt_kick, state_);
+    keep(RowFamily::kSupports, scene_.supported, -1, state_.support_force);
+    keep(RowFamily::kBoundaries, scene_.boundaries.points, 1, state_.boundary_force);
+    keep(RowFamily::kTies, scene_.boundaries.ties, 1, state_.tie_force);
+    remember_bolts(work_.rows, clock_, state_);
   }
 
   const Scene& scene_;
   const BlockSet& blocks_;
   const StepSettings& settings_;
-  const double dt_;
   StepWork& work_;
+  const StepClock& clock_ = work_.clock;
   State& state_;
   StepReport report_;
   RowSums rows_;
@@ -540,7 +545,6 @@ class Kick {
   std::vector<BlockForce>& local_damping_ = work_.local_damping;
   std::vector<ElasticState>& elastic_ = work_.elastic;
   std::vector<BlockForce> load_;  // by loads
-  BoundaryStep boundary_;
 };
 
 }  // namespace
@@ -558,30 +562,37 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {
   const PointRows& p = work.rows.points[row];
   const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
-  if (row < work.first_contact) return fmt::format("joint {} - {}", name(p.block_a), name(p.block_b));
-  if (row < work.first_support) {
-    const ContactKey& k = state.contacts[row - work.first_contact].key;
-    return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
-                       k.edge);
-  }
-  const auto boundary = [&](int index, int block) {
-    return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(index)].name,
-                       name(block));
+  const auto [family, index] = work.rows.place(row);
+  const auto boundary = [&](int which) {
+    return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(which)].name,
+                       name(p.block_a));
   };
-  if (row >= work.first_bolt) {
-    const auto [bolt, crossing] = crossing_of_row(state, row - work.first_bolt);
-    return fmt::format("bolt {} between {} and {}",
-                       scene.model.bolts[static_cast<size_t>(state.bolts[bolt].input)].name, name(p.block_a),
-                       name(p.block_b));
-  }
   const BoundarySet& b = scene.boundaries;
-  if (row >= work.first_tie)
-    return boundary(b.ties[nth_active(b.ties, row - work.first_tie)].boundary, p.block_a);
-  if (row >= work.first_boundary)
-    return boundary(b.points[nth_active(b.points, row - work.first_boundary)].boundary, p.block_a);
-  const SupportedPoint& s = scene.supported[nth_active(scene.supported, row - work.first_support)];
-  return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
-                     name(s.block));
+  switch (family) {
+    case RowFamily::kBonds:
+      break;
+    case RowFamily::kContacts: {
+      const ContactKey& k = state.contacts[index].key;
+      return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
+                         k.edge);
+    }
+    case RowFamily::kSupports: {
+      const SupportedPoint& s = scene.supported[nth_active(scene.supported, index)];
+      return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
+                         name(s.block));
+    }
+    case RowFamily::kBoundaries:
+      return boundary(b.points[nth_active(b.points, index)].boundary);
+    case RowFamily::kTies:
+      return boundary(b.ties[nth_active(b.ties, index)].boundary);
+    case RowFamily::kBolts: {
+      const auto [bolt, crossing] = crossing_of_row(state, index);
+      return fmt::format("bolt {} between {} and {}",
+                         scene.model.bolts[static_cast<size_t>(state.bolts[bolt].input)].name,
+                         name(p.block_a), name(p.block_b));
+    }
+  }
+  return fmt::format("joint {} - {}", name(p.block_a), name(p.block_b));
 }
 
 }  // namespace talus

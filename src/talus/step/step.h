@@ -67,15 +67,15 @@ struct StepWork {
   Workers workers;
   Profile profile;
   GaussSeidel gauss_seidel;
+  StepClock clock;                   // of this step
+  std::vector<JointLaw> laws;        // of the model's joints, in this stage
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts
-  RowSet rows;                       // bonds, contacts, supports, boundaries, ties, bolts, in this order
+  RowSet rows;                       // of all families
   std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
-  size_t first_contact = 0, first_support = 0, first_boundary = 0, first_tie = 0, first_bolt = 0;
   std::vector<BlockRate> rate_before;
   std::vector<Vec2> column_velocity;  // [n_column_nodes] of the free field at this instant [m/s]
-  double dt_kick = 0;                 // over which the impulses act
   KickWork work;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted
@@ -92,10 +92,9 @@ BlockRate rate_now(const StepWork& work, const State& state, size_t i);
 /// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state);
 
-/// Moves the blocks to `time_end` = state.time + dt with the rates of the kick; breaks faces.
+/// Moves the blocks with the rates of the kick, for as long as its clock says, to `time_end`; breaks faces.
 /// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
-void drift(const Scene& scene, const StepSettings& settings, double dt, double time_end, StepWork& work,
-           State& state, StepReport& report);
+void drift(const Scene& scene, double time_end, StepWork& work, State& state, StepReport& report);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row);

@@ -171,9 +171,8 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
 }
 
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
-                   const BoltTiming& timing, RowSet& rows) {
-  const double r = (1 - timing.alpha) / (1 + timing.alpha);
-  const double factor = 4 / ((1 + timing.alpha) * (1 + timing.alpha));
+                   const StepClock& clock, RowSet& rows) {
+  rows.begin(RowFamily::kBolts);
   for (const Bolt& bolt : state.bolts) {
     for (const BoltCrossing& c : bolt.crossings) {
       const auto j = static_cast<size_t>(c.segment);
@@ -189,34 +188,35 @@ void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector
       const auto u = relative_velocity(p, before);
       // force_on_a: along the row on the first block, as it is at this instant
       const auto soften = [&](size_t k, double stiffness, double force_on_a) {
-        p.row[k].compliance = factor / (stiffness * timing.dt * timing.dt_kick);
-        p.row[k].bias = -r * r * u[k] - p.row[k].compliance * force_on_a * timing.dt_kick;
+        p.row[k].compliance = clock.position_factor() / (stiffness * clock.dt * clock.dt_kick);
+        p.row[k].bias = -clock.old_share() * u[k] - p.row[k].compliance * force_on_a * clock.dt_kick;
       };
       if (s.ruptured) {
         p.row[0].compliance = p.row[1].compliance = 1;  // of rows that stay without force
       } else {
         soften(0, c.row_stiffness, -s.force);
-        p.lower = -c.most * timing.dt_kick;
-        p.upper = bolt.anchored ? 0 : c.most * timing.dt_kick;
+        p.lower = -c.most * clock.dt_kick;
+        p.upper = bolt.anchored ? 0 : c.most * clock.dt_kick;
         if (c.shear_stiffness > 0) {
           soften(1, c.shear_stiffness, c.shear_stiffness * (c.shear - c.shear_plastic));
-          p.cohesion = c.shear_yield * timing.dt_kick;
+          p.cohesion = c.shear_yield * clock.dt_kick;
         } else {
           p.row[1].compliance = 1;
         }
       }
-      Impulse guess{c.row[0] * timing.dt_kick, c.row[1] * timing.dt_kick};
+      Impulse guess{c.row[0] * clock.dt_kick, c.row[1] * clock.dt_kick};
       if (s.ruptured) guess = {0, 0};
       rows.add(p, guess);
     }
   }
 }
 
-void remember_bolts(const RowSet& rows, size_t first, double dt_kick, State& state) {
+void remember_bolts(const RowSet& rows, const StepClock& clock, State& state) {
+  size_t next = rows.range(RowFamily::kBolts).begin;
   for (Bolt& bolt : state.bolts)
     for (BoltCrossing& c : bolt.crossings) {
-      const Impulse& p = rows.impulse[first++];
-      c.row = {p[0] / dt_kick, p[1] / dt_kick};
+      const Impulse& p = rows.impulse[next++];
+      c.row = {p[0] / clock.dt_kick, p[1] / clock.dt_kick};
     }
 }
 

@@ -4,14 +4,9 @@
 
 #include "talus/blocks/state.h"
 #include "talus/rows/rows.h"
+#include "talus/rows/step_clock.h"
 
 namespace talus {
-
-/// What a row of a bolt needs to know of the step.
-struct BoltTiming {
-  double dt = 0, dt_kick = 0;  // [s]
-  double alpha = 0.2;
-};
 
 /// One bolt of the model, without force except for its pretension; a superposed one as a piece for each
 /// block.
@@ -36,10 +31,10 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
 /// Two rows for each crossing, along and across the bar, in the order of the bolts.
 /// @param before  rates half a step ago
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
-                   const BoltTiming& timing, RowSet& rows);
+                   const StepClock& clock, RowSet& rows);
 
-/// Takes over the impulses of the rows from `first` on.
-void remember_bolts(const RowSet& rows, size_t first, double dt_kick, State& state);
+/// Takes over the impulses of the rows.
+void remember_bolts(const RowSet& rows, const StepClock& clock, State& state);
 
 /// Bolt and crossing of row `index` of those rows.
 std::pair<size_t, size_t> crossing_of_row(const State& state, size_t index);

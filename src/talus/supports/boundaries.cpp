@@ -162,13 +162,13 @@ Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const Stat
 
 // Velocity of the medium behind the point as it would be without the blocks.
 Vec2 medium_velocity(const Model& model, const BoundarySet& set, const BoundaryPoint& p,
-                     const BoundaryStep& step) {
+                     const StepClock& clock, const std::vector<Vec2>& column_velocity) {
   if (p.column >= 0)
     return at_height(set.free_field, set.free_field.columns[static_cast<size_t>(p.column)], p.height,
-                     step.column_velocity);
+                     column_velocity);
   const BoundaryInput& b = model.boundaries[static_cast<size_t>(p.boundary)];
   const auto value = [&](int history) {
-    return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(step.history_time);
+    return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(clock.history_time);
   };
   // the bare half-space moves at twice the upgoing wave
   return (b.outcrop ? 1.0 : 2.0) * Vec2{value(b.history_x), value(b.history_y)};
@@ -198,7 +198,9 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
 }
 
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
-                       const std::vector<BlockRate>& before, const BoundaryStep& step, RowSet& rows) {
+                       const std::vector<BlockRate>& before, const StepClock& clock,
+                       const std::vector<Vec2>& column_velocity, RowSet& rows) {
+  rows.begin(RowFamily::kBoundaries);
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& point = set.points[i];
     if (!point.active) continue;
@@ -208,25 +210,25 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
     p.arm_a = acting_arm(blocks, state, block, point.arm);
     p.normal = point.normal;
     const Vec2 axis[2] = {point.normal, turn_right(point.normal)};
-    if (step.is_static) {
+    if (!clock.histories_run) {
       const StaticHold hold = model.boundaries[static_cast<size_t>(point.boundary)].hold;
       const Vec2 off = displacement_at(state, block, point.arm) - state.boundary_hold[i];
       for (size_t k = 0; k < 2; ++k) {
-        p.row[k].bias = dot(axis[k], off) / step.dt;
+        p.row[k].bias = dot(axis[k], off) / clock.dt;
       }
       if (hold == StaticHold::kFree) p.lower = p.upper = 0;
       if (hold != StaticHold::kFixed) p.cohesion = 0;
     } else {
       const auto u = relative_velocity(p, before);
-      const Vec2 target = medium_velocity(model, set, point, step),
+      const Vec2 target = medium_velocity(model, set, point, clock, column_velocity),
                  push = free_field_force(set, point, state);
       for (size_t k = 0; k < 2; ++k) {
         const double z = point.dashpot[k], force = state.boundary_static[i][k] + dot(axis[k], push);
-        p.row[k].compliance = 2 / (z * step.dt_kick);
+        p.row[k].compliance = 2 / (z * clock.dt_kick);
         p.row[k].bias = u[k] - 2 * dot(axis[k], target) - 2 * force / z;
       }
     }
-    rows.add(p, {state.boundary_force[i][0] * step.dt_kick, state.boundary_force[i][1] * step.dt_kick});
+    rows.add(p, {state.boundary_force[i][0] * clock.dt_kick, state.boundary_force[i][1] * clock.dt_kick});
   }
 }
 

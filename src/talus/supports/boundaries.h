@@ -40,19 +40,14 @@ BoundarySet build_boundaries(const Model& model, const Layout& layout, const Blo
 /// now and puts the free field to rest; a dynamic stage after it keeps the reactions as constant forces.
 void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State& state);
 
-/// What a boundary row needs to know of the step.
-struct BoundaryStep {
-  bool is_static = false;
-  double dt = 0, dt_kick = 0;         // [s]
-  double history_time = 0;            // [s]
-  std::vector<Vec2> column_velocity;  // [n_column_nodes] at this instant [m/s]
-};
-
-/// Rows of all points, in their order. Residual along the normal and the tangent, with z = rho c area:
+/// Rows of all points, in their order: static ones while the histories stand still. Residual along the normal
+/// and the tangent, with z = rho c area:
 ///   dynamic: u + u_before - 2 target - 2 F/z + 2 p/(z dt_kick), F the kept reaction and the free-field
 ///   stress; static: u + (displacement - place held)/dt.
-/// @param before  rates half a step ago
+/// @param before           rates half a step ago
+/// @param column_velocity  [n_column_nodes] of the free field at this instant [m/s]
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
-                       const std::vector<BlockRate>& before, const BoundaryStep& step, RowSet& rows);
+                       const std::vector<BlockRate>& before, const StepClock& clock,
+                       const std::vector<Vec2>& column_velocity, RowSet& rows);
 
 }  // namespace talus

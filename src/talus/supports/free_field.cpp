@@ -45,14 +45,18 @@ void solve_tridiagonal(const std::vector<double>& lower, std::vector<double>& di
 class ColumnKick {
  public:
   ColumnKick(const FreeField& field, const GroundColumn& column, const std::vector<History>& histories,
-             const ColumnTiming& timing)
-      : c_(column), histories_(histories), t_(timing), mass_(mass_of(field, column, timing.lumped)) {}
+             const StepClock& clock, double damping_mass, bool lumped)
+      : c_(column),
+        histories_(histories),
+        t_(clock),
+        damping_mass_(damping_mass),
+        mass_(mass_of(field, column, lumped)) {}
 
   // @param v      in: rates before; out: after
   // @param force  of the stresses and body forces [Pa]
   void run(int axis, std::vector<double>& v, const std::vector<double>& force) const {
     const size_t n = v.size();
-    const double b = 0.5 * t_.damping_mass * t_.dt_kick;
+    const double b = 0.5 * damping_mass_ * t_.dt_kick;
     std::vector<double> diagonal(n), right(n), lower(n - 1), upper(n - 1);
     for (size_t i = 0; i < n; ++i) {
       diagonal[i] = (1 + b) * mass_.diagonal[i];
@@ -83,15 +87,16 @@ class ColumnKick {
     } else if (base.motion[axis].kind != Motion::kFree) {
       const Motion& m = base.motion[axis];
       diagonal = 1, upper = 0;
-      right = (m.displacement_at(t_.history_time + t_.dt, histories_) -
-               m.displacement_at(t_.history_time, histories_)) /
-              t_.dt;
+      right =
+          (m.displacement_at(t_.history_end(), histories_) - m.displacement_at(t_.history_time, histories_)) /
+          t_.dt;
     }
   }
 
   const GroundColumn& c_;
   const std::vector<History>& histories_;
-  const ColumnTiming& t_;
+  const StepClock& t_;
+  const double damping_mass_;
   const ColumnMass mass_;
 };
 
@@ -121,8 +126,8 @@ ColumnStep stable_step(const FreeField& field, bool lumped) {
   return least;
 }
 
-void kick_columns(const FreeField& field, const std::vector<History>& histories, const ColumnTiming& timing,
-                  const std::vector<Vec2>& acceleration, State& state) {
+void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
+                  double damping_mass, bool lumped, const std::vector<Vec2>& acceleration, State& state) {
   for (const GroundColumn& c : field.columns) {
     const auto n = static_cast<size_t>(c.elements) + 1, first = static_cast<size_t>(c.first_node);
     std::vector<double> force[2] = {std::vector<double>(n), std::vector<double>(n)},
@@ -138,7 +143,7 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
     }
     for (size_t i = 0; i < n; ++i)
       v[0][i] = state.column_rate[first + i].x, v[1][i] = state.column_rate[first + i].y;
-    const ColumnKick kick(field, c, histories, timing);
+    const ColumnKick kick(field, c, histories, clock, damping_mass, lumped);
     for (int axis = 0; axis < 2; ++axis) kick.run(axis, v[axis], force[axis]);
     for (size_t i = 0; i < n; ++i) state.column_rate[first + i] = {v[0][i], v[1][i]};
   }

@@ -7,6 +7,7 @@
 
 #include "talus/blocks/state.h"
 #include "talus/cut/selection.h"
+#include "talus/rows/step_clock.h"
 #include "talus/supports/ground.h"
 
 namespace talus {
@@ -55,17 +56,11 @@ struct ColumnStep {
 };
 ColumnStep stable_step(const FreeField& field, bool lumped);
 
-/// How columns go through a kick.
-struct ColumnTiming {
-  double dt = 0, dt_kick = 0;  // [s]
-  double history_time = 0;     // [s]
-  double damping_mass = 0;     // [1/s]
-  bool lumped = false;
-};
-
-/// Rates of all nodes after the kick. @param acceleration  body force per mass on each block [m/s2]
-void kick_columns(const FreeField& field, const std::vector<History>& histories, const ColumnTiming& timing,
-                  const std::vector<Vec2>& acceleration, State& state);
+/// Rates of all nodes after the kick. @pre  the histories run
+/// @param damping_mass  [1/s]
+/// @param acceleration  body force per mass on each block [m/s2]
+void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
+                  double damping_mass, bool lumped, const std::vector<Vec2>& acceleration, State& state);
 
 /// Stress xx, yy, xy in an element [Pa]. @param column  that it belongs to
 std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "talus/cut/joint_set.h"
+#include "talus/model/joint_law.h"
 
 namespace talus {
 
@@ -13,7 +14,7 @@ class JointFinder {
   JointFinder(const Model& model, std::string& trouble) : model_(model), trouble_(trouble) {}
 
   void add_grid(const GridInput& g) {
-    if (g.pattern != GridPattern::kRectangles && is_soft(g.joint)) trouble_ = g.name;
+    if (g.pattern != GridPattern::kRectangles && law_of(g.joint).is_soft()) trouble_ = g.name;
     add_set(g.joint, {1, 0}, g.columns / (g.max.x - g.min.x));
     add_set(g.joint, {0, 1}, g.rows / (g.max.y - g.min.y));
   }
@@ -21,16 +22,16 @@ class JointFinder {
   // Edges of a mesh run in any direction: what their give adds up to is not known.
   void add_meshes() {
     for (const MeshInput& m : model_.meshes)
-      if (is_soft(m.joint)) trouble_ = m.name;
+      if (law_of(m.joint).is_soft()) trouble_ = m.name;
   }
 
   void add_region(int region) {
     const RegionInput& r = model_.regions[static_cast<size_t>(region)];
     const int own = r.joint >= 0 ? r.joint : model_.default_joint;
-    const auto soft = [&](int joint) { return is_soft(joint >= 0 ? joint : own); };
+    const auto soft = [&](int joint) { return law_of(joint >= 0 ? joint : own).is_soft(); };
     const auto here = [region](int of) { return of < 0 || of == region; };
     for (const TessellationInput& t : model_.tessellations)
-      if (here(t.region) && is_soft(t.joint)) trouble_ = t.name;
+      if (here(t.region) && law_of(t.joint).is_soft()) trouble_ = t.name;
     for (const TracesInput& t : model_.traces)
       if (soft(t.joint)) trouble_ = t.name;
     for (const MasonryInput& m : model_.masonry)
@@ -47,16 +48,13 @@ class JointFinder {
   std::vector<JointsOfRock> sets;
 
  private:
-  bool is_soft(int joint) const {
-    if (joint < 0) return false;
-    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
-    return j.normal_stiffness > 0 || j.shear_stiffness > 0;
+  JointLaw law_of(int joint) const {
+    return joint < 0 ? JointLaw() : JointLaw(model_.joints[static_cast<size_t>(joint)]);
   }
 
   void add_set(int joint, Vec2 normal, double frequency) {
-    if (!is_soft(joint)) return;
-    const JointProperty& j = model_.joints[static_cast<size_t>(joint)];
-    sets.push_back({normal, frequency, j.normal_stiffness, j.shear_stiffness});
+    const JointLaw law = law_of(joint);
+    if (law.is_soft()) sets.push_back({normal, frequency, law.stiffness(0), law.stiffness(1)});
   }
 
   const Model& model_;

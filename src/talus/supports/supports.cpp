@@ -18,7 +18,8 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
 }
 
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
-                      const State& state, double history_end, double dt, double dt_kick, RowSet& rows) {
+                      const State& state, const StepClock& clock, RowSet& rows) {
+  rows.begin(RowFamily::kSupports);
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].active) continue;
     const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
@@ -30,26 +31,26 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
     const Vec2 now = displacement_at(state, block, points[i].arm) - state.support_hold[i];
     const auto hold = [&](Row& row, const Motion& motion, double place, double sign) {
       if (motion.kind != Motion::kFree)
-        row.bias = sign * (place - motion.displacement_at(history_end, model.histories)) / dt;
+        row.bias = sign * (place - motion.displacement_at(clock.history_end(), model.histories)) / clock.dt;
     };
     hold(p.row[0], support.x, now.x, 1);
     hold(p.row[1], support.y, now.y, -1);
     if (support.x.kind == Motion::kFree) p.lower = p.upper = 0;
     if (support.y.kind == Motion::kFree) p.cohesion = 0;
-    rows.add(p, {state.support_force[i][0] * dt_kick, -state.support_force[i][1] * dt_kick});
+    rows.add(p, {state.support_force[i][0] * clock.dt_kick, -state.support_force[i][1] * clock.dt_kick});
   }
 }
 
 void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
-                  double history_end, double dt, std::vector<BlockRate>& rate) {
+                  const StepClock& clock, std::vector<BlockRate>& rate) {
   for (size_t i = 0; i < rate.size(); ++i) {
     if (blocks.kind[i] == BlockKind::kFixed) rate[i] = {};
     if (blocks.kind[i] != BlockKind::kDriven) continue;
     const BlockShape& shape = layout.blocks[i];
-    const Vec2 target{shape.motion_x.displacement_at(history_end, model.histories),
-                      shape.motion_y.displacement_at(history_end, model.histories)};
-    const double angle = shape.motion_rotation.displacement_at(history_end, model.histories);
-    rate[i] = {(target - state.displacement[i]) / dt, spin_matrix((angle - state.angle[i]) / dt)};
+    const Vec2 target{shape.motion_x.displacement_at(clock.history_end(), model.histories),
+                      shape.motion_y.displacement_at(clock.history_end(), model.histories)};
+    const double angle = shape.motion_rotation.displacement_at(clock.history_end(), model.histories);
+    rate[i] = {(target - state.displacement[i]) / clock.dt, spin_matrix((angle - state.angle[i]) / clock.dt)};
   }
 }
 

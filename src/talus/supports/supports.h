@@ -5,6 +5,7 @@
 
 #include "talus/blocks/state.h"
 #include "talus/rows/rows.h"
+#include "talus/rows/step_clock.h"
 
 namespace talus {
 
@@ -27,13 +28,12 @@ size_t nth_active(const Points& points, size_t n) {
 std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
                                              const BlockSet& blocks);
 
-/// Rows of the active points for a step of length dt: along x, and along -y (the tangent of x).
-/// @param history_end  clock of the histories at the end of the step [s]
+/// Rows of the active points for a step: along x, and along -y (the tangent of x).
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
-                      const State& state, double history_end, double dt, double dt_kick, RowSet& rows);
+                      const State& state, const StepClock& clock, RowSet& rows);
 
 /// Rates that bring driven blocks to their prescribed place at the end of the step; fixed blocks get none.
 void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
-                  double history_end, double dt, std::vector<BlockRate>& rate);
+                  const StepClock& clock, std::vector<BlockRate>& rate);
 
 }  // namespace talus

@@ -111,8 +111,9 @@ std::vector<TiePoint> tie_sides(const Model& model, const Layout& layout, const 
   return SideTier(model, layout, blocks, boundary, findings).tie(side, opposite);
 }
 
-void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state, double dt,
-                  double dt_kick, RowSet& rows) {
+void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state,
+                  const StepClock& clock, RowSet& rows) {
+  rows.begin(RowFamily::kTies);
   for (size_t i = 0; i < ties.size(); ++i) {
     const TiePoint& t = ties[i];
     if (!t.active) continue;
@@ -122,8 +123,8 @@ void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, con
     p.arm_a = acting_arm(blocks, state, a, t.arm_a), p.arm_b = acting_arm(blocks, state, b, t.arm_b);
     p.normal = {1, 0};
     const Vec2 apart = displacement_at(state, a, t.arm_a) - displacement_at(state, b, t.arm_b);
-    p.row[0].bias = apart.x / dt, p.row[1].bias = -apart.y / dt;
-    rows.add(p, {state.tie_force[i][0] * dt_kick, state.tie_force[i][1] * dt_kick});
+    p.row[0].bias = apart.x / clock.dt, p.row[1].bias = -apart.y / clock.dt;
+    rows.add(p, {state.tie_force[i][0] * clock.dt_kick, state.tie_force[i][1] * clock.dt_kick});
   }
 }
 

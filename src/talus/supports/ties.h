@@ -8,6 +8,7 @@
 #include "talus/blocks/state.h"
 #include "talus/cut/selection.h"
 #include "talus/rows/rows.h"
+#include "talus/rows/step_clock.h"
 
 namespace talus {
 
@@ -26,7 +27,7 @@ std::vector<TiePoint> tie_sides(const Model& model, const Layout& layout, const 
                                 const std::vector<SelectedEdge>& opposite, Findings& findings);
 
 /// Two hard rows for each tie, along x and along -y.
-void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state, double dt,
-                  double dt_kick, RowSet& rows);
+void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state,
+                  const StepClock& clock, RowSet& rows);
 
 }  // namespace talus

@@ -67,7 +67,7 @@ Scene grid_scene(int joint, GridPattern pattern = GridPattern::kRectangles) {
 Scene pair_scene(int joint) { return scene_of({box(0, 0, 1, 1), box(0, 1, 1, 2)}, joint); }
 
 int update(const Scene& s, double dt, State& state) {
-  return update_bonds(s.blocks, s.bonds, s.model.joints, dt, Workers(1), state);
+  return update_bonds(s.blocks, s.bonds, joint_laws(s.model.joints), dt, Workers(1), state);
 }
 
 constexpr double kEnd = 0.5 * 1 * kThickness;  // area of half the face of pair_scene [m2]
@@ -256,8 +256,8 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     const double dt = 1e-4, dt_kick = 5e-5;
     RowSet rows;
     std::vector<int> owner;
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {dt, dt_kick, 0.2}, Workers(1), rows,
-                  owner);
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {dt, dt_kick, 0.2},
+                  Workers(1), rows, owner);
     CHECK(owner == std::vector<int>{0, 1});
     REQUIRE(rows.points.size() == 2);
     for (const PointRows& p : rows.points) {
@@ -278,8 +278,8 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     CHECK(rows.impulse[1][1] == relative(7 * dt_kick, 1e-14));
     state.face[0].broken = true;
     rows = {};
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {dt, dt_kick, 0.2}, Workers(1), rows,
-                  owner);
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {dt, dt_kick, 0.2},
+                  Workers(1), rows, owner);
     CHECK(rows.points.empty());
   }
 }
@@ -298,8 +298,8 @@ TEST_CASE(
     state.rate[1].G = {1e-3, 2e-3, -1e-3, 5e-4};  // the two ends move differently
     RowSet rows;
     std::vector<int> owner;
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, {1e-4, 9e-5, 0.2}, Workers(1), rows,
-                  owner);
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {1e-4, 9e-5, 0.2},
+                  Workers(1), rows, owner);
     REQUIRE(rows.points.size() == 2);
     for (size_t r = 0; r < 2; ++r) {
       const PointRows& p = rows.points[r];
@@ -327,13 +327,14 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   // the upper block (b) pushed to the right, against the tangent
   const double off = 3e-3, dt = 1e-4, dt_kick = 1e-4;
   state.displacement[1] = {off, -1e-4};
-  const RowTiming timing{dt, dt_kick, 0.2};
+  const StepClock timing{dt, dt_kick, 0.2};
   RowSet rows;
   std::vector<int> owner;
   const auto make_rows = [&] {
     rows = {};
     owner.clear();
-    add_bond_rows(s.blocks, s.bonds, s.model.joints, state, state.rate, timing, Workers(1), rows, owner);
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, timing, Workers(1), rows,
+                  owner);
   };
   make_rows();
   REQUIRE(rows.points.size() == 2);

@@ -23,9 +23,11 @@ Scene crossing() {
 }
 
 void update(const Scene& scene, State& state) {
-  const LookAhead ahead{1e-3, &state.rate};
-  renew_pairs(scene.blocks, scene.bonds, scene.model.joints, ahead, Workers(), state);
-  update_contacts(scene.blocks, scene.bonds, scene.layout, scene.model.joints, ahead, Workers(), state);
+  const StepClock clock{1e-3};
+  const LookAhead ahead{clock, state.rate};
+  renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), ahead, Workers(), state);
+  update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead, Workers(),
+                  state);
 }
 
 std::vector<Contact> contacts_of(const State& state, int a, int b) {

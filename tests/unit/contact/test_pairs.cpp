@@ -62,9 +62,11 @@ Scene small_pile(unsigned seed) {
 }
 
 int update(const Scene& scene, State& state) {
-  const LookAhead ahead{1e-3, &state.rate};
-  renew_pairs(scene.blocks, scene.bonds, scene.model.joints, ahead, Workers(), state);
-  return update_contacts(scene.blocks, scene.bonds, scene.layout, scene.model.joints, ahead, Workers(), state)
+  const StepClock clock{1e-3};
+  const LookAhead ahead{clock, state.rate};
+  renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), ahead, Workers(), state);
+  return update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead,
+                         Workers(), state)
       .searched;
 }
 
@@ -212,11 +214,11 @@ TEST_CASE("a run that follows its contacts has the forces of one that seeks them
   for (int step = 0; step < 60; ++step) {
     StepReport report = kick(scene, settings, kStep, work_kept, kept);
     searched_kept += report.searched;
-    drift(scene, settings, kStep, kept.time + kStep, work_kept, kept, report);
+    drift(scene, kept.time + kStep, work_kept, kept, report);
     for (ContactPair& p : anew.pairs) p.reuse = -1;
     report = kick(scene, settings, kStep, work_anew, anew);
     searched_anew += report.searched;
-    drift(scene, settings, kStep, anew.time + kStep, work_anew, anew, report);
+    drift(scene, anew.time + kStep, work_anew, anew, report);
     REQUIRE(keys_of(kept.contacts) == keys_of(anew.contacts));
     // the same arithmetic on the same points
     for (size_t i = 0; i < kept.contacts.size(); ++i)
@@ -232,8 +234,8 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   CHECK(all == static_cast<int>(state.pairs.size()));
   const auto first = keys_of(state.contacts);
   CHECK(update(scene, state) == 0);
-  CHECK_FALSE(
-      renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state));
+  CHECK_FALSE(renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints),
+                          {StepClock{1e-3}, state.rate}, Workers(), state));
   for (Vec2& d : state.displacement) d += Vec2{0.25, -0.5};
   CHECK(update(scene, state) == 0);
   CHECK(keys_of(state.contacts) == first);
@@ -393,8 +395,8 @@ TEST_CASE("the list holds all pairs that are closer than the margin, however blo
   State state = start_state(scene);
   int rebuilds = 0;
   for (int step = 0; step < 60; ++step) {
-    rebuilds +=
-        renew_pairs(scene.blocks, scene.bonds, scene.model.joints, {1e-3, &state.rate}, Workers(), state);
+    rebuilds += renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints),
+                            {StepClock{1e-3}, state.rate}, Workers(), state);
     std::vector<Box> boxes;
     for (int i = 0; i < scene.blocks.count; ++i) boxes.push_back(bounding_box(corners_now(scene, state, i)));
     // of stones, which all are as large as each other

@@ -76,3 +76,51 @@ TEST_CASE("wrong input: strengths of joints, safety") {
     }
   }
 }
+
+TEST_CASE("wrong input: a change that leaves a joint which could not be one from the start") {
+  const std::string joint =
+      "friction_angle = \"40 deg\"\nresidual_friction_angle = \"30 deg\"\ncohesion = 5\nresidual_cohesion = "
+      "2\ntensile_strength = 4\n";
+  const std::string rough = "friction_angle = \"40 deg\"\ndilation_angle = \"20 deg\"\n";
+  const auto change = [](const std::string& keys, const std::string& stage = "s") {
+    return fmt::format("[[change]]\nstage = \"{}\"\njoint = \"face\"\n{}\n", stage, keys);
+  };
+  const std::string later = "[[stage]]\nname = \"t\"\nkind = \"static\"\nduration = 1\ntime_step = 1e-3\n";
+  CHECK(refusal(joint, change("friction_angle = \"30 deg\"\ncohesion = 2\ntensile_strength = 0")) == "");
+  CHECK(refusal(rough, change("friction_angle = \"20 deg\"")) == "");
+  // a stage is judged when all its changes are made
+  CHECK(refusal(rough, change("friction_angle = \"10 deg\"") + change("friction_angle = \"25 deg\"")) == "");
+
+  const std::vector<Wrong> cases = {
+      {rough,
+       change("friction_angle = \"19 deg\""),
+       {"model.toml:18:", "change.0.friction_angle", "is 19 deg",
+        "dilation_angle of joint \"face\" is 20 deg", "give at least 20 deg", "[joint.face]"}},
+      {joint,
+       change("friction_angle = \"29 deg\""),
+       {"change.0.friction_angle", "is 29 deg", "residual_friction_angle", "give at least 30 deg"}},
+      {joint,
+       change("cohesion = 1"),
+       {"change.0.cohesion", "is 1 Pa", "residual_cohesion", "give at least 2 Pa"}},
+      {joint + "residual_tensile_strength = 3\n",
+       change("tensile_strength = 2"),
+       {"change.0.tensile_strength", "residual_tensile_strength", "give at least 3 Pa"}},
+      {"friction_angle = \"30 deg\"\nresidual_friction_angle = \"30 deg\"\nrestitution = 0.5\n",
+       change("friction_angle = \"31 deg\""),
+       {"change.0.friction_angle", "restitution of joint \"face\" is only for hard joints"}},
+      // what one stage leaves is what the next one changes; of several changes the last is told
+      {rough,
+       later + change("friction_angle = \"25 deg\"") + change("friction_angle = \"15 deg\"", "t"),
+       {"change.1.friction_angle", "is 15 deg"}},
+      {rough,
+       change("friction_angle = \"25 deg\"") + change("friction_angle = \"15 deg\""),
+       {"change.1.friction_angle", "is 15 deg"}},
+  };
+  for (const Wrong& wrong : cases) {
+    const std::string message = refusal(wrong.joint, wrong.more);
+    for (const std::string& part : wrong.parts) {
+      INFO("message:\n", message, "\nshould hold: ", part);
+      CHECK(message.find(part) != std::string::npos);
+    }
+  }
+}

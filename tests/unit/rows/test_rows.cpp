@@ -181,3 +181,35 @@ TEST_CASE("bounds_of follows the cone and never crosses") {
   CHECK(bounds_of(p, 1, -4).upper == 0);
   CHECK(bounds_of(p, 1, -4).lower == 0);
 }
+
+TEST_CASE("row set: whose rows they are, also of families without any") {
+  RowSet rows;
+  const auto fill = [&rows](size_t bonds, size_t contacts, size_t ties) {
+    rows.restart();
+    rows.begin(RowFamily::kBonds);
+    rows.add_more(bonds);
+    rows.begin(RowFamily::kContacts);
+    rows.add_more(contacts);
+    rows.begin(RowFamily::kSupports);
+    rows.begin(RowFamily::kTies);
+    for (size_t i = 0; i < ties; ++i) rows.add({}, {});
+    rows.finish();
+  };
+  const auto holds = [&rows](RowFamily family, size_t begin, size_t end) {
+    const RowRange range = rows.range(family);
+    CHECK(range.begin == begin);
+    CHECK(range.size() == end - begin);
+    for (size_t r = begin; r < end; ++r) {
+      CHECK(rows.place(r).family == family);
+      CHECK(rows.place(r).index == r - begin);
+    }
+  };
+  fill(2, 3, 2);
+  holds(RowFamily::kBonds, 0, 2), holds(RowFamily::kContacts, 2, 5), holds(RowFamily::kTies, 5, 7);
+  CHECK(rows.range(RowFamily::kSupports).size() == 0);
+  CHECK(rows.range(RowFamily::kBolts).size() == 0);
+  CHECK(rows.joints().end == 5);
+  fill(0, 1, 1);  // the same set, written over
+  holds(RowFamily::kContacts, 0, 1), holds(RowFamily::kTies, 1, 2);
+  CHECK(rows.range(RowFamily::kBonds).size() == 0);
+}

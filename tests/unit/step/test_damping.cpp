@@ -36,7 +36,7 @@ Breath breathe(const Scene& scene, const StepSettings& settings, double dt, int 
     StepReport report = kick(scene, settings, dt, work, state);
     out.largest_left_over = std::max(out.largest_left_over, std::abs(report.energy.left_over));
     out.largest_energy = std::max(out.largest_energy, report.energy.largest());
-    drift(scene, settings, dt, state.time + dt, work, state, report);
+    drift(scene, state.time + dt, work, state, report);
     out.strain.push_back(state.strain_part[0].xx);
   }
   return out;

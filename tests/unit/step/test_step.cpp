@@ -34,7 +34,7 @@ class March {
   }
   void step(double dt) {
     report = kick(scene_, settings_, dt, work, state);
-    drift(scene_, settings_, dt, state.time + dt, work, state, report);
+    drift(scene_, state.time + dt, work, state, report);
   }
 
  private:

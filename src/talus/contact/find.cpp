@@ -32,6 +32,9 @@ constexpr double kLongStretch = 5000, kLongerThanDeep = 20;
 // degrees.
 constexpr double kWedge = 0.25;
 
+// Sides within this angle (sine) all but lie along each other.
+constexpr double kNearly = 0.3;
+
 // Corners are equally sharp when the cosines of their angles differ by less.
 constexpr double kBlunter = 0.05;
 
@@ -241,8 +244,8 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   const Stretch stretch = stretch_of(a, key.vertex, b, key.edge, shift);
   // two sides with an interface as good as any
   if (stretch.length > std::max(kLongStretch * same_, kLongerThanDeep * reach)) return false;
-  // a corner far from the ends of the side, or one that the side beside it could not hold, came in through
-  // this one, whoever stands there
+  // a corner far from the ends of the side, or one that all but lies along it and that the side beside it
+  // could not hold, came in through this one, whoever stands there; in a fan of blocks it did not
   if (stretch.edge_a < 0) {
     const auto v = static_cast<size_t>(key.vertex);
     const int first = b.side_of(key.edge), last = b.after(b.last_of(key.edge));
@@ -252,7 +255,15 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
     const double to = norm(side) - from;
     if (std::min(from, to) > std::max(reach, kMostReach / kSamePlace * same_)) return false;
     const auto beside = static_cast<size_t>(from < to ? b.before(first) : last);
-    if (!a.may_enter(key.vertex, turn_right(b.edge[beside]) / b.length[beside], dip_)) return false;
+    // a side of the corner that runs back along the edge, not on beyond its end
+    const auto e = static_cast<size_t>(key.edge), kb = static_cast<size_t>(a.before(key.vertex));
+    const auto nearly_along = [&](Vec2 leaving) {
+      return (from < to) == (dot(leaving, b.edge[e]) > 0) &&
+             std::abs(cross(leaving, b.edge[e])) <= kNearly * norm(leaving) * b.length[e];
+    };
+    if ((nearly_along(a.edge[v]) || nearly_along(-a.edge[kb])) &&
+        !a.may_enter(key.vertex, turn_right(b.edge[beside]) / b.length[beside], dip_))
+      return false;
   }
   // before the overlap comes to be, the height over which the two lie beside each other tells what it will be
   reach = std::clamp(stretch.length, reach, std::max(reach, kMostReach / kSamePlace * same_));

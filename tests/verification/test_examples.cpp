@@ -362,13 +362,13 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   }
   // no formula: what the README quotes. Half the time step changes the crest by 11 % and the ground behind
   // by 4 %, another state of rest before by 2 %; other compilers may too
-  check_close("shaken_slope largest velocity of the base [m/s]", base, 0.334, 1e-2, 2e-3);
-  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.513, 5e-2, 1e-2);
+  check_close("shaken_slope largest velocity of the base [m/s]", base, 0.338, 1e-2, 2e-3);
+  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.543, 5e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.262, 5e-2, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.246, 5e-2, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
-              (behind_end - behind_start - base_end + base_start).x, -0.0773, 1e-1, 6e-2);
-  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.236, 5e-2, 1e-2);
+              (behind_end - behind_start - base_end + base_start).x, -0.0740, 1e-1, 6e-2);
+  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.234, 5e-2, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
 #endif

@@ -4,6 +4,7 @@
 #include "talus/report/frames.h"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -44,8 +45,8 @@ std::filesystem::path frame_of(const std::vector<Moved>& blocks) {
                            doubles("stress xx yy xy [Pa]", 3, stress) + integers("block", id) +
                            "</UnstructuredGrid>\n</VTKFile>\n";
   static int count = 0;
-  const auto path =
-      std::filesystem::temp_directory_path() / ("talus_frame_" + std::to_string(++count) + ".vtu");
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("talus_frame_" + std::to_string(getpid()) + "_" + std::to_string(++count) + ".vtu");
   write_file(path, text);
   return path;
 }

@@ -1,6 +1,7 @@
 // Monitors: motion against something else, convergence of two points, peak velocity.
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -133,7 +134,7 @@ point = [3.5, 1.5]
 [output]
 history_interval = 0.1
 )";
-  const auto folder = std::filesystem::temp_directory_path() / "talus_test_monitors";
+  const auto folder = std::filesystem::temp_directory_path() / ("talus_monitors_" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   Findings findings("model.toml", text);

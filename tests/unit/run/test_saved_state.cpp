@@ -2,6 +2,7 @@
 // one that is not saved comes back with its default.
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -160,7 +161,8 @@ TEST_CASE("saved state: limits without end and anchors of sliding contacts pass 
   s.bolts[1].nodes[0].limit = std::numeric_limits<double>::infinity();
   s.contacts[1].anchor = std::numeric_limits<double>::quiet_NaN();
   s.bolts[0].crossings.clear();
-  const auto path = std::filesystem::temp_directory_path() / "talus_unit_saved_state.h5";
+  const auto path =
+      std::filesystem::temp_directory_path() / ("talus_saved_state_" + std::to_string(getpid()) + ".h5");
   Archive archive;
   Exchange saving(archive, true);
   exchange_state(saving, s);

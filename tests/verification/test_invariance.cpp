@@ -209,6 +209,8 @@ const std::vector<Known> kKnown = {
     {"slope", "2 x 2 glued parts", 1.3e-02},
     {"slope", "glued triangles", 1.3e-02},
     {"slope", "a set of unlimited strength", 2.0e-01},
+    {"tunnel", "turned and moved by 1e6 m", 2.6e-06},
+    {"tunnel", "turned by 37 deg and cut again", 2.8e-03},
     {"tunnel", "a pebble far away", 1.6e-12},
     {"tunnel", "blocks backwards", 5.3e-02},
     {"tunnel", "blocks shuffled", 5.0e-02},

@@ -113,18 +113,15 @@ class Check {
     s.place = a[v], s.normal = turn_right(side) / norm(side);
     s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
     const double along = std::clamp(dot(a[v] - b[e], side) / dot(side, side), 0.0, 1.0);
-    const auto moves = [&](std::vector<Vec2> Block::*list) {
-      const auto of = [&](int block, size_t k) {
-        const std::vector<Vec2>& all = frame_.blocks[static_cast<size_t>(block)].*list;
-        return all.empty() ? Vec2{} : all[k];
-      };
-      return of(p.block_a, v) - ((1 - along) * of(p.block_b, e) + along * of(p.block_b, next));
+    const Block &block_a = frame_.blocks[static_cast<size_t>(p.block_a)],
+                &block_b = frame_.blocks[static_cast<size_t>(p.block_b)];
+    const auto moves = [&](std::vector<Vec2> Block::*velocity) {
+      return moves_against(block_a, v, block_b, e, along, velocity);
     };
     const Vec2 now = moves(&Block::velocity);
     s.approach = std::abs(dot(s.normal, now));
     // elastic laws look at the velocities before and after the kick
-    const bool known = !frame_.blocks[static_cast<size_t>(p.block_a)].next.empty() ||
-                       !frame_.blocks[static_cast<size_t>(p.block_b)].next.empty();
+    const bool known = !block_a.next.empty() || !block_b.next.empty();
     s.closing = known ? std::max(s.approach, std::abs(dot(s.normal, moves(&Block::next)))) : norm(now);
     return s;
   }

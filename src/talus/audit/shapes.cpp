@@ -23,6 +23,14 @@ bool is_convex(std::span<const Vec2> p) {
 
 }  // namespace
 
+Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, double along,
+                   std::vector<Vec2> Block::*velocity) {
+  const auto of = [velocity](const Block& block, size_t k) {
+    return (block.*velocity).empty() ? Vec2{} : (block.*velocity)[k];
+  };
+  return of(a, corner) - ((1 - along) * of(b, edge) + along * of(b, (edge + 1) % b.polygon.size()));
+}
+
 Polygon cut_below(std::span<const Vec2> polygon, Vec2 point, Vec2 normal) {
   Polygon out;
   const size_t n = polygon.size();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "talus/audit/frame.h"
 #include "talus/geometry/polygon.h"
 
 namespace talus::audit {
@@ -16,6 +17,12 @@ struct Common {
 
 /// Common part of two simple polygons: clipped where one is convex, by GEOS elsewhere.
 Common common_part(const Polygon& a, const Polygon& b);
+
+/// How a corner of one block moves against its foot on an edge of another [m/s].
+/// @param along     of the foot, as share of the edge
+/// @param velocity  which of the blocks' velocities; where it is empty the block is at rest
+Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, double along,
+                   std::vector<Vec2> Block::*velocity);
 
 /// What of a convex polygon lies at or below the line through `point` with outward normal `normal`.
 Polygon cut_below(std::span<const Vec2> polygon, Vec2 point, Vec2 normal);

@@ -22,15 +22,6 @@ constexpr double kThrough = 0.25;    // of the least mean thickness: a depth on 
 
 std::pair<int, int> pair_of(const StepPoint& p) { return std::minmax(p.block_a, p.block_b); }
 
-// How a corner of one block moves against its foot on an edge of another, `along` from the edge's first end.
-Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, double along,
-                   std::vector<Vec2> Block::*velocity) {
-  const auto of = [velocity](const Block& block, size_t k) {
-    return (block.*velocity).empty() ? Vec2{} : (block.*velocity)[k];
-  };
-  return of(a, corner) - (1 - along) * of(b, edge) - along * of(b, (edge + 1) % b.polygon.size());
-}
-
 double least_thickness(const Polygon& p) {
   double least = std::numeric_limits<double>::infinity();
   for (size_t k = 0; k < p.size(); ++k) {
@@ -106,6 +97,7 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
   const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
   const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance + 3 * step.step * speed;
   if (depth <= allowed) return;
+  // hard, and kept its overlap at birth: it lets go
   if (now && now->hard && dot(normal, moves(&Block::next)) > 0) return;
   const double near = kSamePlace * size + step.step * speed;
   for (const StepPoint& p : step.points) {

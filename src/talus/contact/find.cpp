@@ -110,6 +110,13 @@ bool ContactSearch::Outline::may_enter(int k, Vec2 n, double dip) const {
   return convex[v] && !flat[v] && dot(edge[v], n) >= -dip * length[v] && -dot(edge[b], n) >= -dip * length[b];
 }
 
+// Whether edge f and edge e of another outline run against each other, within an angle (sine).
+bool ContactSearch::Outline::runs_against(int f, const Outline& other, int e, double sine) const {
+  const auto kf = static_cast<size_t>(f), ke = static_cast<size_t>(e);
+  return dot(edge[kf], other.edge[ke]) < 0 &&
+         std::abs(cross(edge[kf], other.edge[ke])) <= sine * length[kf] * other.length[ke];
+}
+
 // Whether only convex corners lie between two edges, the shorter way round.
 bool ContactSearch::Outline::on_convex_chain(int edge_1, int edge_2) const {
   const int forward = (edge_2 - edge_1 + count) % count;
@@ -127,14 +134,7 @@ bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outli
   const int other = end == e ? b.before(e) : end;
   const CornerEdge over = corner_over_edge(blocks, s, a.block, v, b.block, other);
   if (std::abs(over.gap) > same_) return false;
-  const auto o = static_cast<size_t>(other);
-  for (const int f : {v, a.before(v)}) {
-    const auto k = static_cast<size_t>(f);
-    if (dot(a.edge[k], b.edge[o]) < 0 &&
-        std::abs(cross(a.edge[k], b.edge[o])) <= kParallel * a.length[k] * b.length[o])
-      return true;
-  }
-  return false;
+  return a.runs_against(v, b, other, kParallel) || a.runs_against(a.before(v), b, other, kParallel);
 }
 
 // Whether a corner of a that seems to lie inside edge e of b is nearer to another edge that it could enter:
@@ -196,8 +196,7 @@ ContactSearch::Stretch ContactSearch::stretch_of(const Outline& a, int v, const 
   const auto ke = static_cast<size_t>(e);
   const Vec2 along = b.edge[ke] / b.length[ke];
   for (const int f : {v, a.before(v)}) {
-    const auto kf = static_cast<size_t>(f);
-    if (dot(a.edge[kf], along) > 0 || std::abs(cross(a.edge[kf], along)) > kParallel * a.length[kf]) continue;
+    if (!a.runs_against(f, b, e, kParallel)) continue;
     const int first_a = a.side_of(f), first_b = b.side_of(e);
     const Vec2 a0 = shift + a.corner[static_cast<size_t>(first_a)],
                a1 = shift + a.corner[static_cast<size_t>(a.after(a.last_of(f)))];
@@ -253,7 +252,7 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
     const Vec2 side = b.corner[static_cast<size_t>(last)] - b.corner[static_cast<size_t>(first)];
     const double from = dot(side, place - b.corner[static_cast<size_t>(first)]) / norm(side);
     const double to = norm(side) - from;
-    if (std::min(from, to) > std::max(reach, kMostReach / kSamePlace * same_)) return false;
+    if (std::min(from, to) > std::max(reach, most_reach_)) return false;
     const auto beside = static_cast<size_t>(from < to ? b.before(first) : last);
     // a side of the corner that runs back along the edge, not on beyond its end
     const auto e = static_cast<size_t>(key.edge), kb = static_cast<size_t>(a.before(key.vertex));
@@ -266,7 +265,7 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
       return false;
   }
   // before the overlap comes to be, the height over which the two lie beside each other tells what it will be
-  reach = std::clamp(stretch.length, reach, std::max(reach, kMostReach / kSamePlace * same_));
+  reach = std::clamp(stretch.length, reach, std::max(reach, most_reach_));
   const auto ke = static_cast<size_t>(key.edge);
   const double length = b.length[ke];
   const Vec2 along = b.edge[ke] / length, n = h.point.normal;
@@ -347,11 +346,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
       hit.expected = expected;
       const auto kb = static_cast<size_t>(a.before(v));
-      const auto antiparallel = [&](size_t f) {
-        return dot(a.edge[f], b.edge[ke]) < 0 &&
-               std::abs(cross(a.edge[f], b.edge[ke])) <= kParallel * a.length[f] * b.length[ke];
-      };
-      hit.lone = !antiparallel(kv) && !antiparallel(kb);
+      hit.lone = !a.runs_against(v, b, e, kParallel) && !a.runs_against(a.before(v), b, e, kParallel);
       hit.blunt = dot(a.edge[kb], a.edge[kv]) / (a.length[kb] * a.length[kv]);
       hit.as_before =
           c.gap + range_.look_ahead * dot(c.normal, moves(range_.before ? *range_.before : s.rate));
@@ -365,9 +360,8 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
     }
     // the far side of a thin tip is no overlap
     double reach = same_;
-    const double most = kMostReach / kSamePlace * same_;
     for (size_t i = first; i < hits_.size(); ++i)
-      if (-hits_[i].point.gap <= most) reach = std::max(reach, -hits_[i].point.gap);
+      if (-hits_[i].point.gap <= most_reach_) reach = std::max(reach, -hits_[i].point.gap);
     for (size_t i = first; i < hits_.size(); ++i)
       hits_[i].covered = is_covered(blocks, s, a, b, shift, hits_[i], reach);
     // both are asked with all hits in their places
@@ -436,11 +430,8 @@ void ContactSearch::spans_of(const Outline& a, const Outline& b, const Hit& h,
     eb[1] = h.at_corner == k.edge ? on_b.before(k.edge) : on_b.after(k.edge);
   for (const int e : eb) {
     if (e < 0) continue;
-    const auto ke = static_cast<size_t>(e);
     for (const int f : {k.vertex, on_a.before(k.vertex)}) {
-      const auto kf = static_cast<size_t>(f);
-      const Vec2 da = on_a.edge[kf], db = on_b.edge[ke];
-      if (dot(da, db) > 0 || std::abs(cross(da, db)) > dip_ * on_a.length[kf] * on_b.length[ke]) continue;
+      if (!on_a.runs_against(f, on_b, e, dip_)) continue;
       const int side_a = on_a.side_of(f), side_b = on_b.side_of(e);
       const Span span = k.block_a < k.block_b ? Span{side_a, side_b} : Span{side_b, side_a};
       if (std::find(list.begin(), list.end(), span) == list.end()) list.push_back(span);
@@ -533,6 +524,7 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
   range_ = range;
   same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);
+  most_reach_ = kMostReach / kSamePlace * same_;
   // what turns within the look-ahead may be in the way before it is seen to
   const Mat2 turning = state.rate[ia].G - state.rate[ib].G;
   dip_ = kEntrance + range.look_ahead * std::sqrt(contract(turning, turning));

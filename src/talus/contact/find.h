@@ -41,10 +41,9 @@ struct SearchRange {
   double margin = 0;      // gaps up to this are seen [m]
   double depth = 0;       // overlaps up to this are seen [m]
   double look_ahead = 0;  // [s] what comes together within this time is seen before it does
-  const std::vector<BlockRate>* before =
-      nullptr;                             // actual rates: what has come together so far; none: State's
-  const Neighbours* neighbours = nullptr;  // none: the two are alone
-  std::span<const Contact> known;          // contact points of the pair before
+  const std::vector<BlockRate>* before = nullptr;  // actual rates, none: those of the state
+  const Neighbours* neighbours = nullptr;          // none: the two are alone
+  std::span<const Contact> known;                  // contact points of the pair before
 };
 
 /// What a search found, and what could change it.
@@ -89,16 +88,17 @@ class ContactSearch {
     int last_of(int edge) const;
     int edge_beside(int first, Vec2 place) const;
     bool may_enter(int corner, Vec2 normal, double dip) const;
+    bool runs_against(int edge, const Outline& other, int edge_of_other, double sine) const;
     bool holds(Vec2 place, double tolerance) const;
     bool on_convex_chain(int edge_1, int edge_2) const;
   };
   struct Hit {
     ContactPoint point;
     int at_corner = -1;    // corner of b at the foot, -1 inside the edge
-    double expected = 0;   // gap after the look-ahead
+    double expected = 0;   // gap after the look-ahead, at the predicted rates
+    double as_before = 0;  // the same at the actual ones
     double blunt = 0;      // cosine of the angle by which the corner turns
     bool lone = false;     // none of its sides is antiparallel to the edge
-    double as_before = 0;  // the same if the two go on as they did
     bool apart = false;    // by the side of b, over which a slides flush
     bool coming = false;   // beside the edge still; over it after the look-ahead
     bool held = false;     // in touch on this side before
@@ -132,7 +132,8 @@ class ContactSearch {
 
   SearchRange range_;
   double same_ = 0;
-  double dip_ = 0;  // how far a corner's own edges may dip below the plane it rests on (sine)
+  double most_reach_ = 0;  // most overlap across which neighbours are looked for [m]
+  double dip_ = 0;         // how far a corner's own edges may dip below the plane it rests on (sine)
   Outline first_, second_;
   std::vector<Hit> hits_;
   std::vector<std::vector<Span>> spans_;

@@ -75,8 +75,9 @@ class Check {
     Vec2 place, normal;  // from block b into block a
     double depth = 0;    // of positions, 0: apart [m]
     double gap = 0;
-    double approach = 0;  // speed at which the two move against each other here [m/s]
-    double closing = 0;   // the most they may close a gap at within the step [m/s]
+    double approach =
+        0;  // speed at which the two move against each other here, before or after the kick [m/s]
+    double closing = 0;  // the most they may close a gap at within the step [m/s]
   };
 
   const Polygon& polygon(int i) const { return frame_.blocks[static_cast<size_t>(i)].polygon; }
@@ -122,7 +123,8 @@ class Check {
     s.approach = std::abs(dot(s.normal, now));
     // elastic laws look at the velocities before and after the kick
     const bool known = !block_a.next.empty() || !block_b.next.empty();
-    s.closing = known ? std::max(s.approach, std::abs(dot(s.normal, moves(&Block::next)))) : norm(now);
+    if (known) s.approach = std::max(s.approach, std::abs(dot(s.normal, moves(&Block::next))));
+    s.closing = known ? s.approach : norm(now);
     return s;
   }
 

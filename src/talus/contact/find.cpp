@@ -144,10 +144,18 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
   const double depth = -hit.point.gap;
   bool nearer = false;
   if (depth <= same_) return nearer;
+  // a force that acts beside it passes on to it
+  const Vec2 shift = place - a.corner[static_cast<size_t>(v)];
+  const auto bears_beside = [&](const Contact& c) {
+    const bool own = c.key.block_a == a.block;
+    const Vec2 at = (own ? shift : Vec2{}) + (own ? a : b).corner[static_cast<size_t>(c.key.vertex)];
+    return c.force[0] > 0 && norm(at - place) <= kBothIn * depth;
+  };
+  const bool deep =
+      depth > kDeep * same_ && std::none_of(range_.known.begin(), range_.known.end(), bears_beside);
   for (int f = 0; f < b.count; ++f) {
     const auto k = static_cast<size_t>(f);
-    if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k], depth > kDeep * same_ ? kDeepDip : kEntrance))
-      continue;
+    if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k], deep ? kDeepDip : kEntrance)) continue;
     // sides that the corner lies over are weighed against each other, where they are no covered ones
     if (std::any_of(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
                     [f](const Hit& h) { return h.point.key.edge == f; }))

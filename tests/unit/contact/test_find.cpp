@@ -377,6 +377,40 @@ TEST_CASE("a corner at the thin end of a block does not act on the far side of t
   }
 }
 
+TEST_CASE("a force at two corners that slide past each other deep inside passes on to the other corner") {
+  // the lower block's left upper corner has just left the upper one's edge; the corner of the upper one is
+  // nearer to the left side of the lower one than to its top
+  const Polygon lower{{1.116893, -0.810654}, {1.140114, -0.441042}, {0.945066, -0.254016},
+                      {0.525079, -0.33627},  {0.429259, -0.499423}, {0.561182, -0.905661},
+                      {0.857248, -0.981335}};
+  const Polygon upper{{0.53323, -0.347885},  {0.772451, -0.199325}, {0.878834, 0.247787},
+                      {0.670586, 0.535116},  {0.320467, 0.605484},  {-0.003888, 0.3908},
+                      {-0.080297, 0.072468}, {0.082844, -0.242866}};
+  const Scene s = scene_of({lower, upper});
+  Contact before;
+  before.key = {0, 3, 1, 0};
+  before.memory = Contact::kWhole;
+  SearchRange range;
+  range.margin = 0.01, range.depth = 0.1, range.look_ahead = 3e-4;
+  for (const double force : {0.0, 2.5e6}) {
+    CAPTURE(force);
+    before.force = {force, 0};
+    range.known = {&before, 1};
+    ContactSearch search;
+    const auto& points = search.touch(s.blocks, start_state(s), 0, 1, range).points;
+    // met so in flight, the two are past each other
+    if (force == 0) {
+      CHECK(points.empty());
+      continue;
+    }
+    REQUIRE(points.size() == 1);
+    CHECK(points[0].key.block_a == 1);
+    CHECK(points[0].key.vertex == 0);
+    CHECK(points[0].key.edge == 2);
+    CHECK(points[0].gap == doctest::Approx(-0.013).epsilon(0.1));
+  }
+}
+
 TEST_CASE("two blocks that a gap keeps apart at a crossing of joints do not touch by their other sides") {
   // rhombi of 50 deg at a crossing, b beyond the upper right corner of a; moved by about the distance at
   // which two corners count as one place

@@ -35,15 +35,35 @@ constexpr double kWedge = 0.25;
 // Sides within this angle (sine) all but lie along each other.
 constexpr double kNearly = 0.3;
 
+// A block leans over a side when one of its own leaves it within this angle (sine).
+constexpr double kLeaning = 0.7;
+
 // Corners are equally sharp when the cosines of their angles differ by less.
 constexpr double kBlunter = 0.05;
 
 // Two corners that have gone into each other and are nearer than this many overlaps are one place.
 constexpr double kBothIn = 5;
 
+// Sides within this angle (sine) leave no room between them for a corner.
+constexpr double kBeside = 0.5;
+
 // Gaps beside a side up to the depth of the overlap are none, but never wider than this share of the smaller
 // block.
 constexpr double kMostReach = 0.05;
+
+// Whether the way from a place in a polygon to another leads out through a side that all but runs against
+// `direction` (unit).
+bool leaves_against(std::span<const Vec2> polygon, Vec2 from, Vec2 to, Vec2 direction) {
+  const Vec2 way = to - from;
+  for (size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 p = polygon[k], side = polygon[k + 1 < polygon.size() ? k + 1 : 0] - p;
+    if (dot(side, direction) >= 0 || std::abs(cross(side, direction)) > kBeside * norm(side)) continue;
+    const double begin = cross(way, p - from), end = cross(way, p + side - from);
+    if (begin * end > 0) continue;
+    if (cross(side, from - p) * cross(side, to - p) <= 0) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -144,15 +164,13 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
   const double depth = -hit.point.gap;
   bool nearer = false;
   if (depth <= same_) return nearer;
-  // a force that acts beside it passes on to it
-  const Vec2 shift = place - a.corner[static_cast<size_t>(v)];
-  const auto bears_beside = [&](const Contact& c) {
-    const bool own = c.key.block_a == a.block;
-    const Vec2 at = (own ? shift : Vec2{}) + (own ? a : b).corner[static_cast<size_t>(c.key.vertex)];
-    return c.force[0] > 0 && norm(at - place) <= kBothIn * depth;
+  // it was seen to come over this edge, or the force of a corner that it has passed goes on to it
+  const auto came_by = [&](const Contact& c) {
+    if (c.key == hit.point.key) return true;
+    if (c.key.block_a == a.block || !(c.force[0] > 0) || depth > most_reach_) return false;
+    return norm(b.corner[static_cast<size_t>(c.key.vertex)] - place) <= kBothIn * depth;
   };
-  const bool deep =
-      depth > kDeep * same_ && std::none_of(range_.known.begin(), range_.known.end(), bears_beside);
+  const bool deep = depth > kDeep * same_ && std::none_of(range_.known.begin(), range_.known.end(), came_by);
   for (int f = 0; f < b.count; ++f) {
     const auto k = static_cast<size_t>(f);
     if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k], deep ? kDeepDip : kEntrance)) continue;
@@ -218,8 +236,11 @@ ContactSearch::Stretch ContactSearch::stretch_of(const Outline& a, int v, const 
   return out;
 }
 
-// Whether a place (an offset from the centroid of `block`) lies in a third block, which is then noted.
-bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int block, int other, Vec2 place) {
+// Whether a place (an offset from the centroid of `block`) lies in a third block, in which the way `back` to
+// the side of `block` that runs along `direction`, if one is given, leads out through a side along it. That
+// block is noted.
+bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int block, int other, Vec2 place,
+                                  Vec2 back, Vec2 direction) {
   if (range_.neighbours == nullptr) return false;
   const auto ib = static_cast<size_t>(block);
   for (const int third : range_.neighbours->of(block)) {
@@ -234,6 +255,7 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
       outline_.push_back(X + h * X);
     }
     if (!contains(outline_, at)) continue;
+    if (norm(direction) > 0 && !leaves_against(outline_, at, at + back, direction)) continue;
     if (std::find(found_.cover.begin(), found_.cover.end(), third) == found_.cover.end())
       found_.cover.push_back(third);
     return true;
@@ -249,6 +271,8 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   if (range_.neighbours == nullptr) return false;
   const ContactKey& key = h.point.key;
   const Stretch stretch = stretch_of(a, key.vertex, b, key.edge, shift);
+  bool leans =
+      false;  // the corner's block over the side: a third block lies between them only along the side
   // two sides with an interface as good as any
   if (stretch.length > std::max(kLongStretch * same_, kLongerThanDeep * reach)) return false;
   // a corner far from the ends of the side, or one that all but lies along it and that the side beside it
@@ -264,13 +288,18 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
     const auto beside = static_cast<size_t>(from < to ? b.before(first) : last);
     // a side of the corner that runs back along the edge, not on beyond its end
     const auto e = static_cast<size_t>(key.edge), kb = static_cast<size_t>(a.before(key.vertex));
-    const auto nearly_along = [&](Vec2 leaving) {
+    const auto runs_back = [&](Vec2 leaving, double sine) {
       return (from < to) == (dot(leaving, b.edge[e]) > 0) &&
-             std::abs(cross(leaving, b.edge[e])) <= kNearly * norm(leaving) * b.length[e];
+             std::abs(cross(leaving, b.edge[e])) <= sine * norm(leaving) * b.length[e];
     };
-    if ((nearly_along(a.edge[v]) || nearly_along(-a.edge[kb])) &&
-        !a.may_enter(key.vertex, turn_right(b.edge[beside]) / b.length[beside], dip_))
-      return false;
+    const auto one_runs_back = [&](double sine) {
+      return runs_back(a.edge[v], sine) || runs_back(-a.edge[kb], sine);
+    };
+    if (one_runs_back(kLeaning) &&
+        !a.may_enter(key.vertex, turn_right(b.edge[beside]) / b.length[beside], dip_)) {
+      if (one_runs_back(kNearly)) return false;
+      leans = true;
+    }
   }
   // before the overlap comes to be, the height over which the two lie beside each other tells what it will be
   reach = std::clamp(stretch.length, reach, std::max(reach, most_reach_));
@@ -282,9 +311,11 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   const auto filled = [&](int block, int other, Vec2 first, Vec2 direction, double of, double at, Vec2 out) {
     const double inward = std::min(2 * same_, 0.5 * of), place = std::clamp(at, inward, of - inward);
     const Vec2 on = first + place * direction;
-    return lies_in_third(blocks, s, block, other, on + reach * out) ||
-           lies_in_third(blocks, s, block, other,
-                         on + std::min(reach, kWedge * std::min(place, of - place)) * out);
+    const auto third = [&](double height) {
+      return lies_in_third(blocks, s, block, other, on + height * out, -(height + reach) * out,
+                           leans ? direction : Vec2{});
+    };
+    return third(reach) || third(std::min(reach, kWedge * std::min(place, of - place)));
   };
   const double middle = stretch.length > 0 ? stretch.middle : foot;
   if (filled(b.block, a.block, b.corner[ke], along, length, middle, n)) return true;
@@ -343,7 +374,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       if (!a.may_enter(v, c.normal, dip_)) continue;
       const bool held = was_in_touch(a, v, b, e);
       // behind the line of an edge, and yet not in the block: beyond another of its sides
-      if (!held && c.gap < -range_.margin && !b.holds(place, same_)) continue;
+      if (!held && c.gap < -kDeep * same_ && !b.holds(place, same_)) continue;
       found_.this_step_only = found_.this_step_only || !above;
       Hit hit;
       hit.point.key = {a.block, v, b.block, e};

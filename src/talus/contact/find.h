@@ -124,7 +124,8 @@ class ContactSearch {
   Stretch stretch_of(const Outline& a, int corner, const Outline& b, int edge, Vec2 shift) const;
   bool is_covered(const BlockSet& blocks, const State& state, const Outline& a, const Outline& b, Vec2 shift,
                   const Hit& hit, double reach);
-  bool lies_in_third(const BlockSet& blocks, const State& state, int block, int other, Vec2 place);
+  bool lies_in_third(const BlockSet& blocks, const State& state, int block, int other, Vec2 place, Vec2 back,
+                     Vec2 direction);
   void merge_corner_pairs(const Outline& a, const Outline& b, Vec2 shift);
   void share_faces(const Outline& a, const Outline& b, Vec2 shift);
   void find_toes(const Outline& a, const Outline& b);

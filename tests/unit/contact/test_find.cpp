@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -409,6 +410,39 @@ TEST_CASE("a force at two corners that slide past each other deep inside passes 
     CHECK(points[0].key.edge == 2);
     CHECK(points[0].gap == doctest::Approx(-0.013).epsilon(0.1));
   }
+}
+
+TEST_CASE("two sides that turn out of line leave no corner on the far side of the other block") {
+  // quadrilaterals of a pile, pressed into each other by 6 mm, 2 degrees apart: the corner that no longer
+  // lies along the other block's side is 13 cm behind the side beyond it
+  const Polygon left{{0.5452, 0.5558}, {0.2733, 0.0398}, {0.8506, -0.2968}, {1.1674, 0.0945}};
+  const Polygon right{{0.5943, 1.2336}, {0.2357, 0.762}, {0.6543, 0.4734}, {0.9516, 1.0154}};
+  const Scene s = scene_of({left, right});
+  std::array<Contact, 2> before;
+  before[0].key = {0, 0, 1, 1}, before[1].key = {1, 2, 0, 3};
+  for (Contact& c : before) c.memory = Contact::kWhole, c.force = {4e6, 0};
+  SearchRange range;
+  range.margin = 0.05, range.depth = 0.2, range.look_ahead = 5e-4, range.known = before;
+  ContactSearch search;
+  const auto& points = search.touch(s.blocks, start_state(s), 0, 1, range).points;
+  REQUIRE(points.size() >= 1);
+  for (const ContactPoint& p : points) CHECK(p.gap == doctest::Approx(-0.006).epsilon(0.1));
+}
+
+TEST_CASE(
+    "a corner seen to come over an edge stays on it, though another side that it cannot enter is nearer") {
+  // a tip between the lower block's top and a short side that leaves it at 17 degrees
+  const Polygon lower{{0, 0}, {1, 0}, {1, 0.5}, {0.02, 0.5}, {0, 0.47}};
+  const Scene s = scene_of({lower, diamond({0.03, 0.475}, 0.3)});
+  SearchRange range;
+  range.margin = 0.05, range.depth = 0.2, range.look_ahead = 1e-3;
+  Contact before;
+  before.key = {1, 0, 0, 2};
+  range.known = {&before, 1};
+  ContactSearch search;
+  const auto& points = search.touch(s.blocks, start_state(s), 0, 1, range).points;
+  CHECK(
+      std::any_of(points.begin(), points.end(), [&](const ContactPoint& p) { return p.key == before.key; }));
 }
 
 TEST_CASE("two blocks that a gap keeps apart at a crossing of joints do not touch by their other sides") {

@@ -66,7 +66,8 @@ SectionSpec stage_section() {
                "of the stiffest block; where no block deforms the least of 0.02 sqrt(h/g), 0.1 h/v and 1/50 "
                "of the "
                "shortest period of the histories, h the least thickness of a block, v the fastest motion "
-               "given."},
+               "given, and of blocks that nothing holds the end of their fall to the lowest place of the "
+               "model."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

@@ -11,7 +11,7 @@
 #include "talus/contact/pairs.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/histories.h"
-#include "talus/run/resolution.h"
+#include "talus/run/rigid_step.h"
 #include "talus/step/change.h"
 
 namespace talus {
@@ -52,44 +52,6 @@ double crossing_time(const BlockSet& b) {
 int64_t rows_of(double duration, int64_t steps, double interval) {
   if (interval <= 0) return steps;
   return static_cast<int64_t>(std::min(static_cast<double>(steps), duration / interval));
-}
-
-// Fastest motion that the model gives: of blocks at the start, and of what is driven [m/s].
-double fastest_motion(const Scene& scene) {
-  double fastest = 0;
-  const auto follow = [&](const Motion& m) {
-    if (m.history < 0) return;
-    const History& h = scene.model.histories[static_cast<size_t>(m.history)];
-    for (size_t i = 0; i < h.time.size(); ++i) {
-      if (m.kind == Motion::kVelocity) fastest = std::max(fastest, std::abs(h.value[i]));
-      if (m.kind == Motion::kDisplacement && i > 0)
-        fastest = std::max(fastest, std::abs((h.value[i] - h.value[i - 1]) / (h.time[i] - h.time[i - 1])));
-    }
-  };
-  for (size_t i = 0; i < scene.layout.blocks.size(); ++i) {
-    const BlockShape& b = scene.layout.blocks[i];
-    fastest = std::max(fastest, norm(b.velocity) + std::abs(b.spin) * scene.blocks.radius[i]);
-    follow(b.motion_x), follow(b.motion_y);
-  }
-  for (const SupportInput& s : scene.model.supports) follow(s.x), follow(s.y);
-  return fastest;
-}
-
-// The step of a model in which nothing deforms: short against the fall through a block's own thickness, the
-// way through a tenth of it, and the shortest period of what shakes it (theory 2.5).
-double rigid_step(const Scene& scene, const StageInput& stage) {
-  const BlockSet& blocks = scene.blocks;
-  double thickness = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < blocks.count; ++i)
-    if (blocks.moves_freely(i)) thickness = std::min(thickness, blocks.thinness[static_cast<size_t>(i)]);
-  double step = std::numeric_limits<double>::infinity();
-  if (const double g = norm(scene.model.gravity); g > 0) step = 0.02 * std::sqrt(thickness / g);
-  if (const double v = fastest_motion(scene); v > 0) step = std::min(step, 0.1 * thickness / v);
-  if (stage.kind == StageKind::kDynamic)
-    for (const History& h : scene.model.histories)
-      if (const double f = highest_frequency(h, InputKind::kForce); f > 0)
-        step = std::min(step, 1 / (50 * f));
-  return step;
 }
 
 void limit_by_column(const Scene& scene, const StageInput& stage, const ColumnStep& column, StagePlan& plan,

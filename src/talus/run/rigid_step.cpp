@@ -1,0 +1,113 @@
+#include "talus/run/rigid_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "talus/contact/pairs.h"
+#include "talus/run/resolution.h"
+
+namespace talus {
+
+namespace {
+
+// Blocks nearer than this share of the smallest one stand on each other.
+constexpr double kTouch = 0.02;
+
+// Which blocks a chain of blocks in touch, bonds, supports and boundaries holds.
+std::vector<char> held_blocks(const Scene& scene) {
+  const BlockSet& blocks = scene.blocks;
+  const auto n = static_cast<size_t>(blocks.count);
+  std::vector<std::vector<int>> beside(n);
+  const auto join = [&](int a, int b) {
+    beside[static_cast<size_t>(a)].push_back(b);
+    beside[static_cast<size_t>(b)].push_back(a);
+  };
+  for (const ContactPoint& c :
+       find_contacts(blocks, scene.bonds, start_state(scene), kTouch * smallest_size(blocks)))
+    join(c.key.block_a, c.key.block_b);
+  for (const BondFace& f : scene.bonds.faces)
+    if (blocks.interact(f.block_a, f.block_b)) join(f.block_a, f.block_b);
+
+  std::vector<char> held(n, 0);
+  std::vector<int> next;
+  const auto hold = [&](int i) {
+    if (held[static_cast<size_t>(i)]) return;
+    held[static_cast<size_t>(i)] = 1;
+    next.push_back(i);
+  };
+  for (int i = 0; i < blocks.count; ++i)
+    if (!blocks.moves_freely(i)) hold(i);
+  for (const SupportedPoint& p : scene.supported) hold(p.block);
+  for (const BoundaryPoint& p : scene.boundaries.points) hold(p.block);
+  while (!next.empty()) {
+    const auto i = static_cast<size_t>(next.back());
+    next.pop_back();
+    for (const int j : beside[i]) hold(j);
+  }
+  return held;
+}
+
+// How fast a block that nothing holds may fall, from where it is to the lowest place of the model, in this
+// time [m/s].
+double fastest_fall(const Scene& scene, double duration) {
+  const BlockSet& blocks = scene.blocks;
+  const double g = norm(scene.model.gravity);
+  if (g == 0) return 0;
+  const Vec2 down = scene.model.gravity / g;
+  const auto depth_of = [&](int i) {
+    double depth = -std::numeric_limits<double>::infinity();
+    for (int v = 0; v < blocks.vertex_count(i); ++v)
+      depth = std::max(depth, dot(down, blocks.centroid[static_cast<size_t>(i)] + blocks.corner(i, v)));
+    return depth;
+  };
+  const std::vector<char> held = held_blocks(scene);
+  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < blocks.count; ++i) {
+    if (blocks.removed(i)) continue;
+    lowest = std::max(lowest, depth_of(i));
+    if (!held[static_cast<size_t>(i)]) highest = std::min(highest, depth_of(i));
+  }
+  return std::isinf(highest) ? 0 : std::min(std::sqrt(2 * g * (lowest - highest)), g * duration);
+}
+
+// Fastest motion that the model gives: of blocks at the start, and of what is driven [m/s].
+double fastest_given(const Scene& scene) {
+  double fastest = 0;
+  const auto follow = [&](const Motion& m) {
+    if (m.history < 0) return;
+    const History& h = scene.model.histories[static_cast<size_t>(m.history)];
+    for (size_t i = 0; i < h.time.size(); ++i) {
+      if (m.kind == Motion::kVelocity) fastest = std::max(fastest, std::abs(h.value[i]));
+      if (m.kind == Motion::kDisplacement && i > 0)
+        fastest = std::max(fastest, std::abs((h.value[i] - h.value[i - 1]) / (h.time[i] - h.time[i - 1])));
+    }
+  };
+  for (size_t i = 0; i < scene.layout.blocks.size(); ++i) {
+    const BlockShape& b = scene.layout.blocks[i];
+    fastest = std::max(fastest, norm(b.velocity) + std::abs(b.spin) * scene.blocks.radius[i]);
+    follow(b.motion_x), follow(b.motion_y);
+  }
+  for (const SupportInput& s : scene.model.supports) follow(s.x), follow(s.y);
+  return fastest;
+}
+
+}  // namespace
+
+double rigid_step(const Scene& scene, const StageInput& stage) {
+  const BlockSet& blocks = scene.blocks;
+  double thickness = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < blocks.count; ++i)
+    if (blocks.moves_freely(i)) thickness = std::min(thickness, blocks.thinness[static_cast<size_t>(i)]);
+  double step = std::numeric_limits<double>::infinity();
+  if (const double g = norm(scene.model.gravity); g > 0) step = 0.02 * std::sqrt(thickness / g);
+  if (const double v = fastest_given(scene) + fastest_fall(scene, stage.duration); v > 0)
+    step = std::min(step, 0.1 * thickness / v);
+  if (stage.kind == StageKind::kDynamic)
+    for (const History& h : scene.model.histories)
+      if (const double f = highest_frequency(h, InputKind::kForce); f > 0)
+        step = std::min(step, 1 / (50 * f));
+  return step;
+}
+
+}  // namespace talus

@@ -1,0 +1,47 @@
+// The step of a model in which nothing deforms.
+
+#include "support/run_case.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+// A stone of 1 m x 0.5 m at some height over a floor at y = 0, on other stones that stand beside each other.
+double step_of(double height, const std::string& more = "", double duration = 10) {
+  const std::string text =
+      "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2000\n[joint.j]\nfriction_angle = "
+      "\"30 deg\"\n"
+      "[contact]\njoint = \"j\"\n" +
+      fmt::format(
+          "[[block]]\nname = \"floor\"\npolygon = [[-5,-1],[9,-1],[9,0],[-5,0]]\nmaterial = \"m\"\nkind = "
+          "\"fixed\"\n[[block]]\nname = \"a\"\npolygon = [[0,{0}],[1,{0}],[1,{1}],[0,{1}]]\nmaterial = "
+          "\"m\"\nkind = \"rigid\"\n",
+          height, height + 0.5) +
+      more + fmt::format("[[stage]]\nname = \"s\"\nkind = \"dynamic\"\nduration = {}\n", duration);
+  Findings findings("m", text);
+  return prepare_run("m", text, {}, findings).plans.at(0).dt;
+}
+
+// Area over twice the way from the centroid to the farthest corner.
+const double kThickness = 0.5 / (2 * std::hypot(0.5, 0.25));
+
+}  // namespace
+
+TEST_CASE("auto step of rigid blocks: 0.02 sqrt(h/g) where all stands on the ground") {
+  CHECK(step_of(0) == doctest::Approx(0.02 * std::sqrt(kThickness / 10)).epsilon(1e-3));
+  // in a chain over a block that stands
+  const std::string pillar =
+      "[[block]]\nname = \"b\"\npolygon = [[0,0],[1,0],[1,3],[0,3]]\nmaterial = \"m\"\nkind = \"rigid\"\n";
+  CHECK(step_of(3, pillar) == doctest::Approx(0.02 * std::sqrt(kThickness / 10)).epsilon(1e-3));
+  // and on a support
+  CHECK(step_of(3, "[[support]]\nname = \"peg\"\npoint = [0.5, 3]\nx = \"fixed\"\ny = \"fixed\"\n") ==
+        doctest::Approx(0.02 * std::sqrt(kThickness / 10)).epsilon(1e-3));
+}
+
+TEST_CASE("auto step of rigid blocks: a tenth of the thickness at the end of a fall") {
+  // to the lowest place, the underside of the floor at -1 m
+  CHECK(step_of(19) == doctest::Approx(0.1 * kThickness / std::sqrt(2 * 10 * 20)).epsilon(1e-3));
+  // or as fast as it gets in the time
+  CHECK(step_of(1e4, "", 5) == doctest::Approx(0.1 * kThickness / 50).epsilon(1e-3));
+}

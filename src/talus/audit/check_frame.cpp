@@ -75,9 +75,8 @@ class Check {
     Vec2 place, normal;  // from block b into block a
     double depth = 0;    // of positions, 0: apart [m]
     double gap = 0;
-    double approach =
-        0;  // speed at which the two move against each other here, before or after the kick [m/s]
-    double closing = 0;  // the most they may close a gap at within the step [m/s]
+    double approach = 0;  // the larger of the speeds against each other before and after the kick [m/s]
+    double closing = 0;   // the most they may close a gap at within the step [m/s]
   };
 
   const Polygon& polygon(int i) const { return frame_.blocks[static_cast<size_t>(i)].polygon; }

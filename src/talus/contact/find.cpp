@@ -271,8 +271,8 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   if (range_.neighbours == nullptr) return false;
   const ContactKey& key = h.point.key;
   const Stretch stretch = stretch_of(a, key.vertex, b, key.edge, shift);
-  bool leans =
-      false;  // the corner's block over the side: a third block lies between them only along the side
+  // a block that leans over the side is kept off it only by a third one along the side
+  bool leans = false;
   // two sides with an interface as good as any
   if (stretch.length > std::max(kLongStretch * same_, kLongerThanDeep * reach)) return false;
   // a corner far from the ends of the side, or one that all but lies along it and that the side beside it

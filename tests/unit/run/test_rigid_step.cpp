@@ -7,7 +7,7 @@ using namespace talus::test;
 
 namespace {
 
-// A stone of 1 m x 0.5 m at some height over a floor at y = 0, on other stones that stand beside each other.
+// Of a stone of 1 m x 0.5 m at some height over a floor at y = 0, and what else there is.
 double step_of(double height, const std::string& more = "", double duration = 10) {
   const std::string text =
       "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2000\n[joint.j]\nfriction_angle = "

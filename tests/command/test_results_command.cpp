@@ -140,7 +140,7 @@ TEST_CASE("command plot: pictures of the blocks at chosen times") {
   has(bare.text, "has no frames");
 }
 
-TEST_CASE("command new: every beginning runs as it is") {
+TEST_CASE("command new: every beginning runs as it is" * doctest::test_suite("optimised")) {
   const Folder f;
   for (const char* from : {"impact_bar", "slope", "tunnel", "wall", "blast"}) {
     CAPTURE(from);

@@ -229,7 +229,8 @@ TEST_CASE("command run --from: every saved state leads to the same bits") {
   goes_on_from_each_state(folder);
 }
 
-TEST_CASE("command run --from: the same bits with bolts and joints that weaken") {
+TEST_CASE("command run --from: the same bits with bolts and joints that weaken" *
+          doctest::test_suite("optimised")) {
   Folder folder;
   write_model(folder, bolted_model());
   const auto whole = goes_on_from_each_state(folder);

@@ -194,8 +194,8 @@ TEST_CASE("example arch: the springings carry the weight and the same thrust") {
   check_below("arch energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
 
-// Long runs are left out where the sanitizers make them ten times longer.
-#ifndef __SANITIZE_ADDRESS__
+TEST_SUITE_BEGIN("optimised");
+
 TEST_CASE("example dominoes: all ten fall") {
   const CaseResult r = run_example("dominoes");
   for (int i = 1; i <= 10; ++i) CHECK(r.column(fmt::format("top_{}.displacement_x", i)).back() > 0.025);
@@ -238,7 +238,8 @@ TEST_CASE("example pile: no stone inside another, comes to rest, the same bits t
   }
   CHECK(bits[0] == bits[1]);
 }
-#endif
+
+TEST_SUITE_END();
 
 TEST_CASE("example shaken_wall: nothing slips in a wall that friction can carry") {
   const CaseResult r = run_example("shaken_wall");
@@ -331,8 +332,8 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
   check_below("blast_hole energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
-// Left out under the address sanitizer: two minutes there, and the same code runs in shorter cases.
-#ifndef __SANITIZE_ADDRESS__
+TEST_SUITE_BEGIN("optimised");
+
 TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedge at the crest farthest") {
   std::vector<Vec2> start;  // displacement of each block as shaking begins
   double base = 0, crest = 0, slip = 0;
@@ -371,7 +372,8 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   check_close("shaken_slope largest slip between neighbours [m]", slip, 0.234, 5e-2, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
-#endif
+
+TEST_SUITE_END();
 
 TEST_CASE("example bolted_slope: the bolts hold what would slide") {
   const CaseResult r = run_example("bolted_slope");

@@ -152,10 +152,10 @@ struct WorkDone {
 struct RestWatch {
   int64_t steps = 0;  // since the stage began
   double best =
-      0;  // least unbalanced or velocity left, over what is asked for, since the last look; 0: none yet
+      0;  // least sqrt(unbalanced x velocity left) over what is asked for since the last look; 0: none
   double before = 0;   // the same between the last two looks
   double sharper = 1;  // share of the solver's tolerance to which steps are solved
-  int stuck = 0;       // looks in a row, at the sharpest, without any progress
+  int stuck = 0;       // looks in a row that stall or, at the sharpest, are without any progress
 };
 
 struct State {

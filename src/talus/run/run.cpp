@@ -19,12 +19,13 @@ namespace {
 // Overlap of a contact, as share of the thinner block, at which a run ends.
 constexpr double kMostClosed = 0.25;
 
-// Steps of a static stage between looks at its progress; progress below which the solver is asked for more,
-// and below which there is none; sharpest tolerance, as share of the solver's; looks without any before it is
-// told.
+// Steps of a static stage between looks at its progress; what is left, as share of the look before, above
+// which it stalls, and above which there is no progress at all; sharpest tolerance, as share of the solver's;
+// looks in a row that stall before the solver is asked for more the first time, and without progress before
+// it is told.
 constexpr int64_t kRestLook = 250;
-constexpr double kStalled = 0.8, kNoProgress = 0.98, kSharpest = 1e-4;
-constexpr int kMostStuck = 4;
+constexpr double kStalled = 0.9, kNoProgress = 0.98, kSharpest = 1e-4;
+constexpr int kStalls = 2, kMostStuck = 4;
 
 // Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.
 constexpr double kFarToGo = 1e-3;
@@ -243,17 +244,23 @@ class Runner {
   // are forces. Whether that has not helped either, and nothing is on its way anywhere.
   bool watch_rest(const StageInput& stage, const StepReport& report, const StagePlan& plan, int64_t n) {
     RestWatch& rest = state_.rest;
-    const double now = std::max(report.unbalanced, report.speed_left) / stage.unbalanced;
+    // both together: while one of them falls, as the forces do while a large mass still swings slowly, the
+    // solver is not what keeps the other
+    const double now = std::sqrt(report.unbalanced * report.speed_left) / stage.unbalanced;
     rest.best = rest.best > 0 ? std::min(rest.best, now) : now;
+    // while forces are let go of, balance says nothing
+    if (!is_relaxed(stage, n)) rest.best = 0;
     if (++rest.steps % kRestLook != 0) return false;
     const double progress = rest.before > 0 ? rest.best / rest.before : 0;
-    if (progress > kStalled && rest.sharper > kSharpest)
+    const bool at_sharpest = rest.sharper <= kSharpest;
+    rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
+    if (!at_sharpest && rest.stuck >= (rest.sharper < 1 ? 1 : kStalls)) {
       rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
-    else
-      rest.stuck = progress > kNoProgress && is_relaxed(stage, n) ? rest.stuck + 1 : 0;
+      rest.stuck = 0;
+    }
     rest.before = rest.best;
     rest.best = 0;
-    if (rest.stuck < kMostStuck) return false;
+    if (!at_sharpest || rest.stuck < kMostStuck) return false;
     const double left = plan.dt * static_cast<double>(plan.steps - n);
     for (size_t k = 0; k < state_.rate.size(); ++k)
       if (norm(state_.rate[k].a) * left > kFarToGo * scene_.blocks.size[k]) return false;

@@ -514,8 +514,10 @@ class Check {
     out.findings.push_back(finding(Defect::kNormalLaw, larger > kNormalInvalid * smaller, pair.a, pair.b,
                                    place, larger / smaller,
                                    fmt::format("a normal force of {:.4g} N, where the stiffness of the joint "
-                                               "times the overlap of the two is {:.4g} N",
-                                               normal, winkler)));
+                                               "times the overlap of the two is {:.4g} N (where the two have "
+                                               "just hit each other: steps of {:.3g} s are too long for this "
+                                               "stiffness)",
+                                               normal, winkler, frame_.step)));
   }
 
   // Whether a side of the corner lies along the side that it is over.

@@ -3,15 +3,18 @@
 
 #include <cstring>
 
-// Suites named "long: ..." are for ./test.sh long: here they are left out unless one is asked for. The suite
-// "optimised" is left out of the sanitizer build, ten times slower, where shorter cases run the same code.
+// Suites that are left out unless asked for by name: "long: ...", for ./test.sh long, and, of the sanitizer
+// build, ten times slower, "optimised", where shorter cases run the same code.
 int main(int argc, char** argv) {
-  bool asked = false;
-  for (int i = 1; i < argc; ++i) asked |= std::strstr(argv[i], "long:") != nullptr;
   doctest::Context context;
-  if (!asked) context.addFilter("test-suite-exclude", "long:*");
+  const auto leave_out = [&](const char* name, const char* suites) {
+    for (int i = 1; i < argc; ++i)
+      if (std::strstr(argv[i], name)) return;
+    context.addFilter("test-suite-exclude", suites);
+  };
+  leave_out("long:", "long:*");
 #ifdef __SANITIZE_ADDRESS__
-  context.addFilter("test-suite-exclude", "optimised");
+  leave_out("optimised", "optimised");
 #endif
   context.applyCommandLine(argc, argv);
   return context.run();

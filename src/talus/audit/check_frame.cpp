@@ -511,13 +511,18 @@ class Check {
     const double either = law->normal_stiffness * blurred * rules_.thickness;
     const double larger = std::max(normal, winkler) - either, smaller = std::min(normal, winkler) + either;
     if (larger <= kForceInvalid * mean_force_ || larger <= kNormalWarns * smaller) return;
+    std::string what = fmt::format(
+        "a normal force of {:.4g} N, where the stiffness of the joint times the overlap of the two is {:.4g} "
+        "N",
+        normal, winkler);
+    if (frame_.step > 0)
+      what += fmt::format(
+          " (if the two have just hit each other, steps of {:.3g} s are too long for this stiffness: give "
+          "the "
+          "stage a smaller time_step)",
+          frame_.step);
     out.findings.push_back(finding(Defect::kNormalLaw, larger > kNormalInvalid * smaller, pair.a, pair.b,
-                                   place, larger / smaller,
-                                   fmt::format("a normal force of {:.4g} N, where the stiffness of the joint "
-                                               "times the overlap of the two is {:.4g} N (where the two have "
-                                               "just hit each other: steps of {:.3g} s are too long for this "
-                                               "stiffness)",
-                                               normal, winkler, frame_.step)));
+                                   place, larger / smaller, std::move(what)));
   }
 
   // Whether a side of the corner lies along the side that it is over.

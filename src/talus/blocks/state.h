@@ -150,9 +150,8 @@ struct WorkDone {
 
 /// How a static stage comes to rest, looked at every 250 steps.
 struct RestWatch {
-  int64_t steps = 0;  // since the stage began
-  double best =
-      0;  // least sqrt(unbalanced x velocity left) over what is asked for since the last look; 0: none
+  int64_t steps = 0;   // since the stage began
+  double best = 0;     // least of the measure of rest (theory.md 4.8) since the last look; 0: none
   double before = 0;   // the same between the last two looks
   double sharper = 1;  // share of the solver's tolerance to which steps are solved
   int stuck = 0;       // looks in a row that stall or, at the sharpest, are without any progress

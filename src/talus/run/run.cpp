@@ -27,6 +27,10 @@ constexpr int64_t kRestLook = 250;
 constexpr double kStalled = 0.9, kNoProgress = 0.98, kSharpest = 1e-4;
 constexpr int kStalls = 2, kMostStuck = 4;
 
+// What the solver leaves, as share of the unbalanced force, below which it is not what keeps a stage from
+// rest.
+constexpr double kSolverShare = 0.02;
+
 // Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.
 constexpr double kFarToGo = 1e-3;
 
@@ -212,9 +216,8 @@ class Runner {
   // What keeps a stage from resting, and the key to change.
   std::string why_no_rest(const StageInput& stage, const StageResult& out) const {
     const double dt = plans_[result_.stages.size() - 1].dt;
-    const size_t i = static_cast<size_t>(std::max(last_.worst_block, 0));
-    const double floor = scene_.blocks.mass[i] * last_.error.worst / (dt * dt);
-    if (last_.worst_block >= 0 && floor > 0.5 * last_.worst_force)
+    const double floor = solver_leaves(last_, dt);
+    if (floor > 0.5 * last_.worst_force)
       return fmt::format(
           "That is what the solver leaves: an error of {:.2g} m in a step of {:.2g} s is a force of {:.2g} N "
           "there. "
@@ -240,6 +243,12 @@ class Runner {
         stage.name);
   }
 
+  // The force that the error of a step is on the block with the largest unbalanced force [N].
+  double solver_leaves(const StepReport& report, double dt) const {
+    if (report.worst_block < 0) return 0;
+    return scene_.blocks.mass[static_cast<size_t>(report.worst_block)] * report.error.worst / (dt * dt);
+  }
+
   // Where a static stage makes no progress its steps are solved more sharply: errors that the solver leaves
   // are forces. Whether that has not helped either, and nothing is on its way anywhere.
   bool watch_rest(const StageInput& stage, const StepReport& report, const StagePlan& plan, int64_t n) {
@@ -247,14 +256,15 @@ class Runner {
     // both together: while one of them falls, as the forces do while a large mass still swings slowly, the
     // solver is not what keeps the other
     const double now = std::sqrt(report.unbalanced * report.speed_left) / stage.unbalanced;
-    rest.best = rest.best > 0 ? std::min(rest.best, now) : now;
     // while forces are let go of, balance says nothing
-    if (!is_relaxed(stage, n)) rest.best = 0;
+    rest.best = !is_relaxed(stage, n) ? 0 : rest.best > 0 ? std::min(rest.best, now) : now;
     if (++rest.steps % kRestLook != 0) return false;
     const double progress = rest.before > 0 ? rest.best / rest.before : 0;
     const bool at_sharpest = rest.sharper <= kSharpest;
     rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
-    if (!at_sharpest && rest.stuck >= (rest.sharper < 1 ? 1 : kStalls)) {
+    // one look is enough the second time: that the solver is what keeps it was found the first
+    const bool by_solver = solver_leaves(report, plan.dt) > kSolverShare * report.worst_force;
+    if (!at_sharpest && by_solver && rest.stuck >= (rest.sharper < 1 ? 1 : kStalls)) {
       rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
       rest.stuck = 0;
     }

@@ -302,6 +302,45 @@ TEST_CASE("a static stage that finds no rest says where") {
     CHECK(r.failure.find(piece) != std::string::npos);
 }
 
+TEST_CASE("a mass that swings slowly is no reason to solve more sharply") {
+  // 2000 kg on 20 kN/m: a period of 2 s, 2000 steps, with a twentieth of the critical damping
+  const std::string slow = R"(talus = 1
+[model]
+gravity = [0, -0.1]
+[material.rock]
+density = 2000
+[joint.soft]
+normal_stiffness = 20e3
+shear_stiffness = 10e3
+[contact]
+joint = "soft"
+[[block]]
+name = "ground"
+polygon = [[-1, -1], [2, -1], [2, 0], [-1, 0]]
+material = "rock"
+kind = "fixed"
+[[block]]
+name = "mass"
+polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
+material = "rock"
+kind = "rigid"
+[[stage]]
+name = "swing"
+kind = "static"
+duration = "60 s"
+time_step = "1 ms"
+damping_mass = "0.314 1/s"
+damping_local = 0
+unbalanced = 0.01
+)";
+  double sharpest = 1;
+  const CaseResult r =
+      run_case(slow, {}, [&](const Instant& i) { sharpest = std::min(sharpest, i.state.rest.sharper); });
+  CHECK(r.run.stages[0].at_rest);
+  CHECK(r.run.stages[0].steps > 10000);
+  CHECK(sharpest == 1);
+}
+
 TEST_CASE("wrong stages are found before the first step") {
   const std::string dig = kProp + "[[stage]]\nname = \"dig\"\nkind = \"static\"\nduration = 1\n";
   const std::string more = "[[stage]]\nname = \"more\"\nkind = \"static\"\nduration = 1\n";

@@ -47,8 +47,9 @@ void add_model_arguments(CLI::App& verb, ModelArguments& args) {
       ->allow_extra_args(false);
 }
 
-talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings, const std::string& text) {
-  talus::PreparedRun run = talus::prepare_run(args.file, text, args.overrides, findings);
+talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings, const std::string& text,
+                           talus::Cut* cut = nullptr) {
+  talus::PreparedRun run = talus::prepare_run(args.file, text, args.overrides, findings, cut);
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
   return run;
 }
@@ -56,7 +57,8 @@ talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings
 int check(const ModelArguments& args) {
   const std::string text = talus::read_text_file(args.file);
   talus::Findings findings(args.file, text);
-  const talus::PreparedRun run = prepare(args, findings, text);
+  talus::Cut cut;
+  const talus::PreparedRun run = prepare(args, findings, text, &cut);
   const talus::Prediction p = talus::predict(run.scene, run.plans);
   fmt::print("{}: no errors, {} warning{}\n", args.file, findings.warning_count(),
              findings.warning_count() == 1 ? "" : "s");
@@ -81,6 +83,12 @@ int check(const ModelArguments& args) {
       fmt::print("             moment clamp: {} blocks, up to {:.3g} times\n", plan.clamped,
                  plan.largest_clamp);
   }
+  const talus::SliverTable& slivers = cut.slivers;
+  if (slivers.needles + slivers.merged + slivers.deleted + slivers.kept > 0)
+    fmt::print(
+        "  slivers    {} needles without a joint of their own merged; {} merged, {} deleted, {} kept\n",
+        slivers.needles, slivers.merged, slivers.deleted, slivers.kept);
+  fmt::print("{}", talus::sliver_offer_text(talus::sliver_offers(run, cut)));
   fmt::print("  memory     about {}\n", talus::readable_bytes(p.memory));
   const bool at_most = std::any_of(run.scene.model.stages.begin(), run.scene.model.stages.end(),
                                    [](const auto& s) { return s.kind == talus::StageKind::kStatic; });

@@ -12,3 +12,4 @@
 #include "talus/run/recorder.h"
 #include "talus/run/run.h"
 #include "talus/run/safety.h"
+#include "talus/run/sliver_offer.h"

@@ -275,7 +275,7 @@ TEST_CASE("command: a blocks file outlives values, not the shapes it was cut fro
        {"joint_set.steep.spacing=5 m", "joint_set.steep.angle.mean=81 deg", "joint_set.steep.name=other",
         "region.rock.polygon=[[0,0],[20,0],[20,12],[0,11.9]]",
         "region.rock.sides=[\"a\",\"b\",\"c\",\"left\"]", "opening.tunnel.segments=16",
-        "opening.tunnel.rock=kept", "cut.seed=2", "cut.slivers=keep", "cut.grid=1 mm"}) {
+        "opening.tunnel.rock=kept", "cut.seed=2", "cut.slivers=delete", "cut.grid=1 mm"}) {
     const Outcome o = check(item);
     INFO(item, "\n", o.text);
     CHECK(o.code == 3);
@@ -290,7 +290,7 @@ TEST_CASE("command: damaged blocks files are refused") {
       [](auto& j) {
         j = {1, 2};
       },
-      [](auto& j) { j["talus_blocks"] = 2; },
+      [](auto& j) { j["talus_blocks"] = 1; },
       [](auto& j) { j.erase("cut"); },
       [](auto& j) { j["grid"] = 0; },
       [](auto& j) { j["points"][5][0] = "x"; },
@@ -334,7 +334,7 @@ TEST_CASE("command: overrides reach scattered quantities and list entries by nam
   CHECK(blocks("joint_set.0.spacing=1 m") == blocks("joint_set.steep.spacing=1 m"));
   CHECK(blocks("joint_set.steep.spacing.mean=2 m") > as_written);
   CHECK(blocks("opening.tunnel.rock=kept") == as_written + 1);
-  CHECK(blocks("region.rock.polygon=[[0,0],[20,0],[20,3],[0,12]]") != as_written);
+  CHECK(blocks("region.rock.polygon=[[0,0],[20,0],[20,30],[0,12]]") != as_written);
   const auto refused = [&](const std::string& item, const std::string& why) {
     const Outcome o = shell(f, fmt::format("$talus cut m.toml -o no --set '{}'", item));
     CHECK(o.code == 3);

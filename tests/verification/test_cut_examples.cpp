@@ -58,10 +58,11 @@ double edge_length(const Cut& cut, const std::string& origin) {
 
 }  // namespace
 
-TEST_CASE("example tunnel: blocks of the reference, and a time step without slivers") {
+TEST_CASE("example tunnel: blocks of the reference, slivers along the outline and the tunnel alone") {
   const CutExample e = cut_example("tunnel");
+  CHECK(e.statistics.after.count == 5307);
   // 5307 blocks without the tunnel; the pieces into which its circle divides them come in addition
-  const CutExample solid = cut_example("tunnel", {"opening.tunnel.rock=\"kept\"", "cut.slivers=\"keep\""});
+  const CutExample solid = cut_example("tunnel", {"opening.tunnel.rock=\"kept\""});
   int inside = 0;
   for (const CutBlock& b : solid.cut.blocks) inside += b.opening >= 0;
   CHECK(inside == e.cut.taken_out);
@@ -69,9 +70,12 @@ TEST_CASE("example tunnel: blocks of the reference, and a time step without sliv
   const BlockStatistics& s = e.statistics.after;
   // a full block: 3 m / sin 50 deg along both sides; limit by theory 2.4
   check_close("tunnel full block's stable step [s]", s.step.median, 0.872e-3, 1e-3, 1e-3);
-  CHECK(s.step.min >= 0.25 * s.step.median);
-  CHECK(e.cut.slivers.merged < 0.03 * e.statistics.before.count);
-  CHECK(e.cut.slivers.kept == 0);
+  CHECK(e.cut.slivers.merged == 0);
+  CHECK(e.cut.slivers.kept == 83);
+  for (const Sliver& row : e.cut.slivers.rows) {
+    const double to_side = std::min({row.at.x, 200 - row.at.x, row.at.y, 300 - row.at.y});
+    CHECK(std::min(to_side, std::abs(norm(row.at - Vec2{100, 200}) - 4.9)) < 1);
+  }
 }
 
 TEST_CASE("example slope: apparent dips by formula, no rock lost") {
@@ -84,7 +88,7 @@ TEST_CASE("example slope: apparent dips by formula, no rock lost") {
   // corners lie on the grid: 1e-6 m along 360 m of outline
   const double area = signed_area(e.model.regions[0].polygon);
   check_close("slope area [m2]", e.statistics.after.total_area, area, 1e-7, 1e-7);
-  CHECK(e.cut.slivers.kept == 0);
+  CHECK(e.cut.slivers.merged == 0);
 }
 
 TEST_CASE("example cavern: the fault stays whole, the gallery's rock stays") {
@@ -132,14 +136,16 @@ TEST_CASE("example wall: blocks counted by hand, the ground carries the weight")
 TEST_CASE("example settle: nothing passes through anything") {
   LargestOverlap worst;
   const CaseResult r =
-      run_case(example("settle"), {"output.history_interval=\"10 ms\""}, [&](const Instant& now) {
-        if (!now.last && now.state.step % 50 != 0) return;
-        const LargestOverlap largest = largest_overlap(now.scene.blocks, now.state);
-        if (largest.share > worst.share) worst = largest;
-      });
+      run_case(example("settle"), {"output.history_interval=\"10 ms\"", "cut.slivers=\"delete\""},
+               [&](const Instant& now) {
+                 if (!now.last && now.state.step % 50 != 0) return;
+                 const LargestOverlap largest = largest_overlap(now.scene.blocks, now.state);
+                 if (largest.share > worst.share) worst = largest;
+               });
   INFO(worst.between);
   // joints of 20 GPa/m under at most twice the weight of 60 m close by 0.17 mm, of blocks 3 m wide: 6e-5;
-  // three-cornered ones at the floor have half the area per side
+  // three-cornered ones at the floor have half the area per side. Crumbs of centimetres, whose share is more
+  // by as much as they are thinner, are left out
   check_below("settle, largest overlap / smaller block", worst.share, 1e-3, 2e-4);
   CHECK(r.run.failed_steps == 0);
 }

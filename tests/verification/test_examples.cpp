@@ -322,13 +322,12 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
     near = std::max(near, speed(i, {4, 0})), far = std::max(far, speed(i, {12, 0}));
   });
   check_below("blast_hole kinetic energy before / largest", before / most, 1e-6, 1e-8);
-  // what opened joints keep moving: below 2 % when two faces had lost their cohesion, 2.2 % with the 161 that
-  // opened
-  check_below("blast_hole kinetic energy left / largest", last / most, 4e-2, 3e-2);
+  // what opened joints keep moving, most of it crumbs at the wall of the hole: 2.1 % with slivers = "delete"
+  check_below("blast_hole kinetic energy left / largest", last / most, 8e-2, 6e-2);
   // no formula: what the example's README quotes
-  check_close("blast_hole velocity past 4 m [m/s]", near, 0.2390, 1e-2, 1e-3);
-  check_close("blast_hole velocity past 12 m [m/s]", far, 0.1171, 1e-2, 1e-3);
-  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 161, 2e-2, 1e-12);
+  check_close("blast_hole velocity past 4 m [m/s]", near, 0.2647, 1e-2, 1e-3);
+  check_close("blast_hole velocity past 12 m [m/s]", far, 0.1268, 1e-2, 1e-3);
+  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 184, 2e-2, 1e-12);
   check_below("blast_hole energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
@@ -363,13 +362,13 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   }
   // no formula: what the README quotes. Half the time step changes the crest by 11 % and the ground behind
   // by 4 %, another state of rest before by 2 %; other compilers may too
-  check_close("shaken_slope largest velocity of the base [m/s]", base, 0.338, 1e-2, 2e-3);
-  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.543, 5e-2, 1e-2);
+  check_close("shaken_slope largest velocity of the base [m/s]", base, 0.337, 1e-2, 2e-3);
+  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.479, 5e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.246, 5e-2, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.396, 5e-2, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
-              (behind_end - behind_start - base_end + base_start).x, -0.0740, 1e-1, 6e-2);
-  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.234, 5e-2, 1e-2);
+              (behind_end - behind_start - base_end + base_start).x, -0.0698, 1e-1, 6e-2);
+  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.591, 5e-2, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
 
@@ -397,13 +396,16 @@ TEST_CASE("example bolted_tunnel comes to rest, no bolt yields") {
       CHECK(p.condition == BoltPart::kElastic);
       crossings += p.crossing, ++pieces;
     }
-    CHECK(crossings == 15);
+    CHECK(crossings == 14);
     CHECK(i.scene.model.bolts.size() == 12);
     // what the bar passes on at a crossing is what its statics say, once nothing moves
-    const BoltPart part = bolt_parts(i.scene.blocks, i.state)[5];
-    REQUIRE(part.crossing);
     const Bolt& bolt = i.state.bolts[0];
-    check_close("bolted_tunnel row / statics", part.axial, bolt.segments[5].force / bolt.share, 1e-3, 1e-5);
+    const auto parts = bolt_parts(i.scene.blocks, i.state);
+    size_t k = 0;
+    while (k < bolt.segments.size() && !parts[k].crossing) ++k;
+    REQUIRE(k < bolt.segments.size());
+    check_close("bolted_tunnel row / statics", parts[k].axial, bolt.segments[k].force / bolt.share, 1e-3,
+                1e-5);
   });
   check_below("bolted_tunnel energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }

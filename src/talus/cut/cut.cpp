@@ -51,21 +51,9 @@ class Cutter {
     const Arrangement net = arrange_without_holes(out);
     take_over(net, out);
     name_outline(out);
-    std::vector<bool> removed;
-    for (const OpeningInput& o : model_.openings) {
-      out.openings.push_back(o.name);
-      removed.push_back(!o.kept);
-    }
-    out.blocks = out.whole;
-    treat_slivers(model_.cut, removed, out);
-    const auto is_out = [&](const CutBlock& b) {
-      return b.opening >= 0 && removed[static_cast<size_t>(b.opening)];
-    };
-    const size_t before = out.blocks.size();
-    out.blocks.erase(std::remove_if(out.blocks.begin(), out.blocks.end(), is_out), out.blocks.end());
-    out.taken_out = static_cast<int>(before - out.blocks.size());
+    for (const OpeningInput& o : model_.openings) out.openings.push_back(o.name);
     check_use(out);
-    return out;
+    return with_slivers(model_, std::move(out));
   }
 
  private:
@@ -90,6 +78,7 @@ class Cutter {
     out.surveys = std::move(traces_.surveys);
     out.point = net.point;
     out.edge = net.edge;
+    out.edge_line = net.edge_source;
     for (const int line : net.edge_source)
       out.edge_origin.push_back(traces_.traces[static_cast<size_t>(line)].origin);
     out.dead_ends = net.dead_ends;
@@ -175,6 +164,19 @@ std::string Cut::name(const CutBlock& block) const {
   const std::string& group = block.opening >= 0 ? openings[static_cast<size_t>(block.opening)]
                                                 : regions[static_cast<size_t>(block.region)].name;
   return fmt::format("{}[{}]", group, block.id);
+}
+
+Cut with_slivers(const Model& model, Cut cut) {
+  cut.blocks = cut.whole;
+  cut.slivers = {};
+  treat_slivers(model, cut);
+  const auto is_out = [&model](const CutBlock& b) {
+    return b.opening >= 0 && !model.openings[static_cast<size_t>(b.opening)].kept;
+  };
+  const size_t before = cut.blocks.size();
+  cut.blocks.erase(std::remove_if(cut.blocks.begin(), cut.blocks.end(), is_out), cut.blocks.end());
+  cut.taken_out = static_cast<int>(before - cut.blocks.size());
+  return cut;
 }
 
 Cut cut_model(const Model& model, Findings& findings) {

@@ -20,7 +20,8 @@ struct CutBlock {
   std::vector<int> edge;   // edge[k] runs from point[k] to point[k + 1]
 };
 
-enum class SliverAction { kMerged, kDeleted, kKept };
+/// Needles have no joint of their own, or lie between two that are one, and are merged without asking.
+enum class SliverAction { kNeedle, kMerged, kDeleted, kKept };
 
 /// A block below a limit, and what was done.
 struct Sliver {
@@ -31,12 +32,18 @@ struct Sliver {
   int into = -1;  // id of the receiver
 };
 
+/// Below which a block of one region is a sliver.
+struct SliverLimits {
+  double median_area = 0, median_width = 0;  // of all its blocks before [m2], [m]; 0: it has none
+  double area = 0, width = 0;                // [m2], [m]
+};
+
 struct SliverTable {
-  double median_area = 0, median_width = 0;  // of all blocks before
-  double area_limit = 0, width_limit = 0;
+  std::vector<SliverLimits> limits;  // [regions]
   std::vector<Sliver> rows;
-  int merged = 0, deleted = 0, kept = 0;
+  int needles = 0, merged = 0, deleted = 0, kept = 0;
   int receivers = 0;        // blocks that took up slivers
+  std::vector<int> opened;  // edges along which slivers with joints were merged
   double deleted_area = 0;  // [m2]
 };
 
@@ -48,6 +55,7 @@ struct Cut {
   std::vector<Vec2> point;               // [n_points]
   std::vector<std::array<int, 2>> edge;  // [n_edges] points
   std::vector<int> edge_origin;          // [n_edges]
+  std::vector<int> edge_line;            // [n_edges] which of the lines cut along; empty: read from a file
   std::vector<CutBlock> whole;           // all blocks before anything was merged or taken out, by id
   std::vector<CutBlock> blocks;          // what is left
   std::vector<JointSetNote> joint_sets;
@@ -67,5 +75,9 @@ struct Cut {
 /// Throws std::runtime_error when the arrangement fails, which no input should bring about.
 /// @pre the model's shapes are readable
 Cut cut_model(const Model& model, Findings& findings);
+
+/// The same cut with slivers treated as `model.cut` says now. @pre  the cut is of cut_model, of a model that
+/// differs in this alone
+Cut with_slivers(const Model& model, Cut cut);
 
 }  // namespace talus

@@ -212,8 +212,13 @@ Layout make_layout(const Model& model, Findings& findings) {
 Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   Layout layout;
   layout.default_joint = model.default_joint;
-  layout.slivers_merged = cut.slivers.merged, layout.slivers_deleted = cut.slivers.deleted,
-  layout.slivers_kept = cut.slivers.kept;
+  layout.needles_merged = cut.slivers.needles, layout.slivers_merged = cut.slivers.merged;
+  layout.slivers_deleted = cut.slivers.deleted, layout.slivers_kept = cut.slivers.kept;
+  if (layout.slivers_merged + layout.slivers_deleted > 0)
+    findings.warning(
+        model.cut.where_slivers, "cut.slivers",
+        fmt::format("merges {} blocks and deletes {}", layout.slivers_merged, layout.slivers_deleted),
+        "a mechanism may be hidden there: compare with \"keep\"; talus cut draws the places in red");
   for (const JointProperty& j : model.joints) layout.glued.push_back(j.bonded);
   bool sound = true;
   for (const BlockInput& in : model.blocks) {

@@ -38,7 +38,7 @@ struct Layout {
   double touching = 0;               // [m] edges of cut blocks lie this near to each other where they touch
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
-  int slivers_merged = 0, slivers_deleted = 0, slivers_kept = 0;  // of the cut
+  int needles_merged = 0, slivers_merged = 0, slivers_deleted = 0, slivers_kept = 0;  // of the cut
   std::vector<char> glued;  // [joints] bonded: no law for blocks that meet at a corner; empty: none
 
   /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and

@@ -24,6 +24,8 @@ Polygon circle_polygon(Vec2 center, double diameter, int segments) {
   return polygon;
 }
 
+double sagitta(double radius, double angle) { return radius * (1 - std::cos(0.5 * angle)); }
+
 Polygon horseshoe_polygon(Vec2 center, double width, double height, int segments) {
   const double r = 0.5 * width, floor = center.y - (height - r);
   // inner corners at radius R, the two ends at r: sin(a)/2 (2 r R + (n - 2) R^2) = pi r^2 / 2

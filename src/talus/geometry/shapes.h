@@ -10,6 +10,9 @@ namespace talus {
 /// @pre diameter > 0 [m], segments >= 3
 Polygon circle_polygon(Vec2 center, double diameter, int segments);
 
+/// Height of the arc of an angle over its chord [m].
+double sagitta(double radius, double angle);
+
 /// Half a circle on straight walls over a flat floor, counter-clockwise from the lower left corner. The half
 /// circle has `segments` edges; its ends lie on the walls.
 /// @param center  of the half circle, at the height where the walls end

@@ -34,6 +34,8 @@ struct RegionInput {
   int material = -1;
   int joint = -1;
   BlockKind kind = BlockKind::kDeformable;
+  double sliver_area = std::numeric_limits<double>::quiet_NaN();   // [m2] NaN: that of the cut
+  double sliver_width = std::numeric_limits<double>::quiet_NaN();  // [m]
   Where where;
 };
 
@@ -88,7 +90,8 @@ enum class OpeningShape { kCircle, kHorseshoe, kPolygon };
 struct OpeningInput {
   std::string name;
   OpeningShape shape = OpeningShape::kPolygon;
-  Polygon polygon;  // the outline, whatever the shape
+  Polygon polygon;     // the outline, whatever the shape
+  double sagitta = 0;  // [m] of the facets of a curve; 0: none
   bool kept = false;
   int joint = -1;
   Where where;
@@ -114,17 +117,19 @@ struct MasonryInput {
   Where where;
 };
 
-enum class SliverPolicy { kMerge, kDelete, kKeep };
+enum class SliverPolicy { kKeep, kMerge, kDelete };
 
 struct CutInput {
   double section_azimuth = std::numeric_limits<double>::quiet_NaN();  // [rad] of +x, clockwise from north
   double grid = std::numeric_limits<double>::quiet_NaN();             // [m], NaN: automatic
   uint64_t seed = 1;
-  SliverPolicy slivers = SliverPolicy::kMerge;
+  SliverPolicy slivers = SliverPolicy::kKeep;
+  std::vector<std::string>
+      merge_along;  // joint sets whose lines may be parted by merging although they reach a free face
   double sliver_area = 0, sliver_width = 0;              // [m2], [m]
-  double sliver_area_share = 0, sliver_width_share = 0;  // of the median block
+  double sliver_area_share = 0, sliver_width_share = 0;  // of the median block of the region
   std::string blocks_file;                               // cut before; "" cut now
-  Where where, where_file, where_grid;
+  Where where, where_file, where_grid, where_slivers;
 };
 
 }  // namespace talus

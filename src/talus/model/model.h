@@ -189,9 +189,8 @@ struct StageInput {
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;
-  bool implicit = false;  // block-implicit elasticity
-  bool elasticity_by_contact =
-      false;                     // implicit where a hard contact with friction can slide (set by build_scene)
+  bool implicit = false;         // block-implicit elasticity
+  bool elasticity_auto = false;  // implicit where theory 4.9 asks for it (set by build_scene)
   double damping_mass = 0;       // [1/s]
   double damping_stiffness = 0;  // [s]
   double damping_local = 0;      // [-]
@@ -265,6 +264,7 @@ struct SafetyInput {
   double displacement =
       std::numeric_limits<double>::quiet_NaN();  // [m] at which a trial has failed, NaN = automatic
   std::vector<int> joints;                       // reduced; empty: all
+  bool accept_merged = false;                    // a model with slivers merged or deleted, too
   Where where;
 };
 

@@ -94,9 +94,15 @@ class CutReader : private SectionReader {
     c.seed = static_cast<uint64_t>(f.get<int64_t>("seed", 1));
     c.grid = f.get("grid", c.grid);
     const auto policy = f.get<std::string>("slivers");
-    c.slivers = policy == "delete" ? SliverPolicy::kDelete
-                : policy == "keep" ? SliverPolicy::kKeep
-                                   : SliverPolicy::kMerge;
+    c.where_slivers = f.where("slivers");
+    c.slivers = policy == "delete"  ? SliverPolicy::kDelete
+                : policy == "merge" ? SliverPolicy::kMerge
+                                    : SliverPolicy::kKeep;
+    c.merge_along = f.get<std::vector<std::string>>("merge_along");
+    where_merge_along_ = f.where("merge_along");
+    if (f.given("merge_along") && c.slivers != SliverPolicy::kMerge)
+      findings_.warning(where_merge_along_, f.path_of("merge_along"), "has no effect: nothing is merged",
+                        "it counts with slivers = \"merge\"");
     c.sliver_area = f.get("sliver_area", 0.0);
     c.sliver_width = f.get("sliver_width", 0.0);
     c.sliver_area_share = f.get("sliver_area_share", 0.0);
@@ -135,6 +141,8 @@ class CutReader : private SectionReader {
       r.material = material(f);
       r.joint = joint(f);
       r.kind = block_kind(f.get<std::string>("kind"));
+      r.sliver_area = f.get("sliver_area", r.sliver_area);
+      r.sliver_width = f.get("sliver_width", r.sliver_width);
       model_.regions.push_back(std::move(r));
     });
   }
@@ -189,6 +197,7 @@ class CutReader : private SectionReader {
           check_polygon(f, "polygon", o.polygon);
         } else if (o.shape == OpeningShape::kCircle) {
           o.polygon = circle_polygon(f.get<Vec2>("center"), f.get("diameter", 1.0), segments);
+          o.sagitta = sagitta(0.5 * f.get("diameter", 1.0), 2 * std::numbers::pi / segments);
         } else if (f.get("height", 1.0) < 0.5 * f.get("width", 1.0)) {
           findings_.error(f.where("height"), f.path_of("height"), "is less than half the width",
                           "the half circle alone is half the width high");
@@ -196,6 +205,7 @@ class CutReader : private SectionReader {
         } else {
           o.polygon =
               horseshoe_polygon(f.get<Vec2>("center"), f.get("width", 1.0), f.get("height", 1.0), segments);
+          o.sagitta = sagitta(0.5 * f.get("width", 1.0), std::numbers::pi / segments);
         }
       }
       o.kept = f.get<std::string>("rock") == "kept";
@@ -375,6 +385,12 @@ class CutReader : private SectionReader {
                       "give the outline of the rock as [[region]] with name, polygon and material");
       incomplete();
     }
+    for (const std::string& name : model_.cut.merge_along) {
+      const auto is_it = [&name](const JointSetInput& s) { return s.name == name; };
+      if (std::any_of(model_.joint_sets.begin(), model_.joint_sets.end(), is_it)) continue;
+      findings_.error(where_merge_along_, "cut.merge_along", fmt::format("\"{}\" is no joint set", name),
+                      "blocks are merged along the lines of joint sets only: give names of [[joint_set]]s");
+    }
     for (const auto& [side, place] : side_names_)
       if (trace_names_.count(side))
         findings_.error(place.first, place.second,
@@ -390,6 +406,7 @@ class CutReader : private SectionReader {
 
   Model& model_;
   bool azimuth_given_ = false;
+  Where where_merge_along_;
   std::set<std::string>& block_names_;
   std::set<std::string> trace_names_;
   std::map<std::string, std::pair<Where, std::string>> side_names_;  // with place and key

@@ -496,6 +496,7 @@ class ModelReader : private SectionReader {
     s.highest = f.get("highest", s.highest);
     s.tolerance = f.get("tolerance", s.tolerance);
     s.displacement = f.get("displacement_limit", s.displacement);
+    s.accept_merged = f.get("accept_merged", false);
     s.where = f.where();
     if (!(s.lowest < s.highest))
       findings_.error(f.where("highest"), f.path_of("highest"), "must be larger than lowest");

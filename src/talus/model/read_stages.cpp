@@ -47,8 +47,7 @@ class StageReader : private SectionReader {
     s.moment_clamp = f.get("moment_clamp", false);
     s.implicit = f.get<std::string>("elasticity") == "implicit";
     // a share of the stable step, or a clamp for it, asks for the explicit way
-    s.elasticity_by_contact =
-        f.get<std::string>("elasticity") == "auto" && !f.given("safety") && !s.moment_clamp;
+    s.elasticity_auto = f.get<std::string>("elasticity") == "auto" && !f.given("safety") && !s.moment_clamp;
     s.damping_mass = f.get("damping_mass", 0.0);
     s.damping_stiffness = f.get("damping_stiffness", 0.0);
     s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);

@@ -38,7 +38,15 @@ std::vector<SectionSpec> cut_sections() {
          .type = K::kChoice,
          .default_text = "\"deformable\"",
          .choices = {"deformable", "rigid", "fixed"},
-         .doc = "Kind of all its blocks."}}},
+         .doc = "Kind of all its blocks."},
+        {.name = "sliver_area",
+         .dimension = D::kArea,
+         .range = kNonNegative,
+         .doc = "Least area of its blocks; none: that of `[cut]`."},
+        {.name = "sliver_width",
+         .dimension = D::kLength,
+         .range = kNonNegative,
+         .doc = "Least width of its blocks; none: that of `[cut]`."}}},
 
       {"arch",
        SectionShape::kList,
@@ -319,11 +327,19 @@ std::vector<SectionSpec> cut_sections() {
                 "models below 95 m (1e-8 of their size)."},
         {.name = "slivers",
          .type = K::kChoice,
-         .default_text = "\"merge\"",
-         .choices = {"merge", "delete", "keep"},
+         .default_text = "\"keep\"",
+         .choices = {"keep", "merge", "delete"},
          .doc =
-             "What becomes of blocks below one of the four limits: `merge`: joined to the neighbour with the "
-             "longest shared edge, across a fault only when there is no other; `delete`: taken out; `keep`."},
+             "What becomes of blocks below one of the four limits: `keep`: they stay, whatever step they ask "
+             "for (`talus check` says what merging would buy); `merge`: those inside the rock are joined to "
+             "a neighbour across edges of joint sets, never across a fault, a surveyed trace or an edge that "
+             "ends at a free face; `delete`: taken out. `merge` and `delete` may hide a mechanism: `talus "
+             "safety` refuses them unless `safety.accept_merged`. Needles without a joint of their own "
+             "(theory.md 10.3) are merged whatever is said here."},
+        {.name = "merge_along",
+         .type = K::kTexts,
+         .doc = "Joint sets whose lines merging may interrupt although they reach the outline or an opening: "
+                "such a line may be the one that something slides on. None: only lines that end inside."},
         {.name = "sliver_area",
          .dimension = D::kArea,
          .range = kNonNegative,
@@ -337,11 +353,11 @@ std::vector<SectionSpec> cut_sections() {
         {.name = "sliver_area_share",
          .range = {.min = 0, .max = 0.5},
          .default_text = "0.02",
-         .doc = "The same as share of the median area."},
+         .doc = "The same as share of the median area of the blocks of the region."},
         {.name = "sliver_width_share",
          .range = {.min = 0, .max = 0.5},
          .default_text = "0.3",
-         .doc = "The same as share of the median width; it bounds the loss of time step."},
+         .doc = "The same as share of the median width; merged, it bounds the loss of time step."},
         {.name = "blocks",
          .type = K::kText,
          .doc = "A blocks file of an earlier `talus cut` of the same regions and joints, relative to the "

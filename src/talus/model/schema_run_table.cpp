@@ -30,7 +30,9 @@ std::vector<SectionSpec> run_sections() {
         {.name = "tolerance",
          .range = {.min = 0, .max = 1e-2, .min_open = true},
          .default_text = "1e-8",
-         .doc = "Largest contact error of a step, as share of the smallest block's size."},
+         .doc = "Largest contact error of a step, as share of the size of the smallest block, or of a tenth "
+                "of the median "
+                "block's, where slivers are smaller than that."},
         {.name = "max_iterations",
          .type = K::kInteger,
          .range = {.min = 1, .max = 10000},
@@ -163,8 +165,16 @@ std::vector<SectionSpec> run_sections() {
          .range = kPositive,
          .default_text = "\"auto\"",
          .doc = "A trial has failed when some block has moved this far since the start of its stage. "
-                "\"auto\": a "
-                "tenth of the smallest block's size (the square root of its area)."},
+                "\"auto\": a tenth of its own size (the square root of its area), and at least of the median "
+                "block's but no more than half its own, if it still moves. Needles (below 1e-4 of the median "
+                "block's area or 0.002 "
+                "of its "
+                "thickness) do not vote then."},
+        {.name = "accept_merged",
+         .type = K::kBool,
+         .default_text = "false",
+         .doc = "Whether to seek the factor of a model in which slivers were merged or deleted "
+                "(`cut.slivers`), which may hide the block that fails."},
         {.name = "joints",
          .type = K::kTexts,
          .doc = "Names of the joints whose strength is reduced; none: all but bonded ones."}}},

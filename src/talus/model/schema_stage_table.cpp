@@ -77,12 +77,16 @@ SectionSpec stage_section() {
         .default_text = "\"auto\"",
         .choices = {"auto", "explicit", "implicit"},
         .doc =
-            "`auto`: implicit where a deformable block can slide on a hard contact with friction, else "
+            "`auto`: implicit where a deformable block can slide on a hard contact with friction, and in "
+            "static "
+            "stages where a few slivers would ask for a step below a twentieth of the median block's, else "
             "explicit, and "
             "explicit with `safety` or `moment_clamp`. "
             "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "
             "is part of its mass matrix (theory 4.9), so that no block limits the time step; \"auto\" is "
-            "then the time in which a wave crosses two blocks of median size."},
+            "then the time in which a wave crosses two blocks of median size, and at most twice (with local "
+            "damping, once) the inverse angular frequency of all but a tenth of the blocks on their elastic "
+            "joints."},
        {.name = "moment_clamp",
         .type = K::kBool,
         .default_text = "false",

@@ -13,9 +13,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Share of the blocks that a sliver policy should not exceed.
-constexpr double kManyRemoved = 0.03;
-
 Spread spread_of(std::vector<double> v) {
   if (v.empty()) return {};
   std::sort(v.begin(), v.end());
@@ -47,6 +44,8 @@ BlockSet block_set_of(const Model& model, const std::vector<BlockShape>& blocks)
 
 const char* action_text(SliverAction action) {
   switch (action) {
+    case SliverAction::kNeedle:
+      return "needle merged";
     case SliverAction::kMerged:
       return "merged";
     case SliverAction::kDeleted:
@@ -87,20 +86,27 @@ std::string survey_lines(const Cut& cut) {
 
 std::string sliver_lines(const Cut& cut, const CutStatistics& s) {
   const SliverTable& t = cut.slivers;
-  std::string out =
-      fmt::format("slivers    limits: area {:.4g} m2, width {:.4g} m (median block {:.4g} m2, {:.4g} m)\n",
-                  t.area_limit, t.width_limit, t.median_area, t.median_width);
-  if (t.rows.empty()) return out + "           none below them\n";
+  std::string out;
+  for (size_t r = 0; r < t.limits.size(); ++r) {
+    const SliverLimits& limits = t.limits[r];
+    if (limits.median_area > 0)
+      out += fmt::format(
+          "slivers    \"{}\": below {:.4g} m2 or {:.4g} m wide (median block {:.4g} m2, {:.4g} m)\n",
+          cut.regions[r].name, limits.area, limits.width, limits.median_area, limits.median_width);
+  }
+  if (t.rows.empty()) return out + "           none\n";
+  if (t.needles > 0)
+    out += fmt::format("           {} needles without a joint of their own merged\n", t.needles);
   if (t.merged > 0)
-    out += fmt::format("           {} merged into {} other blocks ({:.2g} % of the blocks)\n", t.merged,
-                       t.receivers, 100.0 * t.merged / std::max(s.before.count, 1));
+    out += fmt::format("           {} merged ({:.2g} % of the blocks; red in the picture)\n", t.merged,
+                       100.0 * t.merged / std::max(s.before.count, 1));
   if (t.deleted > 0)
     out += fmt::format("           {} deleted, {:.4g} m2 of rock lost\n", t.deleted, t.deleted_area);
   if (t.kept > 0)
     out += fmt::format("           {} kept{}\n", t.kept,
-                       t.merged > 0 ? ": no neighbour in their region can take them" : "");
-  if (t.merged + t.deleted > kManyRemoved * s.before.count)
-    out += "           more than 3 % of the blocks: look at the picture, and at narrower limits\n";
+                       t.merged > 0 ? ": at a free face, or between joints that merging must not open" : "");
+  if (t.merged + t.deleted > 0)
+    out += "           a mechanism may be hidden there: compare with slivers = \"keep\"\n";
   const auto share = [](const BlockStatistics& b) {
     return b.step.median > 0 ? b.step.min / b.step.median : 0;
   };
@@ -194,6 +200,13 @@ std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics&
   for (const SurveyNote& n : cut.surveys)
     surveys.push_back({{"name", n.name}, {"lines", n.lines}, {"inside", n.inside}, {"length", n.length}});
   const SliverTable& t = cut.slivers;
+  nlohmann::json limits = nlohmann::json::array();
+  for (size_t r = 0; r < t.limits.size(); ++r)
+    limits.push_back({{"region", cut.regions[r].name},
+                      {"median_area", t.limits[r].median_area},
+                      {"median_width", t.limits[r].median_width},
+                      {"area", t.limits[r].area},
+                      {"width", t.limits[r].width}});
   const nlohmann::json out = {
       {"title", model.title},
       {"grid", cut.grid},
@@ -203,8 +216,8 @@ std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics&
       {"holes_opened", cut.bridges},
       {"taken_out", cut.taken_out},
       {"slivers",
-       {{"area_limit", t.area_limit},
-        {"width_limit", t.width_limit},
+       {{"limits", limits},
+        {"needles", t.needles},
         {"merged", t.merged},
         {"receivers", t.receivers},
         {"deleted", t.deleted},

@@ -32,7 +32,7 @@ constexpr std::array<Color, 6> kTints{{{0.975, 0.955, 0.905},    // sand
                                        {0.925, 0.900, 0.960},    // violet
                                        {0.930, 0.930, 0.930}}};  // grey
 constexpr Color kKeptTint{1.0, 0.925, 0.55}, kFixedTint{0.74, 0.74, 0.74};
-constexpr Color kBlack{0, 0, 0}, kDeadEndGrey{0.6, 0.6, 0.6};
+constexpr Color kBlack{0, 0, 0}, kDeadEndGrey{0.6, 0.6, 0.6}, kRed{0.86, 0.08, 0.08};
 
 // Darker in every second round.
 Color palette_color(int index) {
@@ -134,6 +134,8 @@ std::vector<Layer> make_lines(const Cut& cut, double joint_width) {
   std::erase_if(lines, [](const Layer& layer) { return layer.edges.empty(); });
   return lines;
 }
+
+Pen merged_pen(double joint_width) { return {kRed, std::max(2 * joint_width, 2.0), {}}; }
 
 Pen dead_end_pen(double joint_width) { return {kDeadEndGrey, 0.8 * joint_width, {}}; }
 

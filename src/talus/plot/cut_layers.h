@@ -30,6 +30,8 @@ std::vector<Layer> make_areas(const Model& model, const Cut& cut);
 /// Lines of one origin, each edge once, most important first. Openings share a layer, and so do sides.
 std::vector<Layer> make_lines(const Cut& cut, double joint_width);
 
+/// Of edges that merging has taken away: red, and wide enough to be seen.
+Pen merged_pen(double joint_width);
 Pen dead_end_pen(double joint_width);
 
 /// Segments [m] of the dead ends in the rock that is left: in an empty opening they would not mean anything.

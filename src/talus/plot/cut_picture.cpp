@@ -35,7 +35,7 @@ struct Picture {
   Axis x, y;
   std::vector<Layer> areas, lines;
   std::vector<std::pair<Vec2, Vec2>> dead_ends;  // [m]
-  Pen dead_end_pen;
+  Pen dead_end_pen, merged_pen;
   Names names;
   std::vector<LegendEntry> legend;
   std::string title, count;
@@ -102,6 +102,7 @@ Picture make_picture(cairo_t* cr, const Model& model, const Cut& cut) {
   picture.lines = make_lines(cut, joint_width);
   picture.dead_ends = visible_dead_ends(model, cut);
   picture.dead_end_pen = dead_end_pen(joint_width);
+  picture.merged_pen = merged_pen(joint_width);
 
   Rect& frame = picture.view.frame;
   picture.x = make_axis(cr, picture.view.x_range(), frame.w, true);
@@ -115,7 +116,8 @@ Picture make_picture(cairo_t* cr, const Model& model, const Cut& cut) {
   for (const Name& name : picture.names.names) right = std::max(right, name.box.right() + 1);
   picture.width = std::max(kLeastSheet, std::ceil(right) + kMargin);
   place_title(cr, model, picture);
-  picture.legend = legend_entries(cut, picture.areas, picture.lines, picture.dead_end_pen, picture.names);
+  picture.legend = legend_entries(cut, picture.areas, picture.lines, picture.dead_end_pen, picture.merged_pen,
+                                  picture.names);
   place_legend(cr, right, picture);
   return picture;
 }
@@ -152,6 +154,9 @@ void draw_section(cairo_t* cr, const Picture& picture) {
     add_chains_to_path(cr, lines->edges, picture);
     cairo_stroke(cr);
   }
+  set_pen(cr, picture.merged_pen);
+  add_chains_to_path(cr, picture.cut->slivers.opened, picture);
+  cairo_stroke(cr);
 }
 
 void draw(cairo_t* cr, const Picture& picture) {

@@ -34,7 +34,7 @@ void draw_sample(cairo_t* cr, const LegendEntry& entry) {
 
 std::vector<LegendEntry> legend_entries(const Cut& cut, const std::vector<Layer>& areas,
                                         const std::vector<Layer>& lines, const Pen& dead_ends,
-                                        const Names& names) {
+                                        const Pen& merged, const Names& names) {
   using Entry = LegendEntry;
   std::vector<Entry> list;
   if (areas.size() > 1)
@@ -55,12 +55,15 @@ std::vector<LegendEntry> legend_entries(const Cut& cut, const std::vector<Layer>
     if (names.left_out > 0) text += fmt::format(" ({} without name)", names.left_out);
     list.push_back({Entry::kMarker, text, {}});
   }
-  const auto note = [&list](int count, const char* what) {
-    if (count > 0) list.push_back({Entry::kNote, counted(at(count), "sliver") + " " + what, {}});
+  if (cut.slivers.merged > 0)
+    list.push_back(
+        {Entry::kLine, counted(at(cut.slivers.merged), "sliver") + " merged: joints removed", merged});
+  const auto note = [&list](int count, const char* what, const char* done) {
+    if (count > 0) list.push_back({Entry::kNote, counted(at(count), what) + " " + done, {}});
   };
-  note(cut.slivers.merged, "merged");
-  note(cut.slivers.deleted, "deleted");
-  note(cut.slivers.kept, "kept");
+  note(cut.slivers.needles, "needle", "merged");
+  note(cut.slivers.deleted, "sliver", "deleted");
+  note(cut.slivers.kept, "sliver", "kept");
   return list;
 }
 

@@ -29,7 +29,7 @@ struct LegendEntry {
 /// together; then dead ends, monitored points and slivers.
 std::vector<LegendEntry> legend_entries(const Cut& cut, const std::vector<Layer>& areas,
                                         const std::vector<Layer>& lines, const Pen& dead_ends,
-                                        const Names& names);
+                                        const Pen& merged, const Names& names);
 
 /// Puts the entries into rows of aligned columns, as many as there is room for, and shortens texts of more
 /// than 420 px. Returns what they cover.

@@ -84,7 +84,7 @@ void Auditor::look_at_stage(const Instant& i) {
   }
   rules_.joints_everywhere = scene_.layout.default_joint >= 0;
   rules_.slop = scene_.model.contact.slop;
-  rules_.tolerance = scene_.model.solver.tolerance * smallest_size(b);
+  rules_.tolerance = scene_.model.solver.tolerance * tolerance_size(b);
   blocks_.clear();
   for (int k = 0; k < b.count; ++k) {
     const auto n = static_cast<size_t>(k);

@@ -164,7 +164,7 @@ ordered_json model_in_numbers(const Scene& scene) {
   j["in_situ_stress"] = m.in_situ.given;
   j["stages"] = stages(m);
   j["monitors"] = m.monitors.size();
-  j["contact_tolerance [m]"] = m.solver.tolerance * smallest_size(scene.blocks);
+  j["contact_tolerance [m]"] = m.solver.tolerance * tolerance_size(scene.blocks);
   j["intervals [s]"] = {{"history", m.output.history_interval},
                         {"steps", m.output.steps_interval},
                         {"fields", m.output.field_interval}};

@@ -25,15 +25,20 @@ constexpr double kMostSteps = 1e12;
 constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 152, kVtkFile = 1900,
                  kJointRow = 200;
 
-// Median over the deformable blocks; infinite without any.
-double median_of_deformable(const BlockSet& blocks, const std::function<double(int)>& value) {
+// Value that a share of the deformable blocks is below; infinite without any.
+double share_of_deformable(const BlockSet& blocks, double share, const std::function<double(int)>& value) {
   std::vector<double> values;
   for (int i = 0; i < blocks.count; ++i)
     if (blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable) values.push_back(value(i));
   if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const auto n = static_cast<double>(values.size());
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(share * n, n - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double median_of_deformable(const BlockSet& blocks, const std::function<double(int)>& value) {
+  return share_of_deformable(blocks, 0.5, value);
 }
 
 double median_step(const BlockSet& blocks) {
@@ -46,6 +51,36 @@ double crossing_time(const BlockSet& b) {
   return median_of_deformable(b, [&b](int i) {
     const auto k = static_cast<size_t>(i);
     return 2 * b.size[k] / std::sqrt(b.moduli[k].c11 * b.volume[k] / b.mass[k]);
+  });
+}
+
+// Step of implicit stages without local damping, in inverse angular frequencies of a block on its joints:
+// three to a swing.
+constexpr double kJointSteps = 2;
+
+// Share of the blocks whose swing on their joints a step need not resolve: slivers.
+constexpr double kUnresolved = 0.1;
+
+// Inverse angular frequency of nearly the quickest block on the elastic joints around it: the longest step in
+// which local damping, which opposes the force of now, still brakes and does not drive. Infinite without such
+// joints.
+double joint_time(const Scene& scene, const BlockSet& b) {
+  const std::vector<JointLaw> laws = joint_laws(scene.model.joints);
+  return share_of_deformable(b, kUnresolved, [&](int i) {
+    const auto k = static_cast<size_t>(i);
+    const std::vector<int>& joints = scene.layout.blocks[k].edge_joint;
+    double stiffness = 0;
+    const int corners = b.vertex_begin[k + 1] - b.vertex_begin[k];
+    for (int e = 0; e < corners; ++e) {
+      const int joint = static_cast<size_t>(e) < joints.size() ? joints[static_cast<size_t>(e)]
+                                                               : scene.layout.default_joint;
+      if (joint < 0) continue;
+      const JointLaw& law = laws[static_cast<size_t>(joint)];
+      const double length = norm(b.corner(i, (e + 1) % corners) - b.corner(i, e));
+      if (!law.bonded() && law.is_soft(0)) stiffness += law.stiffness(0, length * scene.model.thickness);
+    }
+    // half of the sides hold it along either direction
+    return stiffness > 0 ? std::sqrt(b.mass[k] / (0.5 * stiffness)) : std::numeric_limits<double>::infinity();
   });
 }
 
@@ -103,6 +138,8 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
             : ColumnStep{};
     double wanted =
         std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
+    if (stage.implicit)
+      wanted = std::min(wanted, (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks));
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;
     } else if (bound.block < 0) {

@@ -102,9 +102,12 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
     out += "  audit           none (output.audit = false): nothing says that the forces are right\n";
   }
   const Layout& cut = scene.layout;
-  if (cut.slivers_merged + cut.slivers_deleted + cut.slivers_kept > 0)
-    out += fmt::format("  slivers         {} merged, {} deleted, {} kept when the blocks were cut\n",
-                       cut.slivers_merged, cut.slivers_deleted, cut.slivers_kept);
+  if (cut.slivers_merged + cut.slivers_deleted > 0)
+    out += fmt::format(
+        "  slivers         {} merged, {} deleted, {} kept when the blocks were cut: a mechanism may be "
+        "hidden "
+        "there (red in cut.png of talus cut)\n",
+        cut.slivers_merged, cut.slivers_deleted, cut.slivers_kept);
   for (const StageResult& s : r.stages) {
     if (s.plan.clamped > 0)
       out += fmt::format("  moment clamp    stage \"{}\": {} of {} blocks, up to {:.3g} times\n", s.name,

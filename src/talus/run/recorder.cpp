@@ -429,6 +429,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
                  {"rigid", count(BlockKind::kRigid)},
                  {"fixed", count(BlockKind::kFixed)},
                  {"driven", count(BlockKind::kDriven)},
+                 {"needles_merged", scene.layout.needles_merged},
                  {"slivers_merged", scene.layout.slivers_merged},
                  {"slivers_deleted", scene.layout.slivers_deleted},
                  {"slivers_kept", scene.layout.slivers_kept}};

@@ -90,7 +90,7 @@ class Runner {
     settings_ = {.damping_mass = stage.damping_mass,
                  .damping_stiffness = stage.damping_stiffness,
                  .damping_local = stage.damping_local,
-                 .tolerance = scene_.model.solver.tolerance * smallest_size(scene_.blocks),
+                 .tolerance = scene_.model.solver.tolerance * tolerance_size(scene_.blocks),
                  .histories_run = stage.kind == StageKind::kDynamic,
                  .implicit = stage.implicit,
                  .keep_guess = true};
@@ -413,7 +413,7 @@ std::string profile_text(const Profile& profile, int threads, int64_t steps) {
 }
 
 PreparedRun prepare_run(const std::string& file, const std::string& text,
-                        const std::vector<std::string>& overrides, Findings& findings) {
+                        const std::vector<std::string>& overrides, Findings& findings, Cut* keep) {
   PreparedRun run;
   Model model = read_model(file, text, overrides, findings);
   if (!model.shapes_readable) findings.throw_if_errors();
@@ -421,10 +421,11 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
     findings.error({1, 1, ""}, "stage", "the file has no [[stage]]: nothing would be run",
                    "add [[stage]] with name, kind = \"dynamic\" and duration");
   const int errors = findings.error_count();
-  const Cut cut = cut_or_read(model, findings);
+  Cut cut = cut_or_read(model, findings);
   if (findings.error_count() > errors)
     findings.throw_if_errors();  // without blocks all else would look wrong
   Layout layout = make_layout(model, cut, findings);
+  if (keep) *keep = std::move(cut);
   findings.throw_if_errors();
   run.scene = build_scene(std::move(model), std::move(layout), findings);
   findings.throw_if_errors();

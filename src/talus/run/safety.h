@@ -13,12 +13,12 @@ namespace talus {
 struct SafetyTrial {
   double factor = 1;
   bool stands = false;
-  std::string outcome;  // "at rest", "displacement limit", "no rest"
+  std::string outcome;  // "at rest", "needles move" (but nothing else), "displacement limit", "no rest"
   std::string stage;    // in which it ended
   double time = 0;      // [s] at its end
   int64_t steps = 0;
-  double displacement = 0;  // largest of a block since the start of its stage [m]
-  std::string block;        // that moved so far
+  double displacement = 0;  // since the start of its stage [m] of the block that came nearest to its limit
+  std::string block;        // that one
   double unbalanced = 0;    // at the end
   double closure = 0;       // of the energy ledger
 };
@@ -34,7 +34,7 @@ struct SafetyResult {
 
 /// Seeks the factor between model.safety.lowest and .highest. Throws NumericalError naming the factor when a
 /// trial ends for another reason than failure of the model, InputError when the model has no leading static
-/// stage.
+/// stage, or slivers with joints were merged or deleted and `safety.accept_merged` is not set.
 /// @param prepared  the model as read and cut once: all trials have the same blocks
 /// @param told      shown each trial when it ends
 SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,

@@ -17,17 +17,24 @@ std::string safety_line(const SafetyTrial& t) {
 }
 
 std::string safety_text(const SafetyResult& r) {
-  switch (r.status) {
-    case SafetyStatus::kBelow:
-      return fmt::format("factor of safety: below {:g}, the lowest tried; give a smaller safety.lowest\n",
-                         r.fails);
-    case SafetyStatus::kAbove:
-      return fmt::format("factor of safety: above {:g}, the highest tried; give a larger safety.highest\n",
-                         r.stands);
-    default:
-      return fmt::format("factor of safety: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n",
-                         r.factor(), r.stands, r.fails, r.trials.size());
-  }
+  int loose = 0;
+  for (const SafetyTrial& t : r.trials) loose += t.outcome == "needles move";
+  std::string out;
+  if (r.status == SafetyStatus::kBelow)
+    out = fmt::format("factor of safety: below {:g}, the lowest tried; give a smaller safety.lowest\n",
+                      r.fails);
+  else if (r.status == SafetyStatus::kAbove)
+    out = fmt::format("factor of safety: above {:g}, the highest tried; give a larger safety.highest\n",
+                      r.stands);
+  else
+    out = fmt::format("factor of safety: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n", r.factor(),
+                      r.stands, r.fails, r.trials.size());
+  if (loose > 0)
+    out += fmt::format(
+        "in {} trials needles moved that do not vote (docs/theory.md 4.20): if they matter, give "
+        "safety.displacement_limit\n",
+        loose);
+  return out;
 }
 
 std::string safety_csv(const SafetyResult& r) {

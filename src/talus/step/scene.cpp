@@ -34,6 +34,24 @@ bool slides_hard(const Scene& scene) {
   return false;
 }
 
+// Stable step of the smallest block, as share of the median one's, below which a few slivers would rule the
+// step of all; share of the blocks that are few, and what counts as small among them.
+constexpr double kRuled = 0.05, kFew = 0.25, kSmall = 0.25;
+
+// Whether a few slivers would make explicit elasticity twenty times dearer, or worse. Where small blocks are
+// many, as in a graded mesh, they are what waves travel through.
+bool slivers_rule(const BlockSet& blocks) {
+  std::vector<double> step;
+  for (int i = 0; i < blocks.count; ++i)
+    if (const double dt = stable_step_of(blocks, i); std::isfinite(dt)) step.push_back(dt);
+  if (step.empty()) return false;
+  std::sort(step.begin(), step.end());
+  const double median = step[step.size() / 2];
+  const auto small = std::lower_bound(step.begin(), step.end(), kSmall * median) - step.begin();
+  return step.front() < kRuled * median &&
+         (small == 1 || static_cast<double>(small) < kFew * static_cast<double>(step.size()));
+}
+
 }  // namespace
 
 Scene build_scene(Model model, Layout layout, Findings& findings) {
@@ -46,7 +64,8 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
   for (StageInput& stage : scene.model.stages)
-    if (stage.elasticity_by_contact) stage.implicit = slides_hard(scene);
+    if (stage.elasticity_auto)
+      stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
   scene.loads = build_loads(scene.model, scene.layout, scene.blocks);
   if (const int above = block_above_ground(scene.model, scene.blocks); above >= 0) {
     const auto k = static_cast<size_t>(above);

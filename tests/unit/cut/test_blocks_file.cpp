@@ -35,10 +35,12 @@ class Folder {
 Model rich_model() {
   Model model = rock_model({{0.1, 0.2}, {20, 0}, {21, 9.7}, {0, 10}});
   add_region(model, "gravel", {{20, 0}, {40, 0}, {40, 10}, {21, 9.7}});
-  model.joint_sets = {joint_set("a", 0.3, 1.7), joint_set("b", 1.9, 2.3)};
+  model.joint_sets = {joint_set("a", 0.3, 0.7), joint_set("b", 1.9, 0.9)};
   model.joint_sets[0].spacing.kind = Scattered::kExponential;
   for (JointSetInput& s : model.joint_sets) s.region = 0;
   model.joint_sets[1].joint = 0;
+  model.cut.slivers = SliverPolicy::kMerge;
+  model.cut.merge_along = {"a", "b"};
   add_opening(model, circle_polygon({10, 5}, 3, 16), true);
   add_opening(model, circle_polygon({30, 5}, 3, 16), false);
   return model;
@@ -78,6 +80,7 @@ TEST_CASE("blocks file: read back it gives the same blocks to the last bit") {
     };
     for (RegionInput& r : model.regions) shift(r.polygon);
     for (OpeningInput& o : model.openings) shift(o.polygon);
+    for (JointSetInput& set : model.joint_sets) set.origin = {far, -far};
     const Cut cut = cut_of(model);
     REQUIRE(cut.slivers.merged > 0);
     REQUIRE(cut.bridges == 1);
@@ -91,6 +94,8 @@ TEST_CASE("blocks file: read back it gives the same blocks to the last bit") {
     const Cut back = read(model, findings);
     CHECK(findings.list().empty());
     CHECK(back.grid == cut.grid);
+    CHECK((back.slivers.merged == cut.slivers.merged && back.slivers.kept == cut.slivers.kept &&
+           back.slivers.needles == cut.slivers.needles && back.slivers.deleted == cut.slivers.deleted));
     REQUIRE(back.blocks.size() == cut.blocks.size());
     // the layouts that a run would see, edge by edge
     const auto a = shapes_of(model, cut, cut.blocks), b = shapes_of(model, back, back.blocks);
@@ -121,7 +126,7 @@ TEST_CASE("blocks file: whatever shapes the blocks makes it another cut, whateve
     change(other);
     return cut_fingerprint(other) != mark;
   };
-  CHECK(changes([](Model& m) { m.joint_sets[0].spacing.mean = 1.7000000000000002; }));
+  CHECK(changes([](Model& m) { m.joint_sets[0].spacing.mean = 0.7000000000000002; }));
   CHECK(changes([](Model& m) { m.joint_sets[0].spacing.kind = Scattered::kConstant; }));
   CHECK(changes([](Model& m) { m.joint_sets[1].origin.x = 1e-300; }));
   CHECK(changes([](Model& m) { m.joint_sets[1].name = "c"; }));
@@ -131,6 +136,8 @@ TEST_CASE("blocks file: whatever shapes the blocks makes it another cut, whateve
   CHECK(changes([](Model& m) { m.cut.seed = 2; }));
   CHECK(changes([](Model& m) { m.cut.grid = 1e-6; }));
   CHECK(changes([](Model& m) { m.cut.slivers = SliverPolicy::kKeep; }));
+  CHECK(changes([](Model& m) { m.cut.merge_along.pop_back(); }));
+  CHECK(changes([](Model& m) { m.regions[0].sliver_width = 0.1; }));
   CHECK(changes([](Model& m) { m.cut.sliver_width_share = 0.2; }));
   CHECK(changes([](Model& m) { m.regions[0].polygon[2].x += 1e-9; }));
   CHECK(changes([](Model& m) { m.regions[0].sides[1] = "east"; }));
@@ -147,18 +154,18 @@ TEST_CASE("blocks file: of another cut, cut short, or damaged, it is an error th
   const Model model = rich_model();
   const std::string text = blocks_file_text(model, cut_of(model));
   Model other = model;
-  other.joint_sets[1].spacing.mean = 2.4;
+  other.joint_sets[1].spacing.mean = 1;
   CHECK(has(error_of(other, text), "was cut from other regions, joints or settings"));
   for (const double share : {0.0, 0.1, 0.5, 0.9, 0.99})
     CHECK(has(error_of(model, text.substr(0, static_cast<size_t>(share * static_cast<double>(text.size())))),
               "no blocks file of talus"));
   CHECK(has(error_of(model, "{}"), "no blocks file of talus"));
   CHECK(has(error_of(model, "[1, 2]"), "no blocks file of talus"));
-  CHECK(has(error_of(model, replaced(text, "\"talus_blocks\": 1", "\"talus_blocks\": 2")), "another format"));
+  CHECK(has(error_of(model, replaced(text, "\"talus_blocks\": 2", "\"talus_blocks\": 1")), "another format"));
   for (const auto& [from, to] :
        {std::pair{"\"region\":0", "\"region\":2"}, std::pair{"\"opening\":-1", "\"opening\":2"},
         std::pair{"\"points\":[0,", "\"points\":[1000000,"}, std::pair{"\"points\":[0,", "\"points\":[-1,"},
-        std::pair{"\"grid\": ", "\"grid\": -"}})
+        std::pair{"\"grid\": ", "\"grid\": -"}, std::pair{"\"slivers\": [", "\"slivers\": [1"}})
     CHECK(has(error_of(model, replaced(text, from, to)), "no blocks file of talus"));
 }
 

@@ -27,7 +27,7 @@ friction_angle = "30 deg"
 [cut]
 section_azimuth = "90 deg"
 seed = 3
-slivers = "merge"
+slivers = "keep"
 [[region]]
 name = "rock"
 polygon = [[0, 0], [40, 0], [40, 30], [0, 30]]
@@ -339,14 +339,20 @@ TEST_CASE("wrong cut: settings of the cut") {
   check_all(R"~(
 seed = 3 => seed = -3
   12:8: error: cut.seed: -3 is not allowed; must be >= 0
-"merge" => "remove"
-  13:11: error: cut.slivers: "remove" is not known; must be merge, delete or keep
-slivers = "merge" => sliver_area_share = 2
+"keep" => "remove"
+  13:11: error: cut.slivers: "remove" is not known; must be keep, merge or delete
+slivers = "keep" => merge_along = ["steep"]
+  13:1: warning: cut.merge_along: has no effect: nothing is merged
+  = it counts with slivers = "merge"
+slivers = "keep" => sliver_area_share = 2
   13:21: error: cut.sliver_area_share: 2 is not allowed; must be >= 0 and <= 0.5
 seed = 3 => blocks = ""
   12:1: error: cut.blocks: is empty
   = name a file that talus cut has written
 )~");
+  const std::string unknown = told(
+      replaced(kSound, "slivers = \"keep\"", "slivers = \"merge\"\nmerge_along = [\"steep\", \"sloppy\"]"));
+  CHECK(unknown.find("14:1: error: cut.merge_along: \"sloppy\" is no joint set") != std::string::npos);
   // of the grid the place of the section is told, not yet of the key
   const auto with_grid = [](const char* grid) {
     return told(replaced(kSound, "seed = 3", fmt::format("grid = \"{}\"", grid)));
@@ -445,7 +451,7 @@ seed = 3 => grid = "1e-14 m"
 TEST_CASE("wrong cut: a block over many cut blocks is told once") {
   check_all(R"~(
 [90, 0], [0, 0]] => [90, 0], [45, 0], [45, 1], [0, 1]]
-  14:1: error: rock[1]: overlaps "floor"
+  14:1: error: rock[0]: overlaps "floor"
 )~");
 }
 

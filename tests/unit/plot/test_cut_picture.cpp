@@ -188,10 +188,22 @@ TEST_CASE("write_cut_picture draws dead ends in grey") {
 TEST_CASE("write_cut_picture draws no edge that merging has taken away") {
   const std::string sliver = joint_set("steep", 90, 100, "origin = [0.01, 0]\n");
   CHECK(paths(svg_of(region(kBox) + "[cut]\nslivers = \"keep\"\n" + sliver), kBlue).size() == 2);
-  const std::string more = joint_set("flat", 0, 2.5);  // so that there is a median to be small against
-  const std::string merged = svg_of(region(kBox) + more + joint_set("other", 90, 4) + sliver);
-  CHECK(paths(merged, kBlue).size() == 2);
-  CHECK(paths(merged, "stroke:rgb(0%,62").empty());  // third colour
+  // a strip of 0.1 m: of its four blocks two lie inside, 2.5 m high each
+  const std::string lines = joint_set("flat", 0, 2.5) + joint_set("other", 90, 4) +
+                            joint_set("strip", 90, 100, "origin = [4.1, 0]\n");
+  const auto length = [](const std::vector<Drawn>& drawn) {  // of straight pieces, two points each
+    double sum = 0;
+    for (const Drawn& path : drawn)
+      for (size_t k = 0; k + 1 < path.y.size(); k += 2) sum += std::abs(path.y[k + 1] - path.y[k]);
+    return sum;
+  };
+  const std::string third = "stroke:rgb(0%,62", red = "stroke:rgb(86%";
+  const std::string kept = svg_of(region(kBox) + lines);
+  const std::string merged =
+      svg_of(region(kBox) + "[cut]\nslivers = \"merge\"\nmerge_along = [\"strip\"]\n" + lines);
+  CHECK(paths(kept, red).empty());
+  CHECK(length(paths(merged, third)) < 0.51 * length(paths(kept, third)));
+  CHECK(length(paths(merged, red)) == doctest::Approx(length(paths(merged, third))));
 }
 
 TEST_CASE("write_cut_picture marks monitored points in sight") {

@@ -241,7 +241,7 @@ TEST_CASE("command: blocks, regions, supports along and monitors work from a blo
   write_file(f / "model/m.toml", kMixed);
   const Outcome cut = shell(f, "$talus cut model/m.toml -o model/cut");
   CHECK(cut.code == 0);
-  has(cut.text, "holes      2 opened by a glued level cut");
+  has(cut.text, "holes      2 opened by short glued cuts");
   has(cut.text, "openings   1 taken out");
   has(read_text_file(f / "model/cut/blocks.csv"), "\ncore[");
   CHECK(shell(f, "$talus run model/m.toml -o a -q").code == 0);

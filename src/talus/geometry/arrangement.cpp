@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "talus/base/random.h"
 #include "talus/geometry/geos.h"
+#include "talus/geometry/open_holes.h"
 
 namespace talus {
 
@@ -18,8 +21,12 @@ namespace {
 // open holes.
 constexpr double kMoved = 1.5, kMovedTwice = 16;
 
-// A cut through a hole may meet another hole; each round opens at least one.
+// Rounding may bring a cut onto another line; each round opens at least one hole.
 constexpr int kMostRounds = 100;
+
+// Least area of a piece beside a cut, as share of the smallest face; corners that take up the end of a cut,
+// in cells of the grid.
+constexpr double kLeastPiece = 0.25, kNearCorner = 64;
 
 using Node = std::array<int64_t, 2>;  // in cells of the grid
 
@@ -86,6 +93,18 @@ class LineIndex {
   std::vector<Entry> entries_;
 };
 
+using Edge = std::array<Node, 2>;  // lower node first
+
+struct EdgeHash {
+  size_t operator()(const Edge& e) const { return NodeHash()(e[0]) * 31 + NodeHash()(e[1]); }
+};
+
+Edge edge_between(Vec2 a, Vec2 b, double grid) {
+  const auto node = [grid](Vec2 p) { return Node{std::llround(p.x / grid), std::llround(p.y / grid)}; };
+  const Node m = node(a), n = node(b);
+  return m < n ? Edge{m, n} : Edge{n, m};
+}
+
 struct Noded {
   std::vector<Polygon> rings;  // counter-clockwise, without the closing corner
   std::vector<std::vector<Polyline>> holed;
@@ -150,21 +169,38 @@ Noded polygonize(const GEOSGeometry* noded) {
   return out;
 }
 
-// Pieces inside the face of the level line through the middle of its first hole.
-std::vector<Polyline> level_cuts(const std::vector<Polyline>& rings) {
-  const Box hole = bounding_box(rings[1]);
-  const double y = 0.5 * (hole.min.y + hole.max.y);
-  std::vector<double> x;
-  for (const Polyline& ring : rings) {
-    for (size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
-      if ((a.y > y) != (b.y > y)) x.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
-    }
+// Noded lines along which faces lie: dead ends would become joints where a cut meets them.
+std::vector<Polyline> live_lines(const GEOSGeometry* noded, const Noded& faces, double grid) {
+  std::unordered_set<Edge, EdgeHash> live;
+  const auto add = [&](const Polyline& ring) {
+    for (size_t k = 0; k < ring.size(); ++k)
+      live.insert(edge_between(ring[k], ring[(k + 1) % ring.size()], grid));
+  };
+  for (const Polygon& ring : faces.rings) add(ring);
+  for (const auto& rings : faces.holed)
+    for (const Polyline& ring : rings) add(ring);
+  std::vector<Polyline> out;
+  for_parts(noded, [&](const GEOSGeometry* line) {
+    Polyline corners = geos().corners_of(line);
+    if (live.count(edge_between(corners[0], corners[1], grid))) out.push_back(std::move(corners));
+  });
+  return out;
+}
+
+// Area of the smallest face that is solid [m2].
+double smallest_area(const Noded& faces, const std::function<bool(Vec2)>& is_solid) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Polygon& ring : faces.rings) {
+    const double area = std::abs(signed_area(ring));
+    if (area < least && is_solid(interior_point(ring))) least = area;
   }
-  std::sort(x.begin(), x.end());
-  std::vector<Polyline> cuts;
-  for (size_t k = 0; k + 1 < x.size(); k += 2) cuts.push_back({{x[k], y}, {x[k + 1], y}});
-  return cuts;
+  return least;
+}
+
+// A place in a face with holes.
+Vec2 inside_of(const std::vector<Polyline>& rings) {
+  const std::vector<Polyline> cuts = opening_cuts(rings, 0, 0);
+  return 0.5 * (cuts.at(0)[0] + cuts.at(0)[1]);
 }
 
 // Nodes the lines and opens the solid faces with holes. Cuts are added to what is noded already: they end on
@@ -172,18 +208,26 @@ std::vector<Polyline> level_cuts(const std::vector<Polyline>& rings) {
 Noded node_and_open(const std::vector<Polyline>& lines, double grid,
                     const std::function<bool(Vec2)>& is_solid, std::vector<Polyline>& cuts, int& opened) {
   auto noded = node(lines, grid);
+  std::vector<Polyline> dead_ends;
+  double least = -1;
   for (int round = 0; round < kMostRounds; ++round) {
     Noded out = polygonize(noded.get());
+    dead_ends.insert(dead_ends.end(), out.dead_ends.begin(), out.dead_ends.end());
     const size_t before = cuts.size();
     for (const auto& rings : out.holed) {
-      const auto level = level_cuts(rings);
-      if (!is_solid || !is_solid(0.5 * (level[0][0] + level[0][1]))) continue;
-      cuts.insert(cuts.end(), level.begin(), level.end());
+      if (!is_solid || !is_solid(inside_of(rings))) continue;
+      if (least < 0) least = smallest_area(out, is_solid);
+      const auto found =
+          opening_cuts(rings, std::isfinite(least) ? kLeastPiece * least : 0, kNearCorner * grid);
+      cuts.insert(cuts.end(), found.begin(), found.end());
       ++opened;
     }
-    if (cuts.size() == before) return out;
-    std::vector<Polyline> next(cuts.begin() + static_cast<std::ptrdiff_t>(before), cuts.end());
-    for_parts(noded.get(), [&](const GEOSGeometry* line) { next.push_back(geos().corners_of(line)); });
+    if (cuts.size() == before) {
+      out.dead_ends = std::move(dead_ends);
+      return out;
+    }
+    std::vector<Polyline> next = live_lines(noded.get(), out, grid);
+    next.insert(next.end(), cuts.begin() + static_cast<std::ptrdiff_t>(before), cuts.end());
     noded = node(next, grid);
   }
   throw std::runtime_error("blocks with holes could not be opened by cuts");

@@ -24,8 +24,8 @@ struct Arrangement {
   std::vector<Face> face;                     // [n_faces] sorted by lowest, then leftmost corner
 
   std::vector<Polyline> dead_ends;  // noded lines, or parts of them, that bound no face [m]
-  std::vector<Polyline> cuts;  // level cuts that opened holes; as sources they are numbered after the lines
-  int opened = 0;              // faces with holes that were opened
+  std::vector<Polyline> cuts;       // that opened holes; as sources they are numbered after the lines
+  int opened = 0;                   // faces with holes that were opened
   std::vector<std::vector<Polyline>>
       rings_of_holed;  // faces with holes that were not: outer ring, then holes
 };
@@ -38,9 +38,8 @@ double grid_width(double extent, double wanted);
 /// first in the list is its source. Cost N log N. Throws std::runtime_error when GEOS fails or gives lines
 /// that bound no valid face.
 /// @param grid      a power of two [m], larger than 2^-52 of the coordinates relative to `origin`
-/// @param is_solid  whether a face with holes around this point must become faces without: it is cut along
-/// the level
-///                  line through the middle of its first hole, and again until no hole is left. None: no face
+/// @param is_solid  whether a face with holes around this point must become faces without, by short cuts
+///                  (open_holes.h). Dead ends are gone by then. None: no face
 Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin,
                     const std::function<bool(Vec2)>& is_solid = nullptr);
 

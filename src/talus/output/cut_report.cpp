@@ -171,8 +171,7 @@ std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& 
     out += fmt::format("dead ends  {} removed, {:.4g} m: they bound no block (grey in the picture)\n",
                        cut.dead_ends.size(), cut.dead_end_length);
   if (cut.bridges > 0)
-    out +=
-        fmt::format("holes      {} opened by a glued level cut: a block cannot have a hole\n", cut.bridges);
+    out += fmt::format("holes      {} opened by short glued cuts: a block cannot have a hole\n", cut.bridges);
   int removed = 0;
   for (const OpeningInput& o : model.openings) removed += !o.kept;
   if (removed > 0) out += fmt::format("openings   {} taken out with {} blocks\n", removed, cut.taken_out);

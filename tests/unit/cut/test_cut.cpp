@@ -135,17 +135,25 @@ TEST_CASE("a circle alone in a region: its surroundings are cut open along a lev
 }
 
 TEST_CASE("two circles, side by side and one above the other") {
-  const double circle = 4 * kPi;
-  Model model = rock_model(box_polygon(0, 0, 20, 10));
-  add_opening(model, circle_polygon({5, 5}, 4, 32), true);
-  add_opening(model, circle_polygon({15, 5}, 4, 32), true);
-  const Cut beside = cut_of(model);
-  check_areas(beside, beside.whole, {circle, circle, 100 - circle, 100 - circle});
-  model = rock_model(box_polygon(0, 0, 10, 20));
-  add_opening(model, circle_polygon({5, 5}, 4, 32), true);
-  add_opening(model, circle_polygon({5, 15}, 4, 32), true);
-  const Cut above = cut_of(model);
-  check_areas(above, above.whole, {circle, circle, 50 - circle / 2, 50 - circle / 2, 100 - circle});
+  for (const bool above : {false, true}) {
+    Model model = rock_model(above ? box_polygon(0, 0, 10, 20) : box_polygon(0, 0, 20, 10));
+    for (const double c : {5.0, 15.0})
+      add_opening(model, circle_polygon(above ? Vec2{5, c} : Vec2{c, 5}, 4, 32), true);
+    const Cut cut = cut_of(model);
+    CHECK(partition_defect(cut) == "");
+    CHECK(cut.bridges == 1);
+    // each by two cuts of 3 m to the nearest sides: a circle and a piece more for each
+    REQUIRE(cut.whole.size() == 5);
+    int circles = 0;
+    for (const CutBlock& b : cut.whole) circles += std::abs(signed_area(cut.polygon(b)) - 4 * kPi) < 1e-5;
+    CHECK(circles == 2);
+    double cuts = 0;
+    for (size_t e = 0; e < cut.edge.size(); ++e)
+      if (cut.origins[static_cast<size_t>(cut.edge_origin[e])].kind == OriginKind::kConstruction)
+        cuts += norm(cut.point[static_cast<size_t>(cut.edge[e][1])] -
+                     cut.point[static_cast<size_t>(cut.edge[e][0])]);
+    CHECK(cuts == doctest::Approx(12).epsilon(0.01));
+  }
 }
 
 TEST_CASE(

@@ -1,0 +1,153 @@
+#include "talus/geometry/open_holes.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/box_polygon.h"
+#include "talus/base/random.h"
+#include "talus/geometry/arrangement.h"
+#include "talus/geometry/polygon_check.h"
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+double length_of(const std::vector<Polyline>& lines) {
+  double sum = 0;
+  for (const Polyline& l : lines)
+    for (size_t k = 0; k + 1 < l.size(); ++k) sum += norm(l[k + 1] - l[k]);
+  return sum;
+}
+
+// Distance of two rings that do not cross, corner by corner.
+double distance(const Polyline& a, const Polyline& b) {
+  double least = 1e300;
+  for (const auto& [x, y] : {std::pair(&a, &b), std::pair(&b, &a)})
+    for (const Vec2 p : *x)
+      for (size_t k = 0; k < y->size(); ++k)
+        least = std::min(least, distance_to_segment(p, (*y)[k], (*y)[(k + 1) % y->size()]));
+  return least;
+}
+
+bool cross_anywhere(const Polyline& a, const Polyline& b) {
+  const auto side = [](Vec2 o, Vec2 p, Vec2 q) { return cross(p - o, q - o) > 0; };
+  for (size_t i = 0; i < a.size(); ++i)
+    for (size_t k = 0; k < b.size(); ++k) {
+      const Vec2 p = a[i], q = a[(i + 1) % a.size()], r = b[k], t = b[(k + 1) % b.size()];
+      if (side(p, q, r) != side(p, q, t) && side(r, t, p) != side(r, t, q)) return true;
+    }
+  return false;
+}
+
+// The shortest tree that connects all rings.
+double tree_length(const std::vector<Polyline>& rings) {
+  std::vector<double> to(rings.size(), 1e300);
+  std::vector<bool> in(rings.size(), false);
+  to[0] = 0;
+  double sum = 0;
+  for (size_t n = 0; n < rings.size(); ++n) {
+    size_t next = rings.size();
+    for (size_t i = 0; i < rings.size(); ++i)
+      if (!in[i] && (next == rings.size() || to[i] < to[next])) next = i;
+    in[next] = true, sum += to[next];
+    for (size_t i = 0; i < rings.size(); ++i) to[i] = std::min(to[i], distance(rings[next], rings[i]));
+  }
+  return sum;
+}
+
+// Faces of the rings and the cuts, islands among them.
+std::vector<Polygon> faces(const std::vector<Polyline>& rings, const std::vector<Polyline>& cuts) {
+  std::vector<Polyline> lines = cuts;
+  for (Polyline ring : rings) {
+    ring.push_back(ring[0]);
+    lines.push_back(ring);
+  }
+  const Arrangement net = arrange(lines, 0x1p-30, {0, 0});
+  CHECK(net.rings_of_holed.empty());
+  CHECK(net.dead_ends.empty());
+  std::vector<Polygon> out;
+  for (const auto& f : net.face) {
+    out.emplace_back();
+    for (const int p : f.point) out.back().push_back(net.point[static_cast<size_t>(p)]);
+  }
+  return out;
+}
+
+Polygon star(Random& random, Vec2 center, double radius) {
+  Polygon out;
+  const int corners = 3 + static_cast<int>(6 * random.uniform());
+  const double turn = 6.28 * random.uniform();
+  for (int k = 0; k < corners; ++k) {
+    const double a = turn + 2 * M_PI * k / corners, r = radius * (0.4 + 0.6 * random.uniform());
+    out.push_back(center + Vec2{r * std::cos(a), r * std::sin(a)});
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("cuts that open a hole: two, straight across the gap, and far apart") {
+  const std::vector<Polyline> rings{box_polygon(0, 0, 10, 10), box_polygon(4, 1, 6, 3)};
+  const auto cuts = opening_cuts(rings, 0.1, 1e-9);
+  REQUIRE(cuts.size() == 2);
+  CHECK(length_of(cuts) == doctest::Approx(2));  // down to the side 1 m below
+  CHECK(faces(rings, cuts).size() == 3);
+  // from corner to corner: the piece between them is as large as the gap
+  CHECK(std::abs(cuts[0][0].x - cuts[1][0].x) == doctest::Approx(2));
+}
+
+TEST_CASE("cuts that open a hole: longer where the piece beside them would be a sliver") {
+  const std::vector<Polyline> rings{box_polygon(0, 0, 10, 10), box_polygon(4, 0.01, 6, 3)};
+  double least = 1e300;
+  for (const Polygon& face : faces(rings, opening_cuts(rings, 1, 1e-9)))
+    least = std::min(least, signed_area(face));
+  CHECK(least >= 1);
+}
+
+TEST_CASE("cuts that open a hole: an island that touches the ring at a corner needs one") {
+  const std::vector<Polyline> rings{box_polygon(0, 0, 10, 10), {{5, 0}, {6, 2}, {4, 2}}};
+  const auto cuts = opening_cuts(rings, 0.1, 1e-9);
+  CHECK(cuts.size() == 1);
+  CHECK(faces(rings, cuts).size() == 3);
+}
+
+TEST_CASE("cuts that open holes of any face are short and leave simple polygons of some size") {
+  int islands = 0;
+  double longest = 0;
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    std::vector<Polyline> rings{star(random, {0, 0}, 20)};
+    for (int i = 0; i < 400 && rings.size() < 12; ++i) {
+      const Vec2 center{40 * random.uniform() - 20, 40 * random.uniform() - 20};
+      const Polygon island = star(random, center, 0.5 + 2 * random.uniform());
+      bool is_free =
+          contains(rings[0], center) && distance(island, rings[0]) > 0.3 && !cross_anywhere(island, rings[0]);
+      for (const Vec2 p : island) is_free = is_free && contains(rings[0], p);
+      for (const Vec2 p : rings[0]) is_free = is_free && !contains(island, p);
+      for (size_t k = 1; k < rings.size(); ++k)
+        is_free = is_free && distance(island, rings[k]) > 0.3 && !cross_anywhere(island, rings[k]) &&
+                  !contains(rings[k], center) && !contains(island, rings[k][0]);
+      if (is_free) rings.push_back(island);
+    }
+    if (rings.size() < 2) continue;
+    double smallest = 1e300;
+    for (size_t k = 1; k < rings.size(); ++k) smallest = std::min(smallest, std::abs(signed_area(rings[k])));
+    const auto cuts = opening_cuts(rings, 0.25 * smallest, 1e-9);
+    CHECK(cuts.size() == 2 * (rings.size() - 1));
+    islands += static_cast<int>(rings.size()) - 1;
+    const auto pieces = faces(rings, cuts);
+    CHECK(pieces.size() == 2 * (rings.size() - 1) + 1);  // Euler: islands, and one piece more for every cut
+    for (const Polygon& piece : pieces) {
+      CHECK(polygon_defect(piece) == "");
+      CHECK(signed_area(piece) >= 0.25 * smallest * (1 - 1e-6));
+    }
+    const double share = length_of(cuts) / (2 * tree_length(rings));
+    longest = std::max(longest, share);
+    CHECK(share <= 1.3);
+  }
+  CHECK(islands > 600);
+  MESSAGE("cuts at most ", longest, " times twice the tree");
+}

@@ -38,18 +38,26 @@ extern "C" void request_stop(int) { stop_requested = 1; }
 struct ModelArguments {
   std::string file;
   std::vector<std::string> overrides;
+  bool strict = false;
 };
 
 void add_model_arguments(CLI::App& verb, ModelArguments& args) {
   verb.add_option("MODEL", args.file, "model file (TOML)")->required();
   verb.add_option("--set", args.overrides,
-                  "override a key, for example --set material.bar.young=\"1 GPa\" (repeatable)")
+                  "override a key, for example --set material.bar.young=\"1 GPa\"; --set new:KEY=VALUE where "
+                  "the table is "
+                  "to be made (repeatable)")
       ->allow_extra_args(false);
+}
+
+void add_strict(CLI::App& verb, ModelArguments& args) {
+  verb.add_flag("--strict", args.strict, "take warnings of the model for errors");
 }
 
 talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings, const std::string& text,
                            talus::Cut* cut = nullptr) {
   talus::PreparedRun run = talus::prepare_run(args.file, text, args.overrides, findings, cut);
+  if (args.strict) findings.throw_if_any();
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
   return run;
 }
@@ -184,6 +192,7 @@ int run_command(int argc, char** argv) {
   bool force = false, json = false;
   CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
   add_model_arguments(*run_verb, model);
+  add_strict(*run_verb, model);
   CLI::Option* output = run_verb->add_option("-o,--output", how.folder, "folder for the results");
   CLI::Option* from = run_verb->add_option(
       "--from", how.from, "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in");
@@ -204,6 +213,7 @@ int run_command(int argc, char** argv) {
   CLI::App* check_verb =
       app.add_subcommand("check", "check a model and predict its steps, memory and output; runs nothing");
   add_model_arguments(*check_verb, model);
+  add_strict(*check_verb, model);
   check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml");
 
   CLI::App* cut_verb = app.add_subcommand(
@@ -221,6 +231,7 @@ int run_command(int argc, char** argv) {
   CLI::App* safety_verb = app.add_subcommand(
       "safety", "seek the factor of safety: joint strength divided by a factor until the model fails");
   add_model_arguments(*safety_verb, model);
+  add_strict(*safety_verb, model);
   safety_verb->add_option("-o,--output", folder, "folder for the results")->required();
   safety_verb->add_flag("--force", force, "replace the results in that folder");
   safety_verb->add_option("--threads", how.threads, "threads inside a step, 0: as many as pay")
@@ -316,7 +327,7 @@ int run_command(int argc, char** argv) {
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
   if (*safety_verb)
-    return talus::app::safety_command(model.file, model.overrides, folder, force, how.threads);
+    return talus::app::safety_command(model.file, model.overrides, folder, force, how.threads, model.strict);
   if (*replay_verb) return replay(problem, method, tolerance);
   if (*record_verb) return talus::app::record_command(record);
   if (*report_verb) return talus::app::report_command(report);

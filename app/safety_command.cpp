@@ -11,10 +11,11 @@
 namespace talus::app {
 
 int safety_command(const std::string& file, const std::vector<std::string>& overrides,
-                   const std::string& folder, bool force, int threads) {
+                   const std::string& folder, bool force, int threads, bool strict) {
   const std::string text = read_text_file(file);
   Findings findings(file, text);
   const PreparedRun prepared = prepare_run(file, text, overrides, findings);
+  if (strict) findings.throw_if_any();
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
   open_result_folder(folder, force, ResultKind::kSafety);
   const std::filesystem::path out(folder);

@@ -171,7 +171,7 @@ Wedge sliding_roof_wedge(uint64_t seed) {
   const double height = width * between(0.3, 0.8);
   const double friction = std::atan(wanted * std::tan(degrees(dip))) * 180 / M_PI;
   const Vec2 corner{-0.5 * width, 0}, apex{corner.x - height / std::tan(degrees(dip)), height},
-      end{corner.x + std::min(between(0.1, 0.25) * (corner.x - apex.x), 0.9 * width), 0};
+      end{corner.x + std::min(between(0.05, 0.12) * (corner.x - apex.x), 0.9 * width), 0};
   Wedge w;
   w.text = held_but(
       rock(square(3 * width), {"base", "right", "top", "left"}, friction, 0,

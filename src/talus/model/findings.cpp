@@ -64,4 +64,13 @@ void Findings::throw_if_errors() const {
   throw InputError(render() + fmt::format("{}: {} error{}; nothing was run", file_, n, n == 1 ? "" : "s"));
 }
 
+void Findings::throw_if_any() const {
+  throw_if_errors();
+  const int n = warning_count();
+  if (n == 0) return;
+  throw InputError(render() +
+                   fmt::format("{}: {} warning{}, which --strict takes for errors; nothing was run", file_, n,
+                               n == 1 ? "" : "s"));
+}
+
 }  // namespace talus

@@ -43,6 +43,8 @@ class Findings {
 
   /// Throws InputError with render() when there is an error.
   void throw_if_errors() const;
+  /// The same of warnings, too.
+  void throw_if_any() const;
 
  private:
   std::string file_;

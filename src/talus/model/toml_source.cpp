@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "talus/base/text.h"
+#include "talus/model/schema.h"
 
 namespace talus {
 
@@ -64,8 +65,34 @@ std::string names_in(const toml::array& list) {
   return join_or(names);
 }
 
-void apply_override(const std::string& item, TomlSource& source, Findings& findings) {
-  const Where where{0, 0, "--set " + item};
+// Whether `section` has entries of the model's own: one that is not there was mistyped, or is meant to be
+// new.
+bool is_of_entries(const std::string& section) {
+  for (const SectionSpec& s : model_schema())
+    if (s.name == section) return s.shape == SectionShape::kNamed || s.shape == SectionShape::kList;
+  return false;
+}
+
+// An override of a table that the file does not have.
+void no_such_table(const std::vector<std::string>& parts, const toml::table& root, const Where& where,
+                   const std::string& item, Findings& findings) {
+  std::vector<std::string> names;
+  if (const toml::table* section = root[parts[0]].as_table())
+    for (const auto& [key, node] : *section) names.emplace_back(key.str());
+  const std::string& wanted = parts.size() > 2 ? parts[1] : parts[0];
+  const std::string near = closest_name(wanted, names);
+  findings.error(where, item.substr(0, item.find('=')),
+                 fmt::format("the file has no [{}.{}]", parts[0], wanted),
+                 (near.empty() ? names.empty() ? "" : fmt::format("there is {}; ", join_or(names))
+                               : fmt::format("did you mean \"{}\"? ", near)) +
+                     fmt::format("to make one on purpose: --set new:{}", item));
+}
+
+void apply_override(const std::string& whole, TomlSource& source, Findings& findings) {
+  const Where where{0, 0, "--set " + whole};
+  constexpr std::string_view kNew = "new:";
+  const bool is_new = whole.rfind(kNew, 0) == 0;
+  const std::string item = is_new ? whole.substr(kNew.size()) : whole;
   const size_t equal = item.find('=');
   if (equal == std::string::npos || equal == 0) {
     findings.error(where, "",
@@ -78,6 +105,7 @@ void apply_override(const std::string& item, TomlSource& source, Findings& findi
   for (size_t i = 0; i + 1 < parts.size(); ++i) {
     toml::node* next = table->get(parts[i]);
     if (!next) {
+      if (!is_new && is_of_entries(parts[0])) return no_such_table(parts, source.root, where, item, findings);
       table->insert(parts[i], toml::table{});
       next = table->get(parts[i]);
     }

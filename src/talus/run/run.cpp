@@ -9,6 +9,7 @@
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/model/read_model.h"
+#include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
 #include "talus/step/change.h"
 
@@ -431,6 +432,7 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
   findings.throw_if_errors();
   run.plans = plan_stages(run.scene, findings);
   check_resolution(run.scene, findings);
+  check_plausible(text, overrides, run.scene, run.plans, findings);
   findings.throw_if_errors();
   return run;
 }

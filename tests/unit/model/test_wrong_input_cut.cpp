@@ -125,6 +125,8 @@ duration = "1 ms"
 [[monitor]]
 name = "deep"
 point = [20, -2]
+[model]
+gravity = [0, -9.81]
 )";
 
 // Text in which every "\n" of the tables below is a new line.

@@ -162,8 +162,8 @@ std::string held_but(const std::string& text, Vec2 inside) {
   return out;
 }
 
-// A wedge that slides out of the roof on the plane below it, away from the one above. Its weight passes
-// through that plane: farther out it would turn about the edge, and clamp itself.
+// A wedge that slides out of the roof on the plane below it, parted by a slit from the rock above: a face of
+// it there, a few degrees from the plane, would clamp the wedge by what turning and swelling close it.
 Wedge sliding_roof_wedge(uint64_t seed) {
   Random random(seed);
   const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
@@ -171,13 +171,15 @@ Wedge sliding_roof_wedge(uint64_t seed) {
   const double height = width * between(0.3, 0.8);
   const double friction = std::atan(wanted * std::tan(degrees(dip))) * 180 / M_PI;
   const Vec2 corner{-0.5 * width, 0}, apex{corner.x - height / std::tan(degrees(dip)), height},
-      end{corner.x + std::min(between(0.05, 0.12) * (corner.x - apex.x), 0.9 * width), 0};
+      end{corner.x + std::min(between(0.1, 0.25) * (corner.x - apex.x), 0.9 * width), 0};
+  const double slit = 0.01 * height;
+  const Polygon open{end, end + Vec2{slit, 0}, apex + Vec2{0, 2 * slit}, apex + Vec2{-slit, slit}, apex};
   Wedge w;
-  w.text = held_but(
-      rock(square(3 * width), {"base", "right", "top", "left"}, friction, 0,
-           fault("below", corner, apex + 0.05 * (apex - corner)) +
-               fault("above", end + 0.05 * (end - apex), apex + 0.05 * (apex - end)) + tunnel(width, width)),
-      (1.0 / 3) * (corner + end + apex));
+  w.text = held_but(rock(square(3 * width), {"base", "right", "top", "left"}, friction, 0,
+                         fault("below", corner, apex) + tunnel(width, width) +
+                             fmt::format("[[opening]]\nname = \"slit\"\nshape = \"polygon\"\npolygon = {}\n",
+                                         points(open))),
+                    (1.0 / 3) * (corner + end + apex));
   w.factor = wanted;
   return w;
 }

@@ -134,6 +134,20 @@ TEST_CASE("a circle alone in a region: its surroundings are cut open along a lev
   }
 }
 
+TEST_CASE("a dead end that a cut meets stays dead") {
+  Model model = rock_model(box_polygon(0, 0, 10, 10));
+  add_opening(model, box_polygon(4, 3, 6, 5), true);
+  add_fault(model, {{2, 1.5}, {8, 1.5}});  // between the opening and the side next to it
+  const Cut cut = cut_of(model);
+  CHECK(partition_defect(cut) == "");
+  CHECK(cut.whole.size() == 3);
+  CHECK(cut.dead_end_length == doctest::Approx(6));
+  for (const CutBlock& b : cut.whole)
+    for (const int e : b.edge)
+      CHECK(cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].kind !=
+            OriginKind::kFault);
+}
+
 TEST_CASE("two circles, side by side and one above the other") {
   for (const bool above : {false, true}) {
     Model model = rock_model(above ? box_polygon(0, 0, 10, 20) : box_polygon(0, 0, 20, 10));

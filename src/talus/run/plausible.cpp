@@ -69,9 +69,10 @@ class Plausible {
     std::set<std::string> texts;
     collect(source_.root, texts);
     // physical groups of meshes take materials and joints by their own names
-    texts.insert(scene_.layout.groups.begin(), scene_.layout.groups.end());
-    for (const MeshInput& m : model_.meshes)
+    for (const MeshInput& m : model_.meshes) {
+      texts.insert(m.mesh.surface_groups.begin(), m.mesh.surface_groups.end());
       texts.insert(m.mesh.curve_groups.begin(), m.mesh.curve_groups.end());
+    }
     for (const char* section : {"material", "joint", "history", "bolt_type"}) {
       const toml::table* entries = source_.root[section].as_table();
       if (!entries) continue;

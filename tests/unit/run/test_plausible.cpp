@@ -138,7 +138,7 @@ TEST_CASE("unusual and right: no warning") {
            {"\"20 GPa\"", "\"210 GPa\""},                  // of it
            {"density = 2700", "density = 917"},            // ice
            {"\"20 GPa\"", "\"9 GPa\""},                    //
-           {"\"20 GPa\"", "\"50 MPa\""},                    // soft soil
+           {"\"20 GPa\"", "\"50 MPa\""},                   // soft soil
            {"density = 2700", "density = 100"},            // foam that stands for a light wall
            {"[0, -9.81]", "[0, -1.62]"},                   // the moon
            {"\"10 GPa/m\"", "\"1 MPa/m\""},                // a rubber pad

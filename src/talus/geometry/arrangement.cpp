@@ -105,9 +105,14 @@ Edge edge_between(Vec2 a, Vec2 b, double grid) {
   return m < n ? Edge{m, n} : Edge{n, m};
 }
 
+struct HoledFace {
+  std::vector<Polyline> rings;  // the outer one first
+  Vec2 inside;                  // a place in the face
+};
+
 struct Noded {
   std::vector<Polygon> rings;  // counter-clockwise, without the closing corner
-  std::vector<std::vector<Polyline>> holed;
+  std::vector<HoledFace> holed;
   std::vector<Polyline> dead_ends;
 };
 
@@ -153,7 +158,9 @@ Noded polygonize(const GEOSGeometry* noded) {
     if (holes > 0) {
       std::vector<Polyline> rings{outer};
       for (int h = 0; h < holes; ++h) rings.push_back(open_ring(GEOSGetInteriorRingN_r(context, polygon, h)));
-      out.holed.push_back(std::move(rings));
+      const auto inside = geos().own(GEOSPointOnSurface_r(context, polygon));
+      if (!inside) throw std::runtime_error("no place found inside a face with holes");
+      out.holed.push_back({std::move(rings), geos().corners_of(inside.get()).at(0)});
       return;
     }
     if (signed_area(outer) < 0) std::reverse(outer.begin(), outer.end());
@@ -177,8 +184,8 @@ std::vector<Polyline> live_lines(const GEOSGeometry* noded, const Noded& faces, 
       live.insert(edge_between(ring[k], ring[(k + 1) % ring.size()], grid));
   };
   for (const Polygon& ring : faces.rings) add(ring);
-  for (const auto& rings : faces.holed)
-    for (const Polyline& ring : rings) add(ring);
+  for (const HoledFace& face : faces.holed)
+    for (const Polyline& ring : face.rings) add(ring);
   std::vector<Polyline> out;
   for_parts(noded, [&](const GEOSGeometry* line) {
     Polyline corners = geos().corners_of(line);
@@ -197,15 +204,9 @@ double smallest_area(const Noded& faces, const std::function<bool(Vec2)>& is_sol
   return least;
 }
 
-// A place in a face with holes.
-Vec2 inside_of(const std::vector<Polyline>& rings) {
-  const std::vector<Polyline> cuts = opening_cuts(rings, 0, 0);
-  return 0.5 * (cuts.at(0)[0] + cuts.at(0)[1]);
-}
-
 // Nodes the lines and opens the solid faces with holes. Cuts are added to what is noded already: they end on
 // its edges, which may lie a cell away from the lines themselves.
-Noded node_and_open(const std::vector<Polyline>& lines, double grid,
+Noded node_and_open(const std::vector<Polyline>& lines, double grid, Vec2 origin,
                     const std::function<bool(Vec2)>& is_solid, std::vector<Polyline>& cuts, int& opened) {
   auto noded = node(lines, grid);
   std::vector<Polyline> dead_ends;
@@ -214,11 +215,15 @@ Noded node_and_open(const std::vector<Polyline>& lines, double grid,
     Noded out = polygonize(noded.get());
     dead_ends.insert(dead_ends.end(), out.dead_ends.begin(), out.dead_ends.end());
     const size_t before = cuts.size();
-    for (const auto& rings : out.holed) {
-      if (!is_solid || !is_solid(inside_of(rings))) continue;
+    for (const HoledFace& face : out.holed) {
+      if (!is_solid(face.inside)) continue;
       if (least < 0) least = smallest_area(out, is_solid);
       const auto found =
-          opening_cuts(rings, std::isfinite(least) ? kLeastPiece * least : 0, kNearCorner * grid);
+          opening_cuts(face.rings, std::isfinite(least) ? kLeastPiece * least : 0, kNearCorner * grid);
+      if (found.empty())
+        throw std::runtime_error(fmt::format("no cuts open the face with {} holes around ({:.9g}, {:.9g})",
+                                             face.rings.size() - 1, face.inside.x + origin.x,
+                                             face.inside.y + origin.y));
       cuts.insert(cuts.end(), found.begin(), found.end());
       ++opened;
     }
@@ -251,7 +256,7 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
   for (Polyline& l : local)
     for (Vec2& p : l) p -= origin;
   const auto is_solid_local = [&](Vec2 p) { return is_solid && is_solid(p + origin); };
-  Noded noded = node_and_open(local, grid, is_solid_local, out.cuts, out.opened);
+  Noded noded = node_and_open(local, grid, origin, is_solid_local, out.cuts, out.opened);
   local.insert(local.end(), out.cuts.begin(), out.cuts.end());
 
   // faces in an order that depends on their places only
@@ -308,10 +313,11 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
 
   for (Vec2& p : out.point) p += origin;
   out.dead_ends = std::move(noded.dead_ends);
-  out.rings_of_holed = std::move(noded.holed);
-  for (auto& rings : out.rings_of_holed)
-    for (Polyline& ring : rings)
+  for (HoledFace& face : noded.holed) {
+    for (Polyline& ring : face.rings)
       for (Vec2& p : ring) p += origin;
+    out.rings_of_holed.push_back(std::move(face.rings));
+  }
   for (std::vector<Polyline>* list : {&out.dead_ends, &out.cuts})
     for (Polyline& l : *list)
       for (Vec2& p : l) p += origin;

@@ -11,11 +11,11 @@ namespace talus {
 
 namespace {
 
-// Points along an island from which cuts may begin, besides its corners; cuts that are looked at; how much
-// longer two cuts may be for the sake of larger pieces; share of a cut within which a corner takes up its
-// end.
+// Points along an island from which cuts may begin, besides its corners; cuts that are looked at, the
+// shortest and about as many farther ones; how much longer two cuts may be for the sake of larger pieces;
+// share of a cut within which a corner takes up its end.
 constexpr int kSamples = 24;
-constexpr size_t kMostLinks = 48;
+constexpr size_t kShortest = 24, kFarther = 24;
 constexpr double kSlack = 1.02, kAtCorner = 0.1;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -35,10 +35,22 @@ struct Link {
   double length = 0;
 };
 
+bool meet(const Box& a, const Box& b) {
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y;
+}
+
+double distance(const Box& a, const Box& b) {
+  const Vec2 gap{std::max({0.0, a.min.x - b.max.x, b.min.x - a.max.x}),
+                 std::max({0.0, a.min.y - b.max.y, b.min.y - a.max.y})};
+  return norm(gap);
+}
+
 struct Island {
   Polygon ring;  // clockwise
+  Box box;
   Vec2 inside;
   double area = 0;
+  double to_outer = kInfinity;  // distance to the ring around it [m]
 };
 
 struct Holed {
@@ -75,40 +87,67 @@ class Opener {
  public:
   Opener(double least_area, double near) : least_area_(least_area), near_(near) {}
 
-  void open(Holed face) {
-    if (face.islands.empty()) return;
-    size_t next = 0;
-    double least = kInfinity;
-    for (size_t i = 0; i < face.islands.size(); ++i) {
-      const double d = distance(face.islands[i].ring, face.outer);
-      if (d < least) least = d, next = i;
-    }
-    std::swap(face.islands[next], face.islands.back());
-    const Polygon island = face.islands.back().ring;
-    face.islands.pop_back();
-    const std::vector<Link> links = links_of(face, island);
-    const std::array<size_t, 2> pair = choose(face, island, links);
-    if (pair[0] == pair[1]) return;  // no two cuts: the caller finds the face holed still
-    for (const size_t i : pair)
-      if (links[i].length > 0) cuts.push_back({links[i].inner.at, links[i].outer.at});
-    for (const bool first : {true, false}) {
-      Holed piece;
-      piece.outer = piece_between(face.outer, island, links[pair[first ? 0 : 1]], links[pair[first ? 1 : 0]]);
-      for (const Island& other : face.islands)
-        if (contains(piece.outer, other.inside)) piece.islands.push_back(other);
-      open(std::move(piece));
+  void open(Holed whole) {
+    for (Island& island : whole.islands) island.to_outer = distance(island.ring, whole.outer);
+    std::vector<Holed> left;
+    left.push_back(std::move(whole));
+    while (!left.empty()) {
+      Holed face = std::move(left.back());
+      left.pop_back();
+      if (!face.islands.empty()) open_nearest(face, left);
     }
   }
 
   std::vector<Polyline> cuts;
 
  private:
-  // Cuts in sight, the shortest first: from places along the island straight to the ring around, and back.
+  // Cuts the island nearest to the ring around it free, and appends the two pieces. The others are as far
+  // from the ring of their piece as from the old ring, or nearer to the island: what lies behind the cuts is
+  // farther away than the cuts.
+  void open_nearest(Holed& face, std::vector<Holed>& left) {
+    const auto nearest =
+        std::min_element(face.islands.begin(), face.islands.end(),
+                         [](const Island& a, const Island& b) { return a.to_outer < b.to_outer; });
+    std::swap(*nearest, face.islands.back());
+    const Polygon island = std::move(face.islands.back().ring);
+    face.islands.pop_back();
+    const std::vector<Link> links = links_of(face, island);
+    const std::array<size_t, 2> pair = choose(face, island, links);
+    if (pair[0] == pair[1]) return;  // no two cuts: the caller finds the face holed still
+    Polygon added = island;
+    for (const size_t i : pair) {
+      if (links[i].length > 0) cuts.push_back({links[i].inner.at, links[i].outer.at});
+      added.push_back(links[i].inner.at);
+      added.push_back(links[i].outer.at);
+    }
+    const Box box = bounding_box(added);
+    for (Island& other : face.islands) {
+      if (distance(other.box, box) >= other.to_outer) continue;
+      other.to_outer = std::min(other.to_outer, distance(other.ring, island));
+      for (const size_t i : pair)
+        other.to_outer =
+            std::min(other.to_outer, distance(other.ring, Polygon{links[i].inner.at, links[i].outer.at}));
+    }
+    Holed first{piece_between(face.outer, island, links[pair[0]], links[pair[1]]), {}};
+    Holed second{piece_between(face.outer, island, links[pair[1]], links[pair[0]]), {}};
+    if (first.outer.size() > second.outer.size()) std::swap(first, second);
+    const Box small = bounding_box(first.outer);
+    for (Island& other : face.islands)
+      (lies_in(other, first.outer, small) ? first : second).islands.push_back(std::move(other));
+    left.push_back(std::move(second));
+    left.push_back(std::move(first));
+  }
+
+  static bool lies_in(const Island& island, const Polygon& piece, const Box& box) {
+    return meet(island.box, box) && contains(piece, island.inside);
+  }
+
+  // Cuts in sight: the shortest, and of the rest here and there one, for a piece may have to be large. From
+  // places along the island straight to the ring around, and back.
   std::vector<Link> links_of(const Holed& face, const Polygon& island) const {
-    std::vector<Link> links;
+    std::vector<Link> all;
     const auto add = [&](const OnRing& inner, const OnRing& outer) {
-      Link link{inner, outer, norm(outer.at - inner.at)};
-      if (in_sight(face, island, link)) links.push_back(link);
+      all.push_back({inner, outer, norm(outer.at - inner.at)});
     };
     double around = 0;
     for (size_t k = 0; k < island.size(); ++k) around += norm(island[(k + 1) % island.size()] - island[k]);
@@ -123,16 +162,15 @@ class Opener {
     }
     for (size_t k = 0; k < face.outer.size(); ++k)
       add(at_corner(island, nearest_on(island, face.outer[k]), face.outer[k]), {k, 0, face.outer[k]});
-    std::stable_sort(links.begin(), links.end(),
+    std::stable_sort(all.begin(), all.end(),
                      [](const Link& x, const Link& y) { return x.length < y.length; });
-    if (links.size() > kMostLinks) {
-      // the shortest, and of the rest here and there one: a piece may have to be large
-      std::vector<Link> some(links.begin(), links.begin() + kMostLinks / 2);
-      const size_t rest = links.size() - kMostLinks / 2;
-      for (size_t i = 0; i < kMostLinks / 2; ++i)
-        some.push_back(links[kMostLinks / 2 + i * rest / (kMostLinks / 2)]);
-      links = std::move(some);
-    }
+    std::vector<Link> links;
+    size_t i = 0;
+    for (; i < all.size() && links.size() < kShortest; ++i)
+      if (in_sight(face, island, all[i])) links.push_back(all[i]);
+    const size_t stride = std::max<size_t>(1, (all.size() - i) / kFarther);
+    for (; i < all.size(); i += stride)
+      if (in_sight(face, island, all[i])) links.push_back(all[i]);
     return links;
   }
 
@@ -150,16 +188,22 @@ class Opener {
   static bool in_sight(const Holed& face, const Polygon& island, const Link& link) {
     if (link.length == 0) return true;
     const Vec2 d = link.outer.at - link.inner.at, a = link.inner.at + 1e-6 * d, b = link.outer.at - 1e-6 * d;
+    const Vec2 middle = 0.5 * (a + b);
+    const Box box = bounding_box(std::array{a, b});
     const auto meets = [&](const Polygon& ring) {
-      for (size_t k = 0; k < ring.size(); ++k)
-        if (cross_each_other(a, b, ring[k], ring[(k + 1) % ring.size()])) return true;
+      for (size_t k = 0; k < ring.size(); ++k) {
+        const Vec2 p = ring[k], q = ring[k + 1 < ring.size() ? k + 1 : 0];
+        if (meet(Box{{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}},
+                 box) &&
+            cross_each_other(a, b, p, q))
+          return true;
+      }
       return false;
     };
-    if (meets(face.outer) || meets(island) || contains(island, 0.5 * (a + b)) ||
-        !contains(face.outer, 0.5 * (a + b)))
+    if (meets(face.outer) || meets(island) || contains(island, middle) || !contains(face.outer, middle))
       return false;
     return std::none_of(face.islands.begin(), face.islands.end(), [&](const Island& other) {
-      return meets(other.ring) || contains(other.ring, 0.5 * (a + b));
+      return meet(other.box, box) && (meets(other.ring) || contains(other.ring, middle));
     });
   }
 
@@ -191,35 +235,44 @@ class Opener {
     return out;
   }
 
-  double net_area(const Holed& face, const Polygon& piece) const {
+  // Area of the smaller of the two pieces, islands in them taken off [m2].
+  double smaller_piece(const Holed& face, const Polygon& island, double total, const Link& x,
+                       const Link& y) const {
+    Polygon piece = piece_between(face.outer, island, x, y);
+    if (Polygon other = piece_between(face.outer, island, y, x); other.size() < piece.size())
+      piece = std::move(other);
+    const Box box = bounding_box(piece);
     double area = signed_area(piece);
     for (const Island& other : face.islands)
-      if (contains(piece, other.inside)) area -= other.area;
-    return area;
+      if (lies_in(other, piece, box)) area -= other.area;
+    return std::min(area, total - area);
   }
 
+  // The shortest two cuts, or such as are little longer and leave larger pieces; where all leave a piece
+  // below the least area, those that leave the largest. The same link twice when there are no two.
   std::array<size_t, 2> choose(const Holed& face, const Polygon& island,
                                const std::vector<Link>& links) const {
-    struct Choice {
-      double total = kInfinity, area = -kInfinity;
-      std::array<size_t, 2> pair{0, 0};
+    double total = signed_area(face.outer) - std::abs(signed_area(island));
+    for (const Island& other : face.islands) total -= other.area;
+    struct Pair {
+      double length;
+      std::array<size_t, 2> link;
     };
-    std::vector<Choice> all;
-    for (size_t i = 0; i < links.size(); ++i) {
-      for (size_t j = i + 1; j < links.size(); ++j) {
-        if (!may_go_together(links[i], links[j])) continue;
-        const double area = std::min(net_area(face, piece_between(face.outer, island, links[i], links[j])),
-                                     net_area(face, piece_between(face.outer, island, links[j], links[i])));
-        all.push_back({links[i].length + links[j].length, area, {i, j}});
-      }
+    std::vector<Pair> pairs;
+    for (size_t i = 0; i < links.size(); ++i)
+      for (size_t j = i + 1; j < links.size(); ++j)
+        if (may_go_together(links[i], links[j])) pairs.push_back({links[i].length + links[j].length, {i, j}});
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return a.length < b.length; });
+    std::array<size_t, 2> best{0, 0};
+    double largest = -kInfinity, shortest = kInfinity;
+    for (const Pair& pair : pairs) {
+      if (pair.length > kSlack * shortest) break;
+      const double area = smaller_piece(face, island, total, links[pair.link[0]], links[pair.link[1]]);
+      if (area >= least_area_) shortest = std::min(shortest, pair.length);
+      if (area > largest) largest = area, best = pair.link;
     }
-    Choice best;
-    double least = kInfinity;
-    for (const Choice& c : all)
-      if (c.area >= least_area_) least = std::min(least, c.total);
-    for (const Choice& c : all)
-      if ((least == kInfinity || c.total <= kSlack * least) && c.area > best.area) best = c;
-    return best.pair;
+    return best;
   }
 
   double least_area_, near_;
@@ -233,10 +286,12 @@ std::vector<Polyline> opening_cuts(const std::vector<Polyline>& rings, double le
     Polygon polygon = ring;
     const bool is_outer = face.outer.empty();
     if ((signed_area(polygon) > 0) != is_outer) std::reverse(polygon.begin(), polygon.end());
-    if (is_outer)
+    if (is_outer) {
       face.outer = std::move(polygon);
-    else
-      face.islands.push_back({polygon, interior_point(polygon), std::abs(signed_area(polygon))});
+      continue;
+    }
+    Island island{polygon, bounding_box(polygon), interior_point(polygon), std::abs(signed_area(polygon))};
+    face.islands.push_back(std::move(island));
   }
   Opener opener(least_area, near);
   opener.open(std::move(face));

@@ -151,3 +151,17 @@ TEST_CASE("cuts that open holes of any face are short and leave simple polygons 
   CHECK(islands > 600);
   MESSAGE("cuts at most ", longest, " times twice the tree");
 }
+
+TEST_CASE("cuts that open five hundred holes in one face") {
+  Random random(7);
+  std::vector<Polyline> rings{box_polygon(0, 0, 23, 23)};
+  for (int i = 0; i < 22; ++i)
+    for (int j = 0; j < 22; ++j) {
+      const Vec2 center{i + 0.8 + 0.4 * random.uniform(), j + 0.8 + 0.4 * random.uniform()};
+      rings.push_back(star(random, center, 0.1 + 0.15 * random.uniform()));
+    }
+  const auto cuts = opening_cuts(rings, 0, 1e-9);
+  CHECK(cuts.size() == 2 * (rings.size() - 1));
+  CHECK(faces(rings, cuts).size() == 2 * (rings.size() - 1) + 1);
+  CHECK(length_of(cuts) <= 1.3 * 2 * tree_length(rings));
+}

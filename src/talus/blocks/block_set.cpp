@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/rank.h"
 
 namespace talus {
 
@@ -98,10 +99,7 @@ double smallest_size(const BlockSet& blocks) {
 
 double tolerance_size(const BlockSet& blocks) {
   if (blocks.count == 0) return 0;
-  std::vector<double> size = blocks.size;
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return std::max(smallest_size(blocks), kLeastOfMedian * *middle);
+  return std::max(smallest_size(blocks), kLeastOfMedian * median(blocks.size));
 }
 
 double stable_step_of(const BlockSet& blocks, int i) {

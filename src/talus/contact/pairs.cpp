@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/rank.h"
 #include "talus/contact/hand_over.h"
 #include "talus/contact/joint_state.h"
 
@@ -270,13 +271,6 @@ Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& p
   return c;
 }
 
-double median_size(const BlockSet& blocks) {
-  std::vector<double> size = blocks.size;
-  const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-  std::nth_element(size.begin(), middle, size.end());
-  return *middle;
-}
-
 // Who is near whom, blocks that have been taken out left aside.
 void list_neighbours(const BlockSet& blocks, const std::vector<std::pair<int, int>>& close, Neighbours& out) {
   out.begin.assign(static_cast<size_t>(blocks.count) + 1, 0);
@@ -490,12 +484,12 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
   ++list.rebuilds;
   list.displacement = state.displacement;
   list.strain_part = state.strain_part;
-  const double median = median_size(blocks);
+  const double median_size = median(blocks.size);
   const auto n = static_cast<size_t>(blocks.count);
   list.skin.resize(n), list.reach.resize(n);
   std::vector<Box> boxes = boxes_now(blocks, state);
   for (size_t i = 0; i < n; ++i) {
-    list.skin[i] = kSkin * std::min(blocks.size[i], median);
+    list.skin[i] = kSkin * std::min(blocks.size[i], median_size);
     // twice what is needed now, where it is speed that asks for it, so that the list holds for a while
     const double now = reach_of(blocks, ahead, i), rest = 0.5 * kMarginShare * blocks.size[i];
     list.reach[i] = (now > rest ? 2 * now : rest) + 2 * rise;

@@ -155,6 +155,7 @@ void read_json(const Json& in, Cut& cut) {
 std::string cut_fingerprint(const Model& model) {
   Fingerprint f;
   const CutInput& c = model.cut;
+  const auto is_glued = [&model](int joint) { return joint == model.bonded_joint; };  // needles of it merge
   f.add(c.section_azimuth, c.grid, c.seed, static_cast<int>(c.slivers), c.sliver_area, c.sliver_width,
         c.sliver_area_share, c.sliver_width_share, c.merge_along);
   for (const RegionInput& r : model.regions)
@@ -162,7 +163,7 @@ std::string cut_fingerprint(const Model& model) {
   for (const ArchInput& a : model.arches)
     f.add(std::string("arch"), a.name, a.center, a.radius, a.thickness, a.from, a.to, a.voussoirs);
   for (const OpeningInput& o : model.openings)
-    f.add(std::string("opening"), o.name, o.polygon, o.sagitta, o.kept);
+    f.add(std::string("opening"), o.name, o.polygon, o.sagitta, o.kept, is_glued(o.joint));
   for (const FaultInput& x : model.faults) f.add(std::string("fault"), x.name, x.points);
   for (const TracesInput& t : model.traces) {
     f.add(std::string("traces"), t.name);
@@ -171,10 +172,18 @@ std::string cut_fingerprint(const Model& model) {
   for (const MasonryInput& m : model.masonry)
     f.add(std::string("masonry"), m.name, m.region, m.length, m.height, m.overlap, m.origin);
   for (const TessellationInput& t : model.tessellations)
-    f.add(std::string("tessellation"), t.name, t.region, t.triangles, t.size, t.irregularity);
+    f.add(std::string("tessellation"), t.name, t.region, t.triangles, t.size, t.irregularity,
+          is_glued(t.joint));
   for (const JointSetInput& s : model.joint_sets)
     f.add(std::string("joint_set"), s.name, s.region, s.angle, s.in_space, s.dip, s.dip_direction, s.fisher,
           s.spacing, s.trace_length, s.gap, s.origin, s.offset, s.start);
+  if (c.slivers ==
+      SliverPolicy::kMerge) {  // what is merged depends on what is held, and on where rock goes on
+    for (const SupportInput& s : model.supports)
+      f.add(std::string("support"), s.along, s.block, s.is_edge, Polyline{s.from, s.to});
+    for (const BoundaryInput& b : model.boundaries)
+      f.add(std::string("boundary"), b.along, static_cast<int>(b.kind), b.opposite.along);
+  }
   return f.hash();
 }
 

@@ -8,7 +8,8 @@
 namespace talus {
 
 /// Identifies everything that shapes the blocks: regions, traces and the settings of [cut]; not materials,
-/// joint properties, supports or stages, which may change while the blocks stay.
+/// joint properties or stages, which may change while the blocks stay; supports and boundaries only where
+/// slivers are merged.
 std::string cut_fingerprint(const Model& model);
 
 /// Content of a blocks file. Coordinates with all digits.

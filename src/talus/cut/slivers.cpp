@@ -6,15 +6,11 @@
 #include <map>
 #include <set>
 
+#include "talus/base/rank.h"
+
 namespace talus {
 
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // A block thinner than this share of its length, or than so many cells of the grid, is a hair: its moments
 // have no digits left, and the two joints along it are one.
@@ -94,10 +90,13 @@ class SliverTreatment {
     }
   }
 
+  const SliverLimits& limits_of(int i) const {
+    return table_.limits[static_cast<size_t>(cut_.blocks[static_cast<size_t>(i)].region)];
+  }
+
   bool is_sliver(int i) const {
     const Measure& m = measures_[static_cast<size_t>(i)];
-    const SliverLimits& limits =
-        table_.limits[static_cast<size_t>(cut_.blocks[static_cast<size_t>(i)].region)];
+    const SliverLimits& limits = limits_of(i);
     return judged_[static_cast<size_t>(i)] && (m.area < limits.area || m.width < limits.width || is_hair(i));
   }
 
@@ -110,8 +109,7 @@ class SliverTreatment {
   // Thin among its own kind: cells are as small as they were asked for.
   bool is_thin_cell(int i) const {
     const Measure& m = measures_[static_cast<size_t>(i)];
-    const SliverLimits& limits =
-        table_.limits[static_cast<size_t>(cut_.blocks[static_cast<size_t>(i)].region)];
+    const SliverLimits& limits = limits_of(i);
     return judged_[static_cast<size_t>(i)] && (m.area < model_.cut.sliver_area_share * limits.median_area ||
                                                m.width < model_.cut.sliver_width_share * limits.median_width);
   }
@@ -228,7 +226,8 @@ class SliverTreatment {
     const Box box = bounding_box(cut_.polygon(b));
     const std::string name = cut_.name(b);
     return std::any_of(model_.supports.begin(), model_.supports.end(), [&](const SupportInput& s) {
-      if (!s.along.empty()) return false;  // an outline, or between blocks
+      if (!s.along.empty())
+        return std::any_of(b.edge.begin(), b.edge.end(), [&](int e) { return origin(e).name == s.along; });
       if (!s.block.empty() && s.block != name && s.block + "[" != name.substr(0, s.block.size() + 1))
         return false;
       return meet(box, bounding_box(Polygon{s.from, s.is_edge ? s.to : s.from}));
@@ -261,8 +260,7 @@ class SliverTreatment {
     return std::find(names.begin(), names.end(), from.name) != names.end();
   }
 
-  // --------------------------------------------------------------------------------------------- what is
-  // done
+  // ------------------------------------------------------------------------------------------- what is done
 
   void wait_for(Rule rule) {
     waiting_.clear();

@@ -124,9 +124,8 @@ struct CutInput {
   double grid = std::numeric_limits<double>::quiet_NaN();             // [m], NaN: automatic
   uint64_t seed = 1;
   SliverPolicy slivers = SliverPolicy::kKeep;
-  std::vector<std::string>
-      merge_along;  // joint sets whose lines may be parted by merging although they reach a free face
-  double sliver_area = 0, sliver_width = 0;              // [m2], [m]
+  std::vector<std::string> merge_along;      // joint sets whose lines that reach a free face may be parted
+  double sliver_area = 0, sliver_width = 0;  // [m2], [m]
   double sliver_area_share = 0, sliver_width_share = 0;  // of the median block of the region
   std::string blocks_file;                               // cut before; "" cut now
   Where where, where_file, where_grid, where_slivers;

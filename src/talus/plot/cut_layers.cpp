@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 
+#include "talus/base/rank.h"
 #include "talus/plot/edge_chains.h"
 
 namespace talus::plot {
@@ -81,9 +82,7 @@ double joint_line_width(const Cut& cut, double scale) {
   if (cut.blocks.empty()) return 1;
   std::vector<double> areas;
   for (const CutBlock& block : cut.blocks) areas.push_back(std::abs(signed_area(cut.polygon(block))));
-  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::nth_element(areas.begin(), middle, areas.end());
-  return std::clamp(kShare * std::sqrt(*middle) * scale, 0.15, 1.6);
+  return std::clamp(kShare * std::sqrt(median(std::move(areas))) * scale, 0.15, 1.6);
 }
 
 std::vector<Layer> make_areas(const Model& model, const Cut& cut) {

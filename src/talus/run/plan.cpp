@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "talus/base/rank.h"
 #include "talus/contact/pairs.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/histories.h"
@@ -32,9 +33,7 @@ double share_of_deformable(const BlockSet& blocks, double share, const std::func
     if (blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable) values.push_back(value(i));
   if (values.empty()) return std::numeric_limits<double>::infinity();
   const auto n = static_cast<double>(values.size());
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(share * n, n - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return value_at_rank(std::move(values), static_cast<size_t>(std::min(share * n, n - 1)));
 }
 
 double median_of_deformable(const BlockSet& blocks, const std::function<double(int)>& value) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
 
 namespace talus {
@@ -29,7 +30,7 @@ struct Electorate {
     std::vector<double> size, thickness;
     for (size_t k = 0; k < votes.size(); ++k)
       if (can_move(b.kind[k])) size.push_back(b.size[k]), thickness.push_back(b.thinness[k]);
-    const double median_size = median(size), median_thickness = median(thickness);
+    const double median_size = lower_median(size), median_thickness = lower_median(thickness);
     const double told = scene.model.safety.displacement;
     for (size_t k = 0; k < votes.size(); ++k) {
       const double area = b.size[k] * b.size[k];
@@ -45,12 +46,9 @@ struct Electorate {
 
   static bool can_move(BlockKind kind) { return kind == BlockKind::kDeformable || kind == BlockKind::kRigid; }
 
-  static double median(std::vector<double> v) {
-    if (v.empty()) return 0;
-    // of two the smaller: a wedge in solid rock is no crumb
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>((v.size() - 1) / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
+  // of two the smaller: a wedge in solid rock is no crumb
+  static double lower_median(const std::vector<double>& v) {
+    return v.empty() ? 0 : value_at_rank(v, (v.size() - 1) / 2);
   }
 
   std::vector<bool> votes;

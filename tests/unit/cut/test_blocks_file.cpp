@@ -143,6 +143,21 @@ TEST_CASE("blocks file: whatever shapes the blocks makes it another cut, whateve
   CHECK(changes([](Model& m) { m.regions[0].sides[1] = "east"; }));
   CHECK(changes([](Model& m) { m.openings[0].kept = false; }));
   CHECK(changes([](Model& m) { add_fault(m, {{0, 0}, {1, 1}}); }));
+  // where slivers are merged, those that are held or from which rock goes on are not
+  const auto hold = [](Model& m) {
+    m.supports.emplace_back();
+    m.supports[0].from = m.supports[0].to = {1, 1};
+  };
+  const auto go_on = [](Model& m) {
+    m.boundaries.emplace_back();
+    m.boundaries[0].along = "east";
+  };
+  CHECK(changes(hold));
+  CHECK(changes(go_on));
+  Model kept = model, held = model;
+  kept.cut.slivers = held.cut.slivers = SliverPolicy::kKeep;
+  hold(held), go_on(held);
+  CHECK(cut_fingerprint(kept) == cut_fingerprint(held));
   CHECK_FALSE(changes([](Model& m) { m.materials[0].density = 1; }));
   CHECK_FALSE(changes([](Model& m) { m.joints[0].friction_angle = 0.5; }));
   CHECK_FALSE(changes([](Model& m) { m.joint_sets[0].joint = 0; }));

@@ -278,6 +278,7 @@ struct Model {
   Plane plane = Plane::kStrain;
   Inertia inertia = Inertia::kConsistent;
   Vec2 gravity;
+  Where where_gravity;  // of [model] when it is not given
 
   std::vector<Material> materials;
   std::vector<JointProperty> joints;

@@ -10,6 +10,7 @@
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
 #include "talus/model/joint_law.h"
+#include "talus/model/names_used.h"
 #include "talus/model/read_action.h"
 #include "talus/model/read_bolt.h"
 #include "talus/model/read_cut.h"
@@ -21,6 +22,8 @@
 namespace talus {
 
 namespace {
+
+constexpr double kMostGravity = 300;  // [m/s2], of a centrifuge
 
 class ModelReader : private SectionReader {
  public:
@@ -163,6 +166,8 @@ class ModelReader : private SectionReader {
     model_.plane = f.get<std::string>("plane") == "stress" ? Plane::kStress : Plane::kStrain;
     model_.inertia = f.get<std::string>("inertia") == "lumped" ? Inertia::kLumped : Inertia::kConsistent;
     model_.gravity = f.get<Vec2>("gravity");
+    model_.where_gravity = f.where("gravity");
+    check_gravity();
   }
 
   void read_materials() {
@@ -511,6 +516,16 @@ class ModelReader : private SectionReader {
     }
   }
 
+  void check_gravity() {
+    const double size = norm(model_.gravity);
+    if (model_.gravity.y <= 0 && size <= kMostGravity) return;
+    findings_.warning(model_.where_gravity, "model.gravity",
+                      model_.gravity.y > 0
+                          ? fmt::format("{:g} m/s2 along y: things fall upwards", model_.gravity.y)
+                          : fmt::format("{:.3g} m/s2 is more than a centrifuge has", size),
+                      "downwards is [0, -9.81]");
+  }
+
   Model& model_;
   std::set<std::string> block_names_, incomplete_;
   std::vector<Where> material_where_, joint_where_;
@@ -529,6 +544,7 @@ Model read_model(const std::string& file, const std::string& text, const std::ve
   const TomlSource source = parse_toml(text, overrides, findings);
   if (findings.has_errors()) return model;  // after a syntax error every further message would mislead
   ModelReader(source, model, findings).read();
+  if (!findings.has_errors()) check_names_used(source, model, findings);
   return model;
 }
 

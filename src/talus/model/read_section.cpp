@@ -106,6 +106,13 @@ class ValueReader {
       return tell(node, fmt::format("{} is not allowed; must be {}", with_unit(v, spec_.dimension),
                                     spec_.range.describe(spec_.dimension)));
     }
+    if (v != 0 && !spec_.usual.holds(std::abs(v))) {
+      const Where at = where_of(node.source());
+      findings_.warning(at.line > 0 ? at : where_, path_,
+                        fmt::format("{} is unusual: what there is, is {}", with_unit(v, spec_.dimension),
+                                    spec_.usual.describe(spec_.dimension)),
+                        "is a unit wrong, or missing? Numbers without one are in SI units");
+    }
     return v;
   }
 

@@ -251,6 +251,10 @@ class StageReader : private SectionReader {
 
     const bool constant = any_given(f, {"stress_xx", "stress_yy", "stress_xy"});
     const bool gradient = any_given(f, {"horizontal_pressure", "horizontal_gradient"});
+    if (s.stress.xx > 0 || s.stress.yy > 0)
+      findings_.warning(f.where(s.stress.xx > 0 ? "stress_xx" : "stress_yy"), f.path(),
+                        "pulls: the ground is under tension",
+                        "stresses count tension as positive, pressures the other way");
     if (constant == s.with_depth) {
       findings_.error(f.where(), f.path(), constant ? "is given in two ways" : "has no stress",
                       "give level, density and k0, or stress_xx, stress_yy, stress_xy");

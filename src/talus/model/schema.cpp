@@ -56,6 +56,8 @@ std::string_view type_text(const KeySpec& k) {
 std::string allowed_text(const KeySpec& k) {
   std::string out = k.range.describe(k.dimension == D::kAngle ? D::kAngle : D::kNone);
   for (const std::string& c : k.choices) out += (out.empty() ? "`" : ", `") + c + "`";
+  if (k.usual.given())
+    out += fmt::format("{}usually {}", out.empty() ? "" : "; ", k.usual.describe(D::kNone));
   if (!k.refers_to.empty()) out = fmt::format("name of a {}", k.refers_to);
   return out;
 }

@@ -2,6 +2,7 @@
 // The model file format: every section and key with type, unit, range, default and meaning, in one table.
 // The reader validates with it, the documentation tables and the published JSON schema are printed from it.
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -37,6 +38,7 @@ struct Range {
   bool min_open = false, max_open = false;
 
   bool holds(double v) const { return (min_open ? v > min : v >= min) && (max_open ? v < max : v <= max); }
+  bool given() const { return std::isfinite(min) || std::isfinite(max); }
   /// "> 0", "from 0 to below 1", "" when anything is allowed; with the unit of `dimension`.
   std::string describe(Dimension dimension) const;
 };
@@ -46,6 +48,7 @@ struct KeySpec {
   KeyType type = KeyType::kQuantity;
   Dimension dimension = Dimension::kNone;
   Range range = {};
+  Range usual = {};  // of magnitudes but 0; what lies outside is legal and warned of
   bool required = false;
   std::string_view default_text = {};  // as it would be written in the file; "" = none
   std::vector<std::string> choices = {};

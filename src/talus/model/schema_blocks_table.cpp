@@ -30,6 +30,7 @@ std::vector<SectionSpec> block_sections() {
         {.name = "velocity",
          .type = K::kVector,
          .dimension = D::kVelocity,
+         .usual = {.max = 3000},
          .default_text = "[0, 0]",
          .doc = "Initial velocity of the centroid."},
         {.name = "spin",
@@ -138,6 +139,7 @@ std::vector<SectionSpec> block_sections() {
         {.name = "velocity",
          .type = K::kVector,
          .dimension = D::kVelocity,
+         .usual = {.max = 3000},
          .default_text = "[0, 0]",
          .doc = "Initial velocity of all its blocks."}}},
   };

@@ -61,11 +61,13 @@ std::vector<SectionSpec> model_sections() {
        {{.name = "density",
          .dimension = D::kDensity,
          .range = kPositive,
+         .usual = kUsualDensity,
          .required = true,
          .doc = "Mass density."},
         {.name = "young",
          .dimension = D::kStress,
          .range = kPositive,
+         .usual = {.min = 1e5, .max = 1.2e12},  // loose soil to diamond
          .doc = "Young's modulus; needed by deformable blocks."},
         {.name = "poisson",
          .range = {.min = -1, .max = 0.5, .min_open = true, .max_open = true},
@@ -89,6 +91,7 @@ std::vector<SectionSpec> model_sections() {
         {.name = "cohesion",
          .dimension = D::kStress,
          .range = kNonNegative,
+         .usual = {.max = 1e9},
          .default_text = "\"0 Pa\"",
          .doc = "Cohesion of faces that touch at the start; lost for good, with the tensile strength, when "
                 "the face "
@@ -101,6 +104,7 @@ std::vector<SectionSpec> model_sections() {
         {.name = "normal_stiffness",
          .dimension = D::kStiffness,
          .range = kNonNegative,
+         .usual = {.min = 1e4, .max = 1e15},
          .default_text = "\"0 Pa/m\"",
          .doc = "Elastic stiffness kn of the joint per area; 0: hard. Give it to natural rock joints: forces "
                 "are then "
@@ -108,6 +112,7 @@ std::vector<SectionSpec> model_sections() {
         {.name = "shear_stiffness",
          .dimension = D::kStiffness,
          .range = kNonNegative,
+         .usual = {.min = 1e4, .max = 1e15},
          .default_text = "\"0 Pa/m\"",
          .doc = "Elastic stiffness ks along the joint per area; 0: hard."},
         {.name = "restitution",

@@ -18,25 +18,31 @@ SectionSpec in_situ_section() {
        {.name = "pressure",
         .dimension = D::kStress,
         .range = kNonNegative,
+        .usual = kGroundStress,
         .default_text = "\"0 Pa\"",
         .doc = "Vertical pressure at that level, of the ground above the model."},
        {.name = "density",
         .dimension = D::kDensity,
         .range = kPositive,
+        .usual = kUsualDensity,
         .doc = "Of the ground below the level: the vertical pressure is `pressure` + density x gravity x "
                "depth."},
        {.name = "k0", .range = kNonNegative, .doc = "Horizontal / vertical pressure."},
        {.name = "horizontal_pressure",
         .dimension = D::kStress,
         .range = kNonNegative,
+        .usual = kGroundStress,
         .doc = "Instead of `k0`: horizontal pressure at the level."},
        {.name = "horizontal_gradient",
         .dimension = D::kStiffness,
         .range = kNonNegative,
         .doc = "Instead of `k0`: growth of the horizontal pressure with depth."},
-       {.name = "stress_xx", .dimension = D::kStress, .doc = "Stress everywhere, tension > 0."},
-       {.name = "stress_yy", .dimension = D::kStress, .doc = "The same."},
-       {.name = "stress_xy", .dimension = D::kStress, .doc = "The same."}}};
+       {.name = "stress_xx",
+        .dimension = D::kStress,
+        .usual = kGroundStress,
+        .doc = "Stress everywhere, tension > 0."},
+       {.name = "stress_yy", .dimension = D::kStress, .usual = kGroundStress, .doc = "The same."},
+       {.name = "stress_xy", .dimension = D::kStress, .usual = kGroundStress, .doc = "The same."}}};
 }
 
 SectionSpec stage_section() {
@@ -60,6 +66,7 @@ SectionSpec stage_section() {
         .type = K::kQuantityAuto,
         .dimension = D::kTime,
         .range = kPositive,
+        .usual = {.min = 1e-9, .max = 0.1},
         .default_text = "\"auto\"",
         .doc = "Time step, rounded down so that the stage ends on a step. \"auto\": `safety` times the "
                "stable limit "

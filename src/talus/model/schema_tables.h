@@ -9,6 +9,8 @@ namespace talus {
 using D = Dimension;
 using K = KeyType;
 
+inline constexpr Range kUsualDensity{.min = 50, .max = 2.3e4};  // foam to lead and gold
+inline constexpr Range kGroundStress{.max = 1e9};               // of the crust
 inline constexpr Range kPositive{.min = 0, .min_open = true};
 inline constexpr Range kNonNegative{.min = 0};
 

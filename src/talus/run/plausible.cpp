@@ -4,23 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "talus/model/toml_source.h"
 #include "talus/run/resolution.h"
 
 namespace talus {
 
 namespace {
 
-// From aerogel to lead and platinum would be all there is; these leave foam out, and tungsten.
-constexpr double kLeastDensity = 50, kMostDensity = 2.3e4;  // [kg/m3]
-// From loose soil to diamond.
-constexpr double kLeastYoung = 1e5, kMostYoung = 1.2e12;        // [Pa]
-constexpr double kLeastStiffness = 1e4, kMostStiffness = 1e15;  // of joints [Pa/m]
-constexpr double kMostStress = 1e9;                             // of the ground [Pa], below 30 km of rock
-constexpr double kMostSpeed = 3000;                             // [m/s]
-constexpr double kMostGravity = 300;                            // [m/s2], of a centrifuge
 // Blocks of one stress throughout, longer than so many times their width, are stiff where they should bend.
 constexpr double kCannotBend = 8;
 // A step that is a larger share of the shortest period of a motion does not follow it.
@@ -28,16 +18,11 @@ constexpr double kStepsPerPeriod = 10;
 
 class Plausible {
  public:
-  Plausible(const TomlSource& source, const Scene& scene, const std::vector<StagePlan>& plans,
-            Findings& findings)
-      : source_(source), scene_(scene), model_(scene.model), plans_(plans), findings_(findings) {}
+  Plausible(const Scene& scene, const std::vector<StagePlan>& plans, Findings& findings)
+      : scene_(scene), model_(scene.model), plans_(plans), findings_(findings) {}
 
   void check() {
-    check_names();
-    check_materials();
-    check_joints();
     check_gravity();
-    check_ground();
     check_what_holds();
     check_friction();
     check_bending();
@@ -45,85 +30,9 @@ class Plausible {
   }
 
  private:
-  Where where_of(const toml::node* node) const {
-    if (!node || node->source().begin.line == 0) return {1, 1, ""};
-    return {static_cast<int>(node->source().begin.line), static_cast<int>(node->source().begin.column), ""};
-  }
-  // Of [section.name], of its key when it has it.
-  Where where_of(const std::string& section, const std::string& name, const std::string& key = "") const {
-    const toml::node* at = source_.root[section].node();
-    if (!name.empty() && at && at->is_table()) at = at->as_table()->get(name);
-    if (!key.empty() && at && at->is_table() && at->as_table()->get(key)) at = at->as_table()->get(key);
-    return where_of(at);
-  }
-
-  static void collect(const toml::node& node, std::set<std::string>& texts) {
-    if (const auto* text = node.as_string()) texts.insert(text->get());
-    if (const auto* list = node.as_array())
-      for (const toml::node& item : *list) collect(item, texts);
-    if (const auto* table = node.as_table())
-      for (const auto& [key, item] : *table) collect(item, texts);
-  }
-
-  void check_names() {
-    std::set<std::string> texts;
-    collect(source_.root, texts);
-    // physical groups of meshes take materials and joints by their own names
-    for (const MeshInput& m : model_.meshes) {
-      texts.insert(m.mesh.surface_groups.begin(), m.mesh.surface_groups.end());
-      texts.insert(m.mesh.curve_groups.begin(), m.mesh.curve_groups.end());
-    }
-    for (const char* section : {"material", "joint", "history", "bolt_type"}) {
-      const toml::table* entries = source_.root[section].as_table();
-      if (!entries) continue;
-      for (const auto& [key, node] : *entries) {
-        const std::string name(key.str());
-        if (texts.count(name)) continue;
-        findings_.warning(where_of(&node), fmt::format("{}.{}", section, name),
-                          "is named by nothing in the file", "is another name mistyped? Else leave it out");
-      }
-    }
-  }
-
-  void unusual(const std::string& section, const std::string& name, const std::string& key, double value,
-               double least, double most, const std::string& unit) {
-    if (std::isnan(value) || (value >= least && value <= most)) return;
-    findings_.warning(where_of(section, name, key), fmt::format("{}.{}.{}", section, name, key),
-                      fmt::format("{:.4g} {} is unusual: {:.3g} to {:.3g} {} is what materials have", value,
-                                  unit, least, most, unit),
-                      "is a unit wrong, or missing? Numbers without one are in SI units");
-  }
-
-  void check_materials() {
-    for (const Material& m : model_.materials) {
-      unusual("material", m.name, "density", m.density, kLeastDensity, kMostDensity, "kg/m3");
-      unusual("material", m.name, "young", m.young, kLeastYoung, kMostYoung, "Pa");
-    }
-  }
-
-  void check_joints() {
-    for (const JointProperty& j : model_.joints) {
-      if (j.bonded) continue;
-      for (const auto& [key, value] : {std::pair("normal_stiffness", j.normal_stiffness),
-                                       std::pair("shear_stiffness", j.shear_stiffness)})
-        if (value > 0) unusual("joint", j.name, key, value, kLeastStiffness, kMostStiffness, "Pa/m");
-    }
-  }
-
   void check_gravity() {
-    const Where where = where_of("model", "", "gravity");
-    const Where line =
-        source_.root["model"]["gravity"] ? where_of(source_.root["model"]["gravity"].node()) : where;
-    if (model_.gravity.y > 0)
-      findings_.warning(line, "model.gravity",
-                        fmt::format("{:g} m/s2 along y: things fall upwards", model_.gravity.y),
-                        "downwards is [0, -9.81]");
-    else if (norm(model_.gravity) > kMostGravity)
-      findings_.warning(line, "model.gravity",
-                        fmt::format("{:.3g} m/s2 is more than a centrifuge has", norm(model_.gravity)),
-                        "downwards is [0, -9.81]");
     if (norm(model_.gravity) > 0 || is_driven()) return;
-    findings_.warning(line, "model.gravity",
+    findings_.warning(model_.where_gravity, "model.gravity",
                       "is none, and nothing else drives the model: nothing will happen",
                       "give [model] gravity = [0, -9.81], or a load, a motion, a velocity");
   }
@@ -141,19 +50,6 @@ class Plausible {
     return false;
   }
 
-  void check_ground() {
-    const InSituInput& g = model_.in_situ;
-    if (!g.given) return;
-    const double largest = std::max({std::abs(g.pressure), std::abs(g.stress.xx), std::abs(g.stress.yy)});
-    const Where where = where_of("in_situ", "");
-    if (largest > kMostStress)
-      findings_.warning(where, "in_situ", fmt::format("{:.3g} Pa is more than the crust bears", largest),
-                        "is a unit wrong?");
-    if (g.pressure < 0 || g.stress.xx > 0 || g.stress.yy > 0)
-      findings_.warning(where, "in_situ", "pulls: the ground is under tension",
-                        "stresses count tension as positive, pressures the other way");
-  }
-
   void check_what_holds() {
     if (norm(model_.gravity) == 0) return;
     const auto held = [](const BlockShape& b) {
@@ -162,8 +58,7 @@ class Plausible {
     if (!model_.supports.empty() || !model_.boundaries.empty() ||
         std::any_of(scene_.layout.blocks.begin(), scene_.layout.blocks.end(), held))
       return;
-    findings_.warning(where_of(source_.root["model"].node()), "support",
-                      "nothing holds the model: all of it falls",
+    findings_.warning(model_.where_gravity, "support", "nothing holds the model: all of it falls",
                       "give a [[support]], a [[boundary]] or a block of kind = \"fixed\"");
   }
 
@@ -226,7 +121,6 @@ class Plausible {
     }
   }
 
-  const TomlSource& source_;
   const Scene& scene_;
   const Model& model_;
   const std::vector<StagePlan>& plans_;
@@ -235,11 +129,8 @@ class Plausible {
 
 }  // namespace
 
-void check_plausible(const std::string& text, const std::vector<std::string>& overrides, const Scene& scene,
-                     const std::vector<StagePlan>& plans, Findings& findings) {
-  Findings scratch(scene.model.file, text);
-  const TomlSource source = parse_toml(text, overrides, scratch);
-  Plausible(source, scene, plans, findings).check();
+void check_plausible(const Scene& scene, const std::vector<StagePlan>& plans, Findings& findings) {
+  Plausible(scene, plans, findings).check();
 }
 
 }  // namespace talus

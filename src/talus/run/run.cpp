@@ -432,7 +432,7 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
   findings.throw_if_errors();
   run.plans = plan_stages(run.scene, findings);
   check_resolution(run.scene, findings);
-  check_plausible(text, overrides, run.scene, run.plans, findings);
+  check_plausible(run.scene, run.plans, findings);
   findings.throw_if_errors();
   return run;
 }

@@ -27,9 +27,10 @@ class Case {
     std::ofstream(folder_ / name) << text;
   }
 
-  // The model with one history of these keys.
+  // The model with one history of these keys, and a load that it drives.
   Model read(const std::string& keys, const std::vector<std::string>& overrides = {}) {
-    const std::string text = "talus = 1\n[history.h]\n" + keys;
+    const std::string text =
+        "talus = 1\n[history.h]\n" + keys + "\n[[load]]\nname = \"shake\"\nacceleration_x = \"h\"\n";
     const std::string file = (folder_ / "model.toml").string();
     Findings findings(file, text);
     Model model = read_model(file, text, overrides, findings);

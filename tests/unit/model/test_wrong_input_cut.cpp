@@ -6,10 +6,10 @@
 
 #include <sstream>
 
-#include "talus/base/error.h"
-#include "talus/run/run.h"
+#include "support/told.h"
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -133,24 +133,6 @@ gravity = [0, -9.81]
 std::string with_lines(std::string text) {
   for (size_t at = 0; (at = text.find("\\n", at)) != std::string::npos;) text.replace(at, 2, "\n");
   return text;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const size_t at = text.find(from);
-  INFO("to be replaced: ", from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
-}
-
-// All that reading, cutting and checking `text` has to say: errors, or else warnings.
-std::string told(const std::string& text) {
-  Findings findings("model.toml", text);
-  try {
-    prepare_run("model.toml", text, {}, findings);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return findings.render();
 }
 
 void check_one(const std::string& message, const std::string& finding, const std::string& hint = "") {

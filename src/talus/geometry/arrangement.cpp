@@ -21,9 +21,6 @@ namespace {
 // open holes.
 constexpr double kMoved = 1.5, kMovedTwice = 16;
 
-// Rounding may bring a cut onto another line; each round opens at least one hole.
-constexpr int kMostRounds = 100;
-
 // Least area of a piece beside a cut, as share of the smallest face; corners that take up the end of a cut,
 // in cells of the grid.
 constexpr double kLeastPiece = 0.25, kNearCorner = 64;
@@ -128,7 +125,8 @@ Polygon open_ring(const GEOSGeometry* ring) {
   return corners;
 }
 
-Geos::Handle node(const std::vector<Polyline>& lines, double grid) {
+// The lines as they come from the noder: each ends where it meets another.
+std::vector<Polyline> node(const std::vector<Polyline>& lines, double grid) {
   const GEOSContextHandle_t context = geos().context();
   // in mixed order: the noder keeps its nodes in a tree that it does not balance, and parallel lines from one
   // side to the other would make it half a list (measured: 31 s instead of 15 s at half a million faces)
@@ -136,15 +134,35 @@ Geos::Handle node(const std::vector<Polyline>& lines, double grid) {
   Random random(1);
   for (size_t i = mixed.size(); i > 1; --i) std::swap(mixed[i - 1], mixed[random.next() % i]);
   const auto input = geos().make_lines(mixed, {0, 0});
-  auto noded = geos().own(input ? GEOSUnaryUnionPrec_r(context, input.get(), grid) : nullptr);
+  const auto noded = geos().own(input ? GEOSUnaryUnionPrec_r(context, input.get(), grid) : nullptr);
   if (!noded) throw std::runtime_error("noding of the joints failed");
-  return noded;
+  std::vector<Polyline> out;
+  for_parts(noded.get(), [&out](const GEOSGeometry* line) { out.push_back(geos().corners_of(line)); });
+  return out;
 }
 
-Noded polygonize(const GEOSGeometry* noded) {
+// Noded lines, and cuts that end on them: only what is near a cut is noded again.
+std::vector<Polyline> node_again(std::vector<Polyline> lines, const std::vector<Polyline>& cuts,
+                                 double grid) {
+  std::vector<Box> boxes;
+  for (const Polyline& line : lines) boxes.push_back(bounding_box(line));
+  for (const Polyline& cut : cuts) boxes.push_back(bounding_box(cut));
+  const auto first_cut = static_cast<int>(lines.size());
+  std::vector<bool> is_near(lines.size(), false);
+  for (const auto& [i, j] : close_pairs(boxes, kMovedTwice * grid))
+    if (i < first_cut && j >= first_cut) is_near[static_cast<size_t>(i)] = true;
+  std::vector<Polyline> near = cuts, out;
+  for (size_t i = 0; i < lines.size(); ++i) (is_near[i] ? near : out).push_back(std::move(lines[i]));
+  for (Polyline& line : node(near, grid)) out.push_back(std::move(line));
+  return out;
+}
+
+Noded polygonize(const std::vector<Polyline>& noded) {
   const GEOSContextHandle_t context = geos().context();
+  const auto lines = geos().make_lines(noded, {0, 0});
   GEOSGeometry *cuts = nullptr, *dangles = nullptr, *invalid = nullptr;
-  const auto faces = geos().own(GEOSPolygonize_full_r(context, noded, &cuts, &dangles, &invalid));
+  const auto faces =
+      geos().own(lines ? GEOSPolygonize_full_r(context, lines.get(), &cuts, &dangles, &invalid) : nullptr);
   const auto own_cuts = geos().own(cuts), own_dangles = geos().own(dangles),
              own_invalid = geos().own(invalid);
   if (!faces) throw std::runtime_error("collecting the faces between the joints failed");
@@ -177,7 +195,7 @@ Noded polygonize(const GEOSGeometry* noded) {
 }
 
 // Noded lines along which faces lie: dead ends would become joints where a cut meets them.
-std::vector<Polyline> live_lines(const GEOSGeometry* noded, const Noded& faces, double grid) {
+std::vector<Polyline> live_lines(std::vector<Polyline> noded, const Noded& faces, double grid) {
   std::unordered_set<Edge, EdgeHash> live;
   const auto add = [&](const Polyline& ring) {
     for (size_t k = 0; k < ring.size(); ++k)
@@ -186,12 +204,9 @@ std::vector<Polyline> live_lines(const GEOSGeometry* noded, const Noded& faces, 
   for (const Polygon& ring : faces.rings) add(ring);
   for (const HoledFace& face : faces.holed)
     for (const Polyline& ring : face.rings) add(ring);
-  std::vector<Polyline> out;
-  for_parts(noded, [&](const GEOSGeometry* line) {
-    Polyline corners = geos().corners_of(line);
-    if (live.count(edge_between(corners[0], corners[1], grid))) out.push_back(std::move(corners));
-  });
-  return out;
+  std::erase_if(noded,
+                [&](const Polyline& line) { return !live.count(edge_between(line[0], line[1], grid)); });
+  return noded;
 }
 
 // Area of the smallest face that is solid [m2].
@@ -204,6 +219,12 @@ double smallest_area(const Noded& faces, const std::function<bool(Vec2)>& is_sol
   return least;
 }
 
+[[noreturn]] void fail_to_open(const HoledFace& face, Vec2 origin) {
+  throw std::runtime_error(fmt::format("no cuts open the face with {} holes around ({:.9g}, {:.9g})",
+                                       face.rings.size() - 1, face.inside.x + origin.x,
+                                       face.inside.y + origin.y));
+}
+
 // Nodes the lines and opens the solid faces with holes. Cuts are added to what is noded already: they end on
 // its edges, which may lie a cell away from the lines themselves.
 Noded node_and_open(const std::vector<Polyline>& lines, double grid, Vec2 origin,
@@ -211,31 +232,31 @@ Noded node_and_open(const std::vector<Polyline>& lines, double grid, Vec2 origin
   auto noded = node(lines, grid);
   std::vector<Polyline> dead_ends;
   double least = -1;
-  for (int round = 0; round < kMostRounds; ++round) {
-    Noded out = polygonize(noded.get());
+  size_t left = std::numeric_limits<size_t>::max();  // holes of solid faces
+  for (;;) {
+    Noded out = polygonize(noded);
     dead_ends.insert(dead_ends.end(), out.dead_ends.begin(), out.dead_ends.end());
     const size_t before = cuts.size();
+    size_t holes = 0;
     for (const HoledFace& face : out.holed) {
       if (!is_solid(face.inside)) continue;
+      holes += face.rings.size() - 1;
+      if (holes >= left) fail_to_open(face, origin);  // rounding brings cuts onto other lines, but not all
       if (least < 0) least = smallest_area(out, is_solid);
       const auto found =
           opening_cuts(face.rings, std::isfinite(least) ? kLeastPiece * least : 0, kNearCorner * grid);
-      if (found.empty())
-        throw std::runtime_error(fmt::format("no cuts open the face with {} holes around ({:.9g}, {:.9g})",
-                                             face.rings.size() - 1, face.inside.x + origin.x,
-                                             face.inside.y + origin.y));
+      if (found.empty()) fail_to_open(face, origin);
       cuts.insert(cuts.end(), found.begin(), found.end());
       ++opened;
     }
-    if (cuts.size() == before) {
+    if (holes == 0) {
       out.dead_ends = std::move(dead_ends);
       return out;
     }
-    std::vector<Polyline> next = live_lines(noded.get(), out, grid);
-    next.insert(next.end(), cuts.begin() + static_cast<std::ptrdiff_t>(before), cuts.end());
-    noded = node(next, grid);
+    left = holes;
+    const std::vector<Polyline> fresh(cuts.begin() + static_cast<std::ptrdiff_t>(before), cuts.end());
+    noded = node_again(live_lines(std::move(noded), out, grid), fresh, grid);
   }
-  throw std::runtime_error("blocks with holes could not be opened by cuts");
 }
 
 bool lower_left(Vec2 a, Vec2 b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }

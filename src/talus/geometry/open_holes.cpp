@@ -13,10 +13,11 @@ namespace {
 
 // Points along an island from which cuts may begin, besides its corners; cuts that are looked at, the
 // shortest and about as many farther ones; how much longer two cuts may be for the sake of larger pieces;
-// share of a cut within which a corner takes up its end.
+// share of a cut within which a corner takes up its end, and by which it keeps clear of what it passes at
+// most.
 constexpr int kSamples = 24;
 constexpr size_t kShortest = 24, kFarther = 24;
-constexpr double kSlack = 1.02, kAtCorner = 0.1;
+constexpr double kSlack = 1.02, kAtCorner = 0.1, kClear = 0.05;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -184,18 +185,23 @@ class Opener {
     return {k, 0, ring[k]};
   }
 
-  // Whether a cut meets the rings at its ends only and runs inside the face.
-  static bool in_sight(const Holed& face, const Polygon& island, const Link& link) {
+  // Whether a cut meets the rings at its ends only, runs inside the face, and keeps clear of what it passes:
+  // the grid would make one line of a cut and an edge beside it.
+  bool in_sight(const Holed& face, const Polygon& island, const Link& link) const {
     if (link.length == 0) return true;
-    const Vec2 d = link.outer.at - link.inner.at, a = link.inner.at + 1e-6 * d, b = link.outer.at - 1e-6 * d;
-    const Vec2 middle = 0.5 * (a + b);
-    const Box box = bounding_box(std::array{a, b});
+    const Vec2 from = link.inner.at, to = link.outer.at, middle = 0.5 * (from + to);
+    const Vec2 a = from + 1e-6 * (to - from), b = to - 1e-6 * (to - from);
+    const double clear = std::min(near_, kClear * link.length);
+    const Box box = bounding_box(std::array{from, to});
+    const Box room{box.min - Vec2{clear, clear}, box.max + Vec2{clear, clear}};
     const auto meets = [&](const Polygon& ring) {
       for (size_t k = 0; k < ring.size(); ++k) {
         const Vec2 p = ring[k], q = ring[k + 1 < ring.size() ? k + 1 : 0];
-        if (meet(Box{{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}},
-                 box) &&
-            cross_each_other(a, b, p, q))
+        if (!meet(Box{{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}},
+                  room))
+          continue;
+        if (cross_each_other(a, b, p, q) || distance_to_segment(middle, p, q) < clear) return true;
+        if (std::min(norm(p - from), norm(p - to)) > clear && distance_to_segment(p, from, to) < clear)
           return true;
       }
       return false;
@@ -203,7 +209,7 @@ class Opener {
     if (meets(face.outer) || meets(island) || contains(island, middle) || !contains(face.outer, middle))
       return false;
     return std::none_of(face.islands.begin(), face.islands.end(), [&](const Island& other) {
-      return meet(other.box, box) && (meets(other.ring) || contains(other.ring, middle));
+      return meet(other.box, room) && (meets(other.ring) || contains(other.ring, middle));
     });
   }
 

@@ -288,9 +288,11 @@ class SectionMaker {
 
   void clean() {
     std::vector<MapLine> lines;
+    std::vector<const Polygon*> outlines;
     for (size_t i = 0; i < taken_.size(); ++i) {
       const Taken& t = taken_[i];
       const MapUse use = maps_.list[static_cast<size_t>(t.map)].use;
+      if (use == MapUse::kOutline) outlines.push_back(&t.points);
       if (use == MapUse::kOutline || use == MapUse::kOpening) {
         Polyline ring = t.points;
         ring.push_back(ring.front());
@@ -310,7 +312,7 @@ class SectionMaker {
     for (MapLine& line : lines) {
       const auto i = static_cast<size_t>(line.source);
       if (line.fixed) continue;
-      pass_outline(line.points);
+      pass_outline(line.points, outlines);
       round_points(line.points);
       lines_.emplace(i, line.points);
       out_.report.after.push_back({line.points, taken_[i].map, 0, false});
@@ -324,11 +326,10 @@ class SectionMaker {
   }
 
   // An end that lies on the outline of a region is taken a little further.
-  void pass_outline(Polyline& line) const {
-    const auto pass = [this](Vec2& end, Vec2 inner) {
-      for (size_t i = 0; i < taken_.size(); ++i) {
-        if (maps_.list[static_cast<size_t>(taken_[i].map)].use != MapUse::kOutline) continue;
-        const Polygon& ring = taken_[i].points;
+  void pass_outline(Polyline& line, const std::vector<const Polygon*>& outlines) const {
+    const auto pass = [&](Vec2& end, Vec2 inner) {
+      for (const Polygon* outline : outlines) {
+        const Polygon& ring = *outline;
         for (size_t k = 0; k < ring.size(); ++k) {
           if (distance_to_segment(end, ring[k], ring[(k + 1) % ring.size()]) > 2 * round_) continue;
           end += (kPassing * round_ / norm(end - inner)) * (end - inner);

@@ -113,10 +113,46 @@ TEST_CASE("cuts that open a hole: an island that touches the ring at a corner ne
   CHECK(faces(rings, cuts).size() == 3);
 }
 
+TEST_CASE("cuts that open a hole: none beside an edge that the grid makes one with it") {
+  // of a random network: the island touches the ring at a corner, and edges of both go on nearly straight
+  // there
+  const std::vector<Polyline> rings{{{-1.766886711, -135.017883301},
+                                     {-2.405463219, -135.271182060},
+                                     {-2.675610542, -134.972914696},
+                                     {-3.428407669, -134.141759872},
+                                     {-3.362809181, -134.053074837},
+                                     {-3.272314072, -133.930732727},
+                                     {-3.564259529, -133.991766930},
+                                     {-4.873910904, -132.545793533},
+                                     {-4.134120941, -131.773878098},
+                                     {-2.402442932, -129.967000008},
+                                     {-0.778583527, -130.532567978},
+                                     {0.260872841, -132.715235710},
+                                     {-0.257416725, -132.938515663},
+                                     {-0.916017532, -134.680377960},
+                                     {-1.595655441, -134.949963570},
+                                     {-1.606255531, -134.850469589}},
+                                    {{-2.828163147, -133.330268860},
+                                     {-2.908917427, -133.439444542},
+                                     {-2.949295044, -133.494031906},
+                                     {-3.272314072, -133.930732727},
+                                     {-2.854527473, -133.843389511}}};
+  const double grid = 0x1p-20;
+  const auto cuts = opening_cuts(rings, 1e-11, 64 * grid);
+  std::vector<Polyline> lines = cuts;
+  for (Polyline ring : rings) {
+    ring.push_back(ring[0]);
+    lines.push_back(ring);
+  }
+  const Arrangement net = arrange(lines, grid, {0, 0});
+  CHECK(net.rings_of_holed.empty());
+  CHECK(net.face.size() == 3);
+}
+
 TEST_CASE("cuts that open holes of any face are short and leave simple polygons of some size") {
   int islands = 0;
   double longest = 0;
-  for (uint64_t seed = 1; seed <= 300; ++seed) {
+  for (uint64_t seed = 1; seed <= 120; ++seed) {
     CAPTURE(seed);
     Random random(seed);
     std::vector<Polyline> rings{star(random, {0, 0}, 20)};
@@ -148,7 +184,7 @@ TEST_CASE("cuts that open holes of any face are short and leave simple polygons 
     longest = std::max(longest, share);
     CHECK(share <= 1.3);
   }
-  CHECK(islands > 600);
+  CHECK(islands > 250);
   MESSAGE("cuts at most ", longest, " times twice the tree");
 }
 

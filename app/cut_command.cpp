@@ -20,6 +20,7 @@ namespace talus::app {
 
 int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
                 bool force) {
+  check_result_folder(folder, force);
   const std::string text_of_file = read_text_file(file);
   Findings map_findings(file, text_of_file);
   const maps::ExpandedModel expanded =
@@ -28,13 +29,14 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   if (map_findings.warning_count() > 0) fmt::print(stderr, "{}", map_findings.render());
   const std::string& text = expanded.text;
   Findings findings(file, text);
-  const Model model = read_model(file, text, expanded.overrides, findings);
+  Model model = read_model(file, text, expanded.overrides, findings);
+  model.cut.blocks_file.clear();  // it is what is written here
   if (!model.shapes_readable) findings.throw_if_errors();
   if (model.regions.empty() && model.arches.empty())
     findings.error({1, 1, ""}, "region", "the file has no [[region]] or [[arch]]: there is nothing to cut",
                    "give the outline of the rock as [[region]] with name, polygon and material");
   const int errors = findings.error_count();
-  const Cut cut = cut_model(model, findings);
+  const Cut cut = cut_or_read(model, findings);
   if (findings.error_count() > errors)
     findings.throw_if_errors();  // without blocks all else would look wrong
   const Layout layout = make_layout(model, cut, findings);

@@ -120,6 +120,7 @@ struct RunArguments {
 
 int run(const ModelArguments& args, const RunArguments& how) {
   const auto& [output, from, force, quiet, profile, dump_step, threads] = how;
+  if (from.empty()) talus::check_result_folder(output, force);
   const std::string text = talus::read_text_file(args.file);
   talus::Findings findings(args.file, text);
   talus::PreparedRun prepared = prepare(args, findings, text);

@@ -12,6 +12,7 @@ namespace talus::app {
 
 int safety_command(const std::string& file, const std::vector<std::string>& overrides,
                    const std::string& folder, bool force, int threads, bool strict) {
+  check_result_folder(folder, force);
   const std::string text = read_text_file(file);
   Findings findings(file, text);
   const PreparedRun prepared = prepare_run(file, text, overrides, findings);

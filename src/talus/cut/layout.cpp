@@ -6,9 +6,11 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/memory.h"
 #include "talus/base/text.h"
 #include "talus/cut/blocks_file.h"
 #include "talus/cut/check_places.h"
+#include "talus/cut/expected.h"
 #include "talus/geometry/polygon_check.h"
 
 namespace talus {
@@ -283,6 +285,9 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
 }
 
 Cut cut_or_read(const Model& model, Findings& findings) {
+  const int errors = findings.error_count();
+  check_expected(model, available_memory(), findings);
+  if (findings.error_count() > errors) return {};
   return model.cut.blocks_file.empty() ? cut_model(model, findings) : read_blocks_file(model, findings);
 }
 

@@ -13,9 +13,6 @@ namespace talus {
 
 namespace {
 
-// Most blocks that joint sets may make.
-constexpr double kMostBlocks = 2e7;
-
 class TraceMaker {
  public:
   TraceMaker(const Model& model, const RegionMap& regions, Findings& findings)
@@ -142,33 +139,6 @@ class TraceMaker {
     }
   }
 
-  // Crossings of two families of lines, from their lengths per area: about as many blocks.
-  bool too_many_blocks() {
-    double blocks = 0;
-    for (size_t i = 0; i < model_.joint_sets.size(); ++i) {
-      for (size_t j = 0; j < i; ++j) {
-        const JointSetInput &a = model_.joint_sets[i], &b = model_.joint_sets[j];
-        if (a.region >= 0 && b.region >= 0 && a.region != b.region) continue;
-        const Box box = regions_.box(a.region >= 0 ? a.region : b.region);
-        blocks += (box.max.x - box.min.x) * (box.max.y - box.min.y) * lines_per_length(a) *
-                  lines_per_length(b) *
-                  std::abs(std::sin(describe(a, model_.cut.section_azimuth).angle -
-                                    describe(b, model_.cut.section_azimuth).angle));
-      }
-    }
-    if (!(blocks > kMostBlocks)) return false;
-    findings_.error(model_.joint_sets.back().where_spacing, "joint_set",
-                    fmt::format("the sets make about {:.2g} blocks, more than {:g}", blocks, kMostBlocks),
-                    "is a unit missing in a spacing?");
-    return true;
-  }
-
-  double lines_per_length(const JointSetInput& set) const {
-    const double share =
-        set.trace_length.mean > 0 ? set.trace_length.mean / (set.trace_length.mean + set.gap.mean) : 1;
-    return share / describe(set, model_.cut.section_azimuth).spacing;
-  }
-
   void add_joint_sets() {
     bool sound = true;
     for (const JointSetInput& set : model_.joint_sets) {
@@ -179,7 +149,7 @@ class TraceMaker {
                       "docs/theory.md 10.1 says how sets are drawn");
       sound = false;
     }
-    if (!sound || too_many_blocks()) return;
+    if (!sound) return;
     for (size_t i = 0; i < model_.joint_sets.size(); ++i)
       add_joint_set(model_.joint_sets[i], out_.joint_sets[i]);
   }

@@ -46,25 +46,31 @@ void write_file(const fs::path& path, const std::string& content) {
   }
 }
 
+void check_result_folder(const fs::path& folder, bool force) {
+  std::error_code ec;
+  if (!fs::exists(folder, ec)) return;
+  if (!fs::is_directory(folder, ec))
+    throw FileError(fmt::format("{}: is a file, not a folder", folder.string()));
+  const bool empty = fs::is_empty(folder, ec);
+  if (!empty && !force)
+    throw FileError(
+        fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
+                    "replace the results in it",
+                    folder.string()));
+  const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
+                    fs::exists(folder / "record.json", ec) || fs::exists(folder / "safety.json", ec) ||
+                    (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
+  if (!empty && !ours)
+    throw FileError(
+        fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
+                    "Give another folder",
+                    folder.string()));
+}
+
 void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
+  check_result_folder(folder, force);
   std::error_code ec;
   if (fs::exists(folder, ec)) {
-    if (!fs::is_directory(folder, ec))
-      throw FileError(fmt::format("{}: is a file, not a folder", folder.string()));
-    const bool empty = fs::is_empty(folder, ec);
-    if (!empty && !force)
-      throw FileError(
-          fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
-                      "replace the results in it",
-                      folder.string()));
-    const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
-                      fs::exists(folder / "record.json", ec) || fs::exists(folder / "safety.json", ec) ||
-                      (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
-    if (!empty && !ours)
-      throw FileError(
-          fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
-                      "Give another folder",
-                      folder.string()));
     if (kind == ResultKind::kCut) {
       for (const char* name : {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv",
                                "report.txt", "map.svg", "map.png"})

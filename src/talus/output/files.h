@@ -12,8 +12,11 @@ namespace talus {
 /// Writes a whole file under a temporary name and renames it into place. Throws FileError (path, cause).
 void write_file(const std::filesystem::path& path, const std::string& content);
 
-/// Prepares the folder for results. Throws FileError when it holds anything and `force` is false, or when
-/// what it holds is no (even unfinished) run of talus: then even `force` removes nothing.
+/// Throws FileError when the folder holds anything and `force` is false, or when what it holds is no (even
+/// unfinished) result of talus: then even `force` would remove nothing. Changes nothing.
+void check_result_folder(const std::filesystem::path& folder, bool force);
+
+/// Prepares the folder for results, checked as above.
 /// Of an earlier run, cut or record only the files of the same kind are removed.
 enum class ResultKind { kRun, kCut, kRecord, kSafety };
 void open_result_folder(const std::filesystem::path& folder, bool force, ResultKind kind = ResultKind::kRun);

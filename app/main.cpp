@@ -27,6 +27,7 @@
 #include "talus/run/problem_file.h"
 #include "talus/run/progress.h"
 #include "talus/run/resolution.h"
+#include "talus/run/trial.h"
 #include "talus/talus.h"
 #include "verify_command.h"
 
@@ -60,6 +61,26 @@ talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings
   if (args.strict) findings.throw_if_any();
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
   return run;
+}
+
+// Of taking all steps, by stages; writing and cutting are not in it.
+void print_time(const talus::PreparedRun& run) {
+  constexpr double kTrial = 0.6;  // [s]
+  const std::vector<double> cost = talus::time_steps(run, kTrial, talus::threads_for(run.scene.blocks.count));
+  double sum = 0;
+  bool at_most = false;
+  std::string stages;
+  for (size_t i = 0; i < run.plans.size(); ++i) {
+    const bool is_static = run.scene.model.stages[i].kind == talus::StageKind::kStatic;
+    const double seconds = cost[i] * static_cast<double>(run.plans[i].steps);
+    sum += seconds, at_most = at_most || is_static;
+    stages += fmt::format("{}\"{}\" {}{} ({} a step)", i > 0 ? ", " : "", run.scene.model.stages[i].name,
+                          is_static ? "at most " : "", talus::readable_seconds(seconds),
+                          talus::readable_seconds(cost[i]));
+  }
+  if (sum > 0)
+    fmt::print("  time       {}{} on this machine, by first steps: {}\n",
+               at_most ? "at most about " : "about ", talus::readable_seconds(sum), stages);
 }
 
 int check(const ModelArguments& args) {
@@ -98,6 +119,7 @@ int check(const ModelArguments& args) {
         slivers.needles, slivers.merged, slivers.deleted, slivers.kept);
   fmt::print("{}", talus::sliver_offer_text(talus::sliver_offers(run, cut)));
   fmt::print("  memory     about {}\n", talus::readable_bytes(p.memory));
+  print_time(run);
   const bool at_most = std::any_of(run.scene.model.stages.begin(), run.scene.model.stages.end(),
                                    [](const auto& s) { return s.kind == talus::StageKind::kStatic; });
   const int joint = run.scene.model.default_joint;

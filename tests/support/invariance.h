@@ -134,26 +134,12 @@ inline void name_bodies(const Problem& original, Problem& p) {
   }
 }
 
-inline int scaled_history(Model& model, int history, double factor) {
-  if (history < 0 || factor == 0) return -1;
-  History h = model.histories[static_cast<size_t>(history)];
-  h.name += "-" + std::to_string(model.histories.size());
-  for (double& v : h.value) v *= factor;
-  for (double& v : h.integral) v *= factor;
-  model.histories.push_back(h);
-  return static_cast<int>(model.histories.size()) - 1;
-}
-
-// A vector of two histories, of which one at most is given.
-inline void place_pair(Model& model, const Mat2& turn, double factor, int& x, int& y) {
-  REQUIRE((x < 0 || y < 0));
-  if (x >= 0) {
-    const int given = x;
-    x = scaled_history(model, given, factor * turn.xx), y = scaled_history(model, given, factor * turn.yx);
-  } else if (y >= 0) {
-    const int given = y;
-    x = scaled_history(model, given, factor * turn.xy), y = scaled_history(model, given, factor * turn.yy);
-  }
+// A vector of two signals, of one history.
+inline void place_pair(const Mat2& turn, double factor, Signal& x, Signal& y) {
+  REQUIRE((!x.is_given() || !y.is_given() || x.history == y.history));
+  const int history = x.is_given() ? x.history : y.history;
+  const Vec2 v = factor * (turn * Vec2{x.factor, y.factor});
+  x = {history, v.x}, y = {history, v.y};
 }
 
 inline void place_selection(const Placement& to, Selection& s) {
@@ -178,10 +164,11 @@ inline void place_model(const Placement& to, Model& model) {
   REQUIRE(model.bolts.empty());
   for (LoadInput& l : model.loads) {
     place_selection(to, l);
-    place_pair(model, to.turn, to.scale, l.history_x, l.history_y);
-    place_pair(model, to.turn, stress, l.traction_x, l.traction_y);
-    place_pair(model, to.turn, stress * to.scale, l.force_x, l.force_y);
-    l.pressure = scaled_history(model, l.pressure, stress);
+    const double factor = l.kind == LoadKind::kAcceleration ? to.scale
+                          : l.kind == LoadKind::kSurface    ? stress
+                                                            : stress * to.scale;
+    place_pair(to.turn, factor, l.x, l.y);
+    l.pressure.factor *= stress;
   }
   REQUIRE_FALSE(model.in_situ.with_depth);
   model.in_situ.stress = stress * (to.turn * model.in_situ.stress * transpose(to.turn));

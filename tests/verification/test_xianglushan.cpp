@@ -41,7 +41,7 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
                   kBottom, kTop - 3),
       fmt::format("region.cap.polygon=[[{0},{2}],[{1},{2}],[{1},{3}],[{0},{3}]]", -kHalfWidth, kHalfWidth,
                   kTop - 3, kTop),
-      fmt::format("history.overburden.value=[{0},{0}]", kOverburden),
+      fmt::format("load.overburden.pressure={}", kOverburden),
       "monitor.base.point=[0,165.1]",
       "stage.shake.duration=3 s",
   };

@@ -161,7 +161,7 @@ void check_edges(const Layout& layout, const Selection& place, const Where& wher
 void check_load(const Layout& layout, const LoadInput& l, Findings& findings) {
   const std::string path = "load." + l.name;
   if (l.has_place) {
-    if (l.force_x >= 0 || l.force_y >= 0)
+    if (l.kind == LoadKind::kForce)
       check_corners(layout, l, l.where, path, findings);
     else
       check_edges(layout, l, l.where, path, "along", findings);

@@ -65,6 +65,17 @@ struct History {
   double integral_at(double t) const;
 };
 
+/// A constant, or a history times a factor.
+struct Signal {
+  int history = -1;  // -1: constant
+  double factor = 0;
+
+  bool is_given() const { return history >= 0 || factor != 0; }
+  double value_at(double t, const std::vector<History>& histories) const {
+    return history < 0 ? factor : factor * histories[static_cast<size_t>(history)].value_at(t);
+  }
+};
+
 /// Motion along one axis (or of rotation): free, held, or following a history.
 struct Motion {
   enum Kind { kFree, kFixed, kVelocity, kDisplacement };
@@ -153,17 +164,17 @@ struct BoundaryInput : Selection, Staged {
   Where where, where_material, where_opposite;
 };
 
+enum class LoadKind { kAcceleration, kSurface, kForce };
+
 /// What pushes blocks: an acceleration added to gravity (shaking in the frame of the base), a pressure or
 /// traction on block edges, a force at a point.
 struct LoadInput : Selection, Staged {
   std::string name;
-  bool has_place = false;                               // point, edge or along is given
-  int history_x = -1, history_y = -1;                   // acceleration [m/s2], -1 = none
-  int pressure = -1, traction_x = -1, traction_y = -1;  // on edges [Pa]
-  int force_x = -1, force_y = -1;                       // at the point [N]
+  LoadKind kind = LoadKind::kAcceleration;
+  bool has_place = false;  // point, edge or along is given
+  Signal x, y;             // [m/s2], [Pa] or [N]
+  Signal pressure;         // of a kSurface [Pa]
   Where where;
-
-  bool is_body_force() const { return history_x >= 0 || history_y >= 0; }
 };
 
 enum class JacobianKind { kAnalytic, kDifference };

@@ -175,42 +175,71 @@ class ActionReader : private SectionReader {
 
   // --- loads ---
 
+  // A constant, or the history that a name refers to.
+  Signal signal(const Fields& f, std::string_view key) {
+    if (!f.has(key)) return {};
+    if (!f.holds<std::string>(key)) return {-1, f.get<double>(key)};
+    const int i = history(f, key);
+    return i < 0 ? Signal{} : Signal{i, 1};
+  }
+
+  // Along the axes, or along a direction.
+  void read_components(const Fields& f, const std::string& key, LoadInput& l) {
+    l.x = signal(f, key + "_x"), l.y = signal(f, key + "_y");
+    if (!f.given(key)) {
+      if (f.given("direction"))
+        error(f, "direction", fmt::format("has no {} to go with", key), "give " + key + " beside it");
+      return;
+    }
+    if (f.given(key + "_x") || f.given(key + "_y"))
+      error(f, key, fmt::format("and {}_x or {}_y are given", key, key),
+            "give components, or size and direction");
+    if (!f.given("direction"))
+      error(f, key, "has no direction",
+            fmt::format("give direction = \"30 deg\", or {}_x and {}_y", key, key));
+    const double angle = f.get("direction", 0.0);
+    l.x = l.y = signal(f, key);
+    l.x.factor *= std::cos(angle), l.y.factor *= std::sin(angle);
+  }
+
   void read_load(const Fields& f) {
     claim_name(f, loads_, "load");
     LoadInput l;
     l.name = f.get<std::string>("name");
     l.where = f.given("block") ? f.where("block") : f.where();
-    l.history_x = history(f, "acceleration_x"), l.history_y = history(f, "acceleration_y");
-    l.pressure = history(f, "pressure");
     l.stages = stages(f, model_.stages);
-    l.traction_x = history(f, "traction_x"), l.traction_y = history(f, "traction_y");
-    l.force_x = history(f, "force_x"), l.force_y = history(f, "force_y");
     read_block_name(f, l);
-    const auto any = [&f](std::initializer_list<const char*> keys) {
-      return std::any_of(keys.begin(), keys.end(), [&f](const char* k) { return f.given(k); });
+    const auto any = [&f](const std::string& key) {
+      return f.given(key) || f.given(key + "_x") || f.given(key + "_y");
     };
-    const bool body = any({"acceleration_x", "acceleration_y"});
-    const bool surface = any({"pressure", "traction_x", "traction_y"}), force = any({"force_x", "force_y"});
-    l.has_place = any({"point", "edge", "along"});
+    const bool body = any("acceleration"), force = any("force");
+    const bool surface = f.given("pressure") || any("traction");
+    l.kind = force ? LoadKind::kForce : surface ? LoadKind::kSurface : LoadKind::kAcceleration;
+    l.has_place = f.given("point") || f.given("edge") || f.given("along");
     if (l.has_place || surface || force) read_place(f, true, l);
+    l.pressure = signal(f, "pressure");
     if (body + surface + force == 0)
-      findings_.error(
-          f.where(), f.path(), "has no effect",
-          "give acceleration_x or acceleration_y, pressure, traction_x or traction_y, or force_x or "
-          "force_y");
+      findings_.error(f.where(), f.path(), "has no effect",
+                      "give an acceleration, a pressure, a traction or a force: acceleration_x, "
+                      "acceleration_y, or acceleration and direction, and so on");
     else if (body + surface + force > 1)
       findings_.error(f.where(), f.path(), "mixes accelerations, tractions and forces",
                       "write one [[load]] for each");
-    else if (body && l.has_place)
+    else
+      read_components(f, body ? "acceleration" : surface ? "traction" : "force", l);
+    if (body + surface + force == 1) check_place_of(f, l);
+    model_.loads.push_back(l);
+  }
+
+  void check_place_of(const Fields& f, const LoadInput& l) {
+    if (l.kind == LoadKind::kAcceleration && l.has_place)
       findings_.error(f.where(), f.path(), "has a place, but an acceleration acts on whole blocks",
                       "name blocks with block = \"NAME\"");
-    else if (surface && f.given("point"))
-      error(f, "point", "has no area for a pressure or traction",
-            "give edge or along, or force_x and force_y");
-    else if (force && l.has_place && !f.given("point"))
+    else if (l.kind == LoadKind::kSurface && f.given("point"))
+      error(f, "point", "has no area for a pressure or traction", "give edge or along, or a force");
+    else if (l.kind == LoadKind::kForce && l.has_place && !f.given("point"))
       findings_.error(f.where(), f.path(), "has a force on an edge: forces act at a point",
-                      "give point = [x, y], or traction_x and traction_y per area");
-    model_.loads.push_back(l);
+                      "give point = [x, y], or a traction per area");
   }
 
   Model& model_;

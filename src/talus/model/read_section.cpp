@@ -20,6 +20,12 @@ std::string_view kind_of(const toml::node& node) {
   return "a date or time";
 }
 
+// "2 MPa" is no name.
+bool begins_a_number(const std::string& text) {
+  const size_t at = text.find_first_not_of(" +-.");
+  return at != std::string::npos && text[at] >= '0' && text[at] <= '9';
+}
+
 constexpr Range kAnyTime{.min = 0};
 
 // Reads the values of one key; every method returns nullopt after having told why.
@@ -39,6 +45,10 @@ class ValueReader {
         if (node.value_or(std::string()) == "auto") return Value(std::nan(""));
         [[fallthrough]];
       case KeyType::kQuantity:
+        return wrap(quantity(node));
+      case KeyType::kSignal:
+        if (node.is_string() && !begins_a_number(*node.value<std::string>()))
+          return Value(*node.value<std::string>());
         return wrap(quantity(node));
       case KeyType::kText:
       case KeyType::kName: {

@@ -38,6 +38,11 @@ class Fields {
     const auto it = values_.find(std::string(key));
     return it == values_.end() ? fallback : std::get<T>(it->second);
   }
+  /// Whether the value is of this kind, of a key that may be of several. @pre has(key)
+  template <class T>
+  bool holds(std::string_view key) const {
+    return std::holds_alternative<T>(values_.at(std::string(key)));
+  }
   Where where(std::string_view key) const;
   Where where() const { return place_; }
   const std::string& path() const { return path_; }

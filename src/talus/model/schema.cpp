@@ -27,6 +27,8 @@ std::string_view type_text(const KeySpec& k) {
       return "text";
     case K::kChoice:
       return "choice";
+    case K::kSignal:
+      return "quantity or history";
     case K::kName:
       return "name";
     case K::kNames:
@@ -112,6 +114,8 @@ std::string json_type(const KeySpec& k) {
     case K::kQuantity:
     case K::kQuantityAuto:
       return quantity + json_range(k.range);
+    case K::kSignal:
+      return quantity;
     case K::kText:
     case K::kName:
       return R"("type": "string")";

@@ -19,6 +19,7 @@ enum class KeyType {
   kQuantityAuto,  // the same, or "auto" (read as NaN)
   kText,
   kChoice,     // one of `choices`
+  kSignal,     // quantity, or name of a history
   kName,       // name of something defined elsewhere in the file: `refers_to`
   kNames,      // list of two names
   kVector,     // [x, y], each a quantity

@@ -72,20 +72,23 @@ SectionSpec boundary_section() {
 }
 
 SectionSpec load_section() {
-  const auto history = [](std::string_view name, std::string_view doc) {
-    return KeySpec{.name = name, .type = K::kName, .refers_to = "history", .doc = doc};
+  const auto signal = [](std::string_view name, Dimension dimension, std::string_view doc) {
+    return KeySpec{
+        .name = name, .type = K::kSignal, .dimension = dimension, .refers_to = "history", .doc = doc};
   };
   return {
       "load",
       SectionShape::kList,
       "What pushes blocks: a body force as an acceleration added to gravity, a pressure or traction on block "
-      "edges (`edge` or `along`, edges with nothing on their other side), or a force at a `point`. In static "
-      "stages it stands at its value of t = 0 on the clock of the histories.",
+      "edges (`edge` or `along`, edges with nothing on their other side), or a force at a `point`. Each is a "
+      "constant or the name of a history. In static stages a history stands at its value of t = 0 on its "
+      "clock.",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-       history("acceleration_x",
-               "History of the acceleration along x [m/s2]. A base that shakes with a(t) is the same as a "
-               "load of -a(t) seen from the base."),
-       history("acceleration_y", "The same along y."),
+       signal("acceleration_x", D::kAcceleration,
+              "Acceleration along x. A base that shakes with a(t) is the same as a "
+              "load of -a(t) seen from the base."),
+       signal("acceleration_y", D::kAcceleration, "The same along y."),
+       signal("acceleration", D::kAcceleration, "The same along `direction`."),
        {.name = "point",
         .type = K::kVector,
         .dimension = D::kLength,
@@ -98,13 +101,18 @@ SectionSpec load_section() {
         .type = K::kName,
         .refers_to = "side, opening, fault or joint set",
         .doc = "All block edges along it, for example the wall of an opening."},
-       history("pressure",
-               "History of a pressure [Pa], > 0 pushes into the block: along the normal of the edge in the "
-               "reference shape, turned with the block, on the reference area."),
-       history("traction_x", "History of a traction along x [Pa], on the reference area."),
-       history("traction_y", "The same along y."),
-       history("force_x", "History of a force along x [N], at a point."),
-       history("force_y", "The same along y."),
+       signal("pressure", D::kStress,
+              "Pressure, > 0 pushes into the block: along the normal of the edge in the "
+              "reference shape, turned with the block, on the reference area."),
+       signal("traction_x", D::kStress, "Traction along x, on the reference area."),
+       signal("traction_y", D::kStress, "The same along y."),
+       signal("traction", D::kStress, "The same along `direction`."),
+       signal("force_x", D::kForce, "Force along x, at a point."),
+       signal("force_y", D::kForce, "The same along y."),
+       signal("force", D::kForce, "The same along `direction`."),
+       {.name = "direction",
+        .dimension = D::kAngle,
+        .doc = "Of `acceleration`, `traction` or `force`: from +x, counter-clockwise; \"-90 deg\" is down."},
        {.name = "block",
         .type = K::kName,
         .refers_to = "block, grid or region",

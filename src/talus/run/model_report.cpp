@@ -87,10 +87,10 @@ ordered_json boundaries(const Model& model) {
 ordered_json loads(const Model& model) {
   ordered_json out = ordered_json::array();
   for (const LoadInput& l : model.loads) {
-    const char* kind = l.is_body_force()                  ? "acceleration"
-                       : l.pressure >= 0                  ? "pressure"
-                       : l.force_x >= 0 || l.force_y >= 0 ? "force"
-                                                          : "traction";
+    const char* kind = l.kind == LoadKind::kAcceleration ? "acceleration"
+                       : l.kind == LoadKind::kForce      ? "force"
+                       : l.pressure.is_given()           ? "pressure"
+                                                         : "traction";
     out.push_back({{"name", l.name}, {"kind", kind}});
   }
   return out;

@@ -68,9 +68,8 @@ Inputs inputs_of(const Model& model) {
   for (const BoundaryInput& b : model.boundaries)
     for (const int h : {b.history_x, b.history_y}) add(h, InputKind::kVelocity, inputs);
   for (const LoadInput& l : model.loads) {
-    for (const int h : {l.history_x, l.history_y}) add(h, InputKind::kAcceleration, inputs);
-    for (const int h : {l.pressure, l.traction_x, l.traction_y, l.force_x, l.force_y})
-      add(h, InputKind::kForce, inputs);
+    const InputKind kind = l.kind == LoadKind::kAcceleration ? InputKind::kAcceleration : InputKind::kForce;
+    for (const Signal& s : {l.x, l.y, l.pressure}) add(s.history, kind, inputs);
   }
   return inputs;
 }

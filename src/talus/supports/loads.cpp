@@ -6,12 +6,12 @@ namespace talus {
 
 namespace {
 
-double value_of(const Model& model, int history, double time) {
-  return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(time);
+Vec2 value_of(const LoadInput& load, const Model& model, double time) {
+  return {load.x.value_at(time, model.histories), load.y.value_at(time, model.histories)};
 }
 
 std::vector<int> loaded_blocks(const LoadInput& load, const Layout& layout) {
-  if (!load.is_body_force()) return {};
+  if (load.kind != LoadKind::kAcceleration) return {};
   if (!load.block.empty()) return layout.blocks_called(load.block);
   std::vector<int> all;
   for (size_t i = 0; i < layout.blocks.size(); ++i) all.push_back(static_cast<int>(i));
@@ -21,7 +21,7 @@ std::vector<int> loaded_blocks(const LoadInput& load, const Layout& layout) {
 void add_points(const LoadInput& load, int index, const Layout& layout, const BlockSet& blocks,
                 std::vector<LoadedPoint>& points) {
   const auto arm = [&blocks](int block, Vec2 p) { return p - blocks.centroid[static_cast<size_t>(block)]; };
-  if (load.force_x < 0 && load.force_y < 0) {
+  if (load.kind == LoadKind::kSurface) {
     // a traction that is the same along an edge has its resultant in the middle
     for (const SelectedEdge& e : outer_edges(layout, load).edges)
       if (blocks.moves_freely(e.block))
@@ -52,7 +52,8 @@ std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, in
   for (size_t i = 0; i < model.loads.size(); ++i) {
     if (!loads.active.empty() && !loads.active[i]) continue;
     const LoadInput& l = model.loads[i];
-    const Vec2 a{value_of(model, l.history_x, time), value_of(model, l.history_y, time)};
+    if (l.kind != LoadKind::kAcceleration) continue;
+    const Vec2 a = value_of(l, model, time);
     for (const int b : loads.blocks[i]) acceleration[static_cast<size_t>(b)] += a;
   }
   return acceleration;
@@ -64,12 +65,11 @@ void add_edge_and_point_loads(const BlockSet& blocks, const Model& model, const 
     if (!p.active) continue;
     const LoadInput& l = model.loads[static_cast<size_t>(p.load)];
     const auto block = static_cast<size_t>(p.block);
-    Vec2 f{value_of(model, l.traction_x, time) + value_of(model, l.force_x, time),
-           value_of(model, l.traction_y, time) + value_of(model, l.force_y, time)};
-    if (l.pressure >= 0) {
+    Vec2 f = value_of(l, model, time);
+    if (l.pressure.is_given()) {
       const Vec2 turn = elastic_state(blocks.moduli[block], state.strain_part[block]).rotation;
       const Vec2 n{turn.x * p.normal.x - turn.y * p.normal.y, turn.y * p.normal.x + turn.x * p.normal.y};
-      f -= value_of(model, l.pressure, time) * n;
+      f -= l.pressure.value_at(time, model.histories) * n;
     }
     f *= p.area;
     force[block] += {f, outer(f, acting_arm(blocks, state, block, p.arm))};

@@ -195,7 +195,7 @@ TEST_CASE("wrong boundaries: free field and tied sides") {
 
 TEST_CASE("wrong loads") {
   check_cases({
-      {"nothing", load(""), {"load.l: has no effect", "give acceleration_x"}},
+      {"nothing", load(""), {"load.l: has no effect", "give an acceleration"}},
       {"mixed",
        load(kLeft + "pressure = \"v\"\nacceleration_x = \"v\"\n"),
        {"load.l: mixes accelerations, tractions and forces"}},
@@ -213,6 +213,17 @@ TEST_CASE("wrong loads") {
       {"force off the blocks",
        load("point = [9, 9]\nforce_x = \"v\"\n"),
        {"load.l: the point lies on no block"}},
+      {"no history of that name",
+       load(kLeft + "pressure = \"w\"\n"),
+       {"load.l.pressure: there is no history called \"w\""}},
+      {"a unit of something else", load(kLeft + "pressure = \"2 kN\"\n"), {"load.l.pressure", "kN"}},
+      {"no direction", load(kLeft + "traction = 5\n"), {"load.l.traction: has no direction"}},
+      {"a direction of nothing",
+       load(kLeft + "pressure = 5\ndirection = \"3 deg\"\n"),
+       {"load.l.direction: has no traction to go with"}},
+      {"size and component",
+       load("point = [0, 0]\nforce = 5\nforce_x = 4\ndirection = \"3 deg\"\n"),
+       {"load.l.force: and force_x or force_y are given"}},
       {"not a segment",
        load("edge = [[0, 0], [0, 0]]\npressure = \"v\"\n"),
        {"load.l.edge: must be a segment: two different points"}},

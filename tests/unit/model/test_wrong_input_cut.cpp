@@ -212,7 +212,7 @@ spacing = "4 m" => spacing = "0 m"
 spacing = "4 m" => spacing = -4
   42:11: error: joint_set.steep.spacing: -4 m is not allowed; must be > 0 m
 spacing = "4 m" => spacing = "0.001 mm"
-  42:1: error: joint_set.steep.spacing: makes about 2.4e+08 traces, more than 5e+06; is a unit missing?
+  42:1: error: joint_set.steep.spacing: makes most of about 7.9e+07 blocks, which need 395 GB
 spacing = "4 m" => spacing = { mean = "4 m" }
   42:11: error: joint_set.steep.spacing: is a table; expected a quantity, { mean = ..., normal = standard deviation }, { mean = ..., uniform = half width } or { exponential = mean }
 spacing = "4 m" => spacing = { normal = "4 m" }
@@ -390,7 +390,7 @@ TEST_CASE("wrong cut: cutting without a region") {
 TEST_CASE("wrong cut: a failed cut is the only thing told") {
   check_all(R"~(
 point = [90, -5] => along = "left"\n[[joint_set]]\nname = "fine"\nangle = "0 deg"\nspacing = "0.001 mm"
-  107:1: error: joint_set.fine.spacing: makes about
+  107:1: error: joint_set.fine.spacing: makes most of about 3.4e+08 blocks
 )~");
 }
 

@@ -55,6 +55,22 @@ TEST_CASE("pressure on an edge pushes into the block at the middle of the edge")
   check_force(f[0], {-45e3, 0}, {-45e3 * 2, 0, 0, 0});
 }
 
+TEST_CASE("loads: a constant is as a history of it, a direction as its components") {
+  const std::string place = kBlock + "[[load]]\nname = \"l\"\nedge = [[4, 0], [4, 3]]\n";
+  const auto same = [](const std::string& a, const std::string& b) {
+    const BlockForce f = forces(a)[0], g = forces(b)[0];
+    INFO(a, b);
+    CHECK(norm(f.f) > 1);
+    check_force(f, g.f, g.Q);
+  };
+  same(place + "pressure = \"30 kPa\"\n", place + "pressure = \"push\"\n");
+  same(place + "traction_y = -3e4\n", place + "traction = 3e4\ndirection = \"-90 deg\"\n");
+  same(place + "traction = \"push\"\ndirection = \"30 deg\"\n",
+       place + fmt::format("traction_x = {}\ntraction_y = {}\n", 3e4 * std::cos(M_PI / 6), 1.5e4));
+  const std::string point = kBlock + "[[load]]\nname = \"l\"\npoint = [1, 2]\n";
+  same(point + "force = \"3 kN\"\ndirection = \"180 deg\"\n", point + "force_x = \"-3 kN\"\n");
+}
+
 TEST_CASE("pressure turns with the block, traction does not") {
   const auto quarter = [](State& s) { s.strain_part[0] = {-1, -1, 1, -1}; };  // F = quarter turn
   const std::string edge = "edge = [[4, 0], [4, 3]]\n";

@@ -100,47 +100,6 @@ class ModelReader : private SectionReader {
     return true;
   }
 
-  // What is allowed but hardly meant.
-  void warn_unlikely() {
-    for (size_t i = 0; i < model_.materials.size(); ++i) {
-      const Material& m = model_.materials[i];
-      const Where& where = material_where_[i];
-      if (m.young > 0 && m.young < 1e5)
-        findings_.warning(where, "material." + m.name + ".young",
-                          fmt::format("{:g} Pa is softer than rubber", m.young),
-                          "is a unit missing, as in \"5 GPa\"?");
-      if (m.density < 100 || m.density > 25000)
-        findings_.warning(where, "material." + m.name + ".density",
-                          fmt::format("{:g} kg/m3 is no density of stone or steel", m.density),
-                          "is a unit missing, as in \"2.7 t/m3\"?");
-    }
-    std::set<int> used{model_.default_joint};
-    for (const ContactPairInput& c : model_.contact_pairs) used.insert(c.joint);
-    for (const GridInput& g : model_.grids) used.insert(g.joint);
-    for (const MeshInput& m : model_.meshes) {
-      used.insert(m.joint);
-      used.insert(m.curve_joint.begin(), m.curve_joint.end());
-    }
-    for (const RegionInput& r : model_.regions) used.insert(r.joint);
-    for (const ArchInput& a : model_.arches) used.insert(a.joint);
-    for (const OpeningInput& o : model_.openings) used.insert(o.joint);
-    for (const FaultInput& x : model_.faults) used.insert(x.joint);
-    for (const TracesInput& t : model_.traces) used.insert(t.joint);
-    for (const MasonryInput& m : model_.masonry) used.insert({m.bed_joint, m.head_joint});
-    for (const TessellationInput& t : model_.tessellations) used.insert(t.joint);
-    for (const JointSetInput& s : model_.joint_sets) used.insert(s.joint);
-    for (size_t i = 0; i < joint_where_.size(); ++i) {
-      if (used.count(static_cast<int>(i))) continue;
-      findings_.warning(
-          joint_where_[i], "joint." + model_.joints[i].name, "is used by nothing",
-          model_.default_joint < 0
-              ? fmt::format(
-                    "contacts without a joint are frictionless; for all of them: [contact] joint = \"{}\"",
-                    model_.joints[i].name)
-              : "name it in [contact], a [[contact_pair]], a [[grid]] or where the blocks are cut");
-    }
-  }
-
   // --- content ---
 
   bool read_top() {
@@ -179,7 +138,6 @@ class ModelReader : private SectionReader {
       m.young = f.get("young", f.given("young") ? 0 : m.young);
       m.poisson = f.get("poisson", f.given("poisson") ? 0 : m.poisson);
       model_.materials.push_back(m);
-      material_where_.push_back(f.where());
     });
   }
 
@@ -202,6 +160,7 @@ class ModelReader : private SectionReader {
       j.friction_angle = f.get("friction_angle", 0.0);
       j.cohesion = f.get("cohesion", 0.0);
       j.tensile_strength = f.get("tensile_strength", 0.0);
+      j.where = f.where();
       j.normal_stiffness = f.get("normal_stiffness", 0.0);
       j.shear_stiffness = f.get("shear_stiffness", 0.0);
       j.restitution = f.get("restitution", -1.0);
@@ -221,7 +180,6 @@ class ModelReader : private SectionReader {
                           "leave it out, or make the joint kind = \"frictional\"");
       }
       model_.joints.push_back(j);
-      joint_where_.push_back(f.where());
     });
   }
 
@@ -528,7 +486,6 @@ class ModelReader : private SectionReader {
 
   Model& model_;
   std::set<std::string> block_names_, incomplete_;
-  std::vector<Where> material_where_, joint_where_;
   std::string files_;  // content of the files of histories and meshes, one behind the other
 };
 

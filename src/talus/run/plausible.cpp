@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 
+#include "talus/base/rank.h"
 #include "talus/run/resolution.h"
 
 namespace talus {
@@ -13,6 +17,9 @@ namespace {
 
 // Blocks of one stress throughout, longer than so many times their width, are stiff where they should bend.
 constexpr double kCannotBend = 8;
+// Share of a block's size over which points that hold it must reach; share of its thickness by which the
+// weight above may close its joints.
+constexpr double kLeastHeld = 0.05, kMostClosing = 0.05;
 // A step that is a larger share of the shortest period of a motion does not follow it.
 constexpr double kStepsPerPeriod = 10;
 
@@ -27,6 +34,9 @@ class Plausible {
     check_friction();
     check_bending();
     check_steps();
+    check_static_only();
+    check_held();
+    check_closing();
   }
 
  private:
@@ -120,6 +130,131 @@ class Plausible {
       }
     }
   }
+
+  // Whether a history drives something in static stages only, where it stands at its value of t = 0.
+  bool stands_still(const Staged& what, int history) const {
+    if (history < 0) return false;
+    const std::vector<double>& v = model_.histories[static_cast<size_t>(history)].value;
+    if (std::all_of(v.begin(), v.end(), [&v](double x) { return x == v[0]; })) return false;
+    for (size_t i = 0; i < model_.stages.size(); ++i)
+      if (what.acts_in(static_cast<int>(i)) && model_.stages[i].kind == StageKind::kDynamic) return false;
+    return true;
+  }
+
+  void tell_static_only(const Where& where, const std::string& path, const Staged& what,
+                        std::initializer_list<int> histories) {
+    for (const int h : histories) {
+      if (!stands_still(what, h)) continue;
+      findings_.warning(
+          where, path,
+          fmt::format("acts in static stages only, where history \"{}\" stands at its value of t = 0",
+                      model_.histories[static_cast<size_t>(h)].name),
+          "let it act in a stage of kind = \"dynamic\"");
+      return;
+    }
+  }
+
+  void check_static_only() {
+    for (const LoadInput& l : model_.loads)
+      tell_static_only(l.where, "load." + l.name, l, {l.x.history, l.y.history, l.pressure.history});
+    for (const SupportInput& s : model_.supports)
+      tell_static_only(s.where, "support." + s.name, s, {s.x.history, s.y.history});
+    for (const BoundaryInput& b : model_.boundaries)
+      tell_static_only(b.where, "boundary." + b.name, b, {b.history_x, b.history_y});
+    for (const BlockInput& b : model_.blocks)
+      tell_static_only(b.where, "block." + b.name, {},
+                       {b.motion_x.history, b.motion_y.history, b.motion_rotation.history});
+  }
+
+  // Points that alone hold a block, nearer to each other than a share of its size: it turns about them all
+  // the same.
+  void check_held() {
+    struct Held {
+      std::vector<Vec2> points;
+      int support = -1;
+    };
+    std::map<int, Held> held;
+    std::map<int, std::set<int>> blocks;  // of each support: a side of cut rock ends in tips of blocks
+    for (const SupportedPoint& p : scene_.supported) {
+      blocks[p.support].insert(p.block);
+      held[p.block].points.push_back(p.arm);
+      held[p.block].support = p.support;
+    }
+    for (const auto& [block, h] : held) {
+      double extent = 0;
+      for (const Vec2 a : h.points)
+        for (const Vec2 b : h.points) extent = std::max(extent, norm(a - b));
+      const double size = scene_.blocks.size[static_cast<size_t>(block)];
+      if (h.points.size() < 2 || blocks[h.support].size() > 1 || extent >= kLeastHeld * size) continue;
+      const SupportInput& s = model_.supports[static_cast<size_t>(h.support)];
+      findings_.warning(
+          s.where, "support." + s.name,
+          fmt::format("holds block \"{}\" over {:.3g} m of its {:.3g} m: a torque there takes huge forces",
+                      scene_.blocks.name[static_cast<size_t>(block)], extent, size),
+          "hold it over more of its length, or at one point");
+      return;
+    }
+  }
+
+  // The weight above each block against the stiffness of the joints around it: blocks that close their joints
+  // by a share of their thickness are no longer where they were drawn.
+  void check_closing() {
+    const double gravity = -model_.gravity.y;
+    if (!(gravity > 0) || scene_.layout.blocks.empty()) return;
+    const std::vector<double> top = tops();
+    const double usual = median(scene_.blocks.thinness);
+    double worst = kMostClosing;
+    int worst_block = -1, worst_joint = -1;
+    for (int i = 0; i < scene_.blocks.count; ++i) {
+      const auto k = static_cast<size_t>(i);
+      if (scene_.blocks.kind[k] != BlockKind::kDeformable || scene_.blocks.thinness[k] < 0.2 * usual)
+        continue;
+      const BlockShape& shape = scene_.layout.blocks[k];
+      const double density = model_.materials[static_cast<size_t>(shape.material)].density;
+      const Vec2 at = scene_.blocks.centroid[k];
+      const double weight = density * gravity * std::max(0.0, top[column_of(at.x)] - at.y);
+      std::set<int> joints(shape.edge_joint.begin(), shape.edge_joint.end());
+      if (joints.empty()) joints.insert(scene_.layout.default_joint);
+      for (const int j : joints) {
+        if (j < 0) continue;
+        const JointProperty& joint = model_.joints[static_cast<size_t>(j)];
+        if (joint.bonded || !(joint.normal_stiffness > 0)) continue;
+        const double share = weight / joint.normal_stiffness / scene_.blocks.thinness[k];
+        if (share > worst) worst = share, worst_block = i, worst_joint = j;
+      }
+    }
+    if (worst_block < 0) return;
+    const JointProperty& joint = model_.joints[static_cast<size_t>(worst_joint)];
+    findings_.warning(
+        joint.where, "joint." + joint.name + ".normal_stiffness",
+        fmt::format("{:.3g} Pa/m is soft: the weight above block \"{}\" closes the joint by {:.2g} % "
+                    "of the block's thickness",
+                    joint.normal_stiffness, scene_.blocks.name[static_cast<size_t>(worst_block)],
+                    100 * worst),
+        fmt::format("about {:.2g} Pa/m would close it by 1 %", joint.normal_stiffness * worst / 0.01));
+  }
+
+  // Highest corner in each of kColumns strips of the model [m].
+  std::vector<double> tops() {
+    std::vector<double> top(kColumns, -std::numeric_limits<double>::infinity());
+    left_ = std::numeric_limits<double>::infinity(), width_ = 0;
+    double right = -left_;
+    for (const BlockShape& b : scene_.layout.blocks)
+      for (const Vec2 p : b.polygon) left_ = std::min(left_, p.x), right = std::max(right, p.x);
+    width_ = (right - left_) / kColumns;
+    for (const BlockShape& b : scene_.layout.blocks) {
+      const Box box = bounding_box(b.polygon);
+      for (size_t c = column_of(box.min.x); c <= column_of(box.max.x); ++c)
+        top[c] = std::max(top[c], box.max.y);
+    }
+    return top;
+  }
+  size_t column_of(double x) const {
+    return static_cast<size_t>(std::clamp((x - left_) / width_, 0.0, kColumns - 1.0));
+  }
+
+  static constexpr int kColumns = 200;
+  double left_ = 0, width_ = 1;
 
   const Scene& scene_;
   const Model& model_;

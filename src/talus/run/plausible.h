@@ -10,7 +10,8 @@
 namespace talus {
 
 /// Nothing that holds or drives the model, contacts without friction, blocks that cannot bend, steps too long
-/// for a motion. (Values that no material has, and names nothing uses, the reader warns of.)
+/// for a motion, histories in static stages only, blocks held over next to nothing, joints that weight
+/// closes. (Values that no material has, and names nothing uses, the reader warns of.)
 void check_plausible(const Scene& scene, const std::vector<StagePlan>& plans, Findings& findings);
 
 }  // namespace talus

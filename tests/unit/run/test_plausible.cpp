@@ -76,6 +76,16 @@ TEST_CASE("plausible mistakes are warned of at their line") {
        "in_situ: pulls"},
       {"[[0, 0], [1, 0], [1, 1], [0, 1]]", "[[0, 0], [4.9, 0], [4.9, 0.5], [0, 0.5]]", "25:1",
        "stone: is 9.8 times as long as wide"},
+      {"kind = \"dynamic\"", "kind = \"static\"", "19:1", "block.floor: acts in static stages only"},
+      {"\"10 GPa/m\"", "\"0.1 MPa/m\"", "8:8", "joint.face.normal_stiffness: 1e+05 Pa/m is soft"},
+      {"[1, 1], [0, 1]]\nmaterial = \"rock\"\n",
+       "[1, 1], [0.02, 1], [0, 0.99]]\nmaterial = \"rock\"\n[[support]]\nname = \"tip\"\n"
+       "edge = [[0.02, 1], [0, 0.99]]\n",
+       "27:1", "support.tip: holds block \"stone\" over 0.0224 m of its 1 m"},
+      {"[[stage]]",
+       "[[load]]\nname = \"push\"\nstages = [\"rest\"]\nacceleration_x = \"motion\"\n[[stage]]\n"
+       "name = \"rest\"\nkind = \"static\"\nduration = 1\n[[stage]]",
+       "27:1", "load.push: acts in static stages only"},
   };
   for (const Mistake& m : mistakes) {
     const std::string message = told(replaced(kSound, m.from, m.to));

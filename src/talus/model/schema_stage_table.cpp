@@ -86,7 +86,7 @@ SectionSpec stage_section() {
         .doc =
             "`auto`: implicit where a deformable block can slide on a hard contact with friction, and in "
             "static "
-            "stages where a few slivers would ask for a step below a twentieth of the median block's, else "
+            "stages where a few slivers would ask for a step below a seventh of the median block's, else "
             "explicit, and "
             "explicit with `safety` or `moment_clamp`. "
             "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "

@@ -36,9 +36,9 @@ bool slides_hard(const Scene& scene) {
 
 // Stable step of the smallest block, as share of the median one's, below which a few slivers would rule the
 // step of all; share of the blocks that are few, and what counts as small among them.
-constexpr double kRuled = 0.05, kFew = 0.25, kSmall = 0.25;
+constexpr double kRuled = 1.0 / 7, kFew = 0.25, kSmall = 0.25;
 
-// Whether a few slivers would make explicit elasticity twenty times dearer, or worse. Where small blocks are
+// Whether a few slivers would make explicit elasticity several times dearer, or worse. Where small blocks are
 // many, as in a graded mesh, they are what waves travel through.
 bool slivers_rule(const BlockSet& blocks) {
   std::vector<double> step;

@@ -25,7 +25,7 @@
 namespace talus::test {
 
 /// Where a transform puts things: x -> scale turn x + shift. Time stays; forces grow with scale^3.
-struct Placement {
+struct Similarity {
   Mat2 turn = kIdentity;  // orthogonal; det -1: mirrored
   Vec2 shift;             // [m]
   double scale = 1;
@@ -36,20 +36,20 @@ struct Placement {
   Mat2 back(const Mat2& m) const { return transpose(turn) * m * turn; }
 };
 
-inline Placement turned_by(double degrees) {
+inline Similarity turned_by(double degrees) {
   if (degrees == 90) return {{0, -1, 1, 0}, {}, 1};  // without round-off
   const double a = degrees * std::numbers::pi / 180;
   return {{std::cos(a), -std::sin(a), std::sin(a), std::cos(a)}, {}, 1};
 }
-inline Placement mirrored() { return {{-1, 0, 0, 1}, {}, 1}; }
-inline Placement moved_by(Vec2 shift) { return {kIdentity, shift, 1}; }
-inline Placement scaled_by(double factor) { return {kIdentity, {}, factor}; }
+inline Similarity mirrored() { return {{-1, 0, 0, 1}, {}, 1}; }
+inline Similarity moved_by(Vec2 shift) { return {kIdentity, shift, 1}; }
+inline Similarity scaled_by(double factor) { return {kIdentity, {}, factor}; }
 
 /// A model, its blocks, and which block and side of the original each of them and of their edges belongs to.
 struct Problem {
   Model model;
   Layout layout;
-  Placement placement;
+  Similarity placement;
   std::vector<int> body;               // [blocks] block of the original, -1: none
   std::vector<std::vector<int>> side;  // [blocks][edges] edge of it, -1: inside or none
   int bodies = 0;                      // blocks of the original
@@ -142,12 +142,12 @@ inline void place_pair(const Mat2& turn, double factor, Signal& x, Signal& y) {
   x = {history, v.x}, y = {history, v.y};
 }
 
-inline void place_selection(const Placement& to, Selection& s) {
+inline void place_selection(const Similarity& to, Selection& s) {
   s.from = to.place(s.from), s.to = to.place(s.to);
 }
 
 /// All of the model but its blocks: gravity, loads, places, strengths and stiffnesses.
-inline void place_model(const Placement& to, Model& model) {
+inline void place_model(const Similarity& to, Model& model) {
   const double stress = to.scale * to.scale;
   model.gravity = to.scale * (to.turn * model.gravity);
   for (Material& m : model.materials) m.young *= stress;
@@ -174,7 +174,7 @@ inline void place_model(const Placement& to, Model& model) {
   model.in_situ.stress = stress * (to.turn * model.in_situ.stress * transpose(to.turn));
 }
 
-inline Polygon placed(const Placement& to, const Polygon& polygon) {
+inline Polygon placed(const Similarity& to, const Polygon& polygon) {
   Polygon out;
   for (const Vec2 v : polygon) out.push_back(to.place(v));
   if (det(to.turn) < 0) std::reverse(out.begin(), out.end());
@@ -182,7 +182,7 @@ inline Polygon placed(const Placement& to, const Polygon& polygon) {
 }
 
 /// The blocks as they were cut, put elsewhere.
-inline Problem placed(const Placement& to, const Problem& original) {
+inline Problem placed(const Similarity& to, const Problem& original) {
   Problem p = original;
   p.placement = to;
   place_model(to, p.model);
@@ -202,7 +202,7 @@ inline Problem placed(const Placement& to, const Problem& original) {
 }
 
 /// The model put elsewhere before it is cut.
-inline Problem cut_again(const Placement& to, const Problem& original,
+inline Problem cut_again(const Similarity& to, const Problem& original,
                          const std::function<void(Model&)>& change = nullptr) {
   REQUIRE((original.model.grids.empty() && original.model.meshes.empty() && original.model.masonry.empty() &&
            original.model.tessellations.empty() && original.model.traces.empty()));
@@ -413,7 +413,7 @@ class SnapshotObserver : public Observer {
 
   Snapshot snapshot(const Instant& i) {
     const auto bodies = static_cast<size_t>(problem_.bodies);
-    const Placement& to = problem_.placement;
+    const Similarity& to = problem_.placement;
     const BlockSet& blocks = i.scene.blocks;
     const double length = 1 / to.scale, force = length * length * length;
     Snapshot s;

@@ -340,7 +340,7 @@ class Subject {
     // coordinates of 1e6 m round to 1e-10 m, 1e-6 of the closures; ten collisions one after the other make
     // more of it
     add("turned and moved by 1e6 m", [this](const std::string& name) {
-      Placement far = turned_by(37);
+      Similarity far = turned_by(37);
       far.shift = {1e6, -1e6};
       as_original(name, placed(far, problem_), case_.bounces ? 1e-5 : 1e-6);
     });

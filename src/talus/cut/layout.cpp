@@ -29,12 +29,15 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
     return i == g.columns ? g.max.x : g.min.x + (g.max.x - g.min.x) * i / g.columns;
   };
   const auto y = [&g](int j) { return j == g.rows ? g.max.y : g.min.y + (g.max.y - g.min.y) * j / g.rows; };
+  const Vec2 middle = 0.5 * (g.min + g.max);
   const auto add = [&](std::string name, Polygon polygon) {
     BlockShape b;
     b.name = std::move(name);
     b.id = static_cast<int>(layout.blocks.size());
     b.group = group;
     b.polygon = std::move(polygon);
+    if (g.place.is_given())
+      for (Vec2& p : b.polygon) p = g.place.apply(p, middle);
     b.material = g.material;
     b.kind = g.kind;
     b.velocity = g.velocity;
@@ -46,10 +49,10 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
       if (g.pattern == GridPattern::kRectangles) {
         add(fmt::format("{}[{},{}]", g.name, i, j), {a, b, c, d});
       } else {
-        const Vec2 middle = 0.5 * (a + c);
+        const Vec2 center = 0.5 * (a + c);
         const Vec2 corner[4] = {a, b, c, d};
         for (int k = 0; k < 4; ++k)
-          add(fmt::format("{}[{},{},{}]", g.name, i, j, k), {corner[k], corner[(k + 1) % 4], middle});
+          add(fmt::format("{}[{},{},{}]", g.name, i, j, k), {corner[k], corner[(k + 1) % 4], center});
       }
     }
   }

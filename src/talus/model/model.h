@@ -13,6 +13,7 @@
 #include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
 #include "talus/model/mesh_input.h"
+#include "talus/model/placement.h"
 
 namespace talus {
 
@@ -102,7 +103,8 @@ enum class GridPattern { kRectangles, kCrossedTriangles };
 
 struct GridInput {
   std::string name;
-  Vec2 min, max;
+  Vec2 min, max;    // before it is placed
+  Placement place;  // about its middle
   int columns = 1, rows = 1;
   GridPattern pattern = GridPattern::kRectangles;
   int material = -1;
@@ -267,6 +269,7 @@ struct OutputInput {
   double save_interval = 60;  // [s] of wall time; 0: only at the ends of stages
   bool audit = true;
   double audit_interval = 0;  // [s] 0: at every frame
+  Where where_history, where_field;
 };
 
 /// Search for the factor of safety by strength reduction (`talus safety`).

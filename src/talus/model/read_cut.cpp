@@ -141,6 +141,7 @@ class CutReader : private SectionReader {
       r.material = material(f);
       r.joint = joint(f);
       r.kind = block_kind(f.get<std::string>("kind"));
+      if (sound) placement(f).apply(r.polygon);
       r.sliver_area = f.get("sliver_area", r.sliver_area);
       r.sliver_width = f.get("sliver_width", r.sliver_width);
       model_.regions.push_back(std::move(r));
@@ -174,6 +175,8 @@ class CutReader : private SectionReader {
       a.material = material(f);
       a.joint = joint(f);
       a.kind = block_kind(f.get<std::string>("kind"));
+      const Placement place = placement(f);
+      a.center = place.apply(a.center, a.center), a.from += place.angle, a.to += place.angle;
       for (const char* side : {"intrados", "extrados", "start", "end"})
         side_names_.emplace(a.name + "-" + side, std::pair(f.where(), f.path()));
       model_.arches.push_back(a);

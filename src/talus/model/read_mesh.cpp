@@ -37,6 +37,10 @@ class MeshReader : private SectionReader {
       return;
     }
     for (Vec2& p : m.mesh.node) p = drawing_unit(f.get<std::string>("unit", "m")) * p;
+    if (const Placement place = placement(f); place.is_given()) {
+      const Box box = bounding_box(m.mesh.node);
+      for (Vec2& p : m.mesh.node) p = place.apply(p, 0.5 * (box.min + box.max));
+    }
     check_elements(f, m);
     name_groups(f, m);
     model_.meshes.push_back(std::move(m));

@@ -257,6 +257,7 @@ class ModelReader : private SectionReader {
       b.where = f.given("polygon") ? f.where("polygon") : f.where();
       b.material = refer(f, "material", model_.materials, "material");
       b.kind = block_kind(f.get<std::string>("kind"));
+      placement(f).apply(b.polygon);
       b.velocity = f.get<Vec2>("velocity");
       b.spin = f.get("spin", 0.0);
       b.motion_x = motion(f, "motion_x", model_.histories);
@@ -299,6 +300,7 @@ class ModelReader : private SectionReader {
       g.material = refer(f, "material", model_.materials, "material");
       g.joint = refer(f, "joint", model_.joints, "joint");
       g.kind = block_kind(f.get<std::string>("kind"));
+      g.place = placement(f);
       g.velocity = f.get<Vec2>("velocity");
       g.where = f.where();
       if (g.kind == BlockKind::kFixed && f.given("velocity"))

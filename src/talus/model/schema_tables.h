@@ -40,6 +40,24 @@ inline KeySpec use_key() {
           .doc = "`false`: left out, as if it were not in the file."};
 }
 
+/// The keys `rotate`, `rotate_about` and `move` of what has a shape.
+inline KeySpec rotate_key() {
+  return {.name = "rotate",
+          .dimension = D::kAngle,
+          .default_text = "\"0 deg\"",
+          .doc = "Turned by this angle, counter-clockwise; directions in other keys are not."};
+}
+inline KeySpec rotate_about_key(std::string_view doc = "Point it is turned about; none: its centroid.") {
+  return {.name = "rotate_about", .type = K::kVector, .dimension = D::kLength, .doc = doc};
+}
+inline KeySpec move_key() {
+  return {.name = "move",
+          .type = K::kVector,
+          .dimension = D::kLength,
+          .default_text = "[0, 0]",
+          .doc = "Moved by this, after it has been turned."};
+}
+
 /// What a block can be, in the order of BlockKind.
 inline const std::vector<std::string>& block_kinds() {
   static const std::vector<std::string> kinds{"deformable", "rigid", "fixed", "driven"};

@@ -154,6 +154,15 @@ class SectionReader {
     return out;
   }
 
+  Placement placement(const Fields& f) {
+    Placement out{f.get("rotate", 0.0), {}, f.get<Vec2>("move")};
+    if (f.given("rotate_about") && !f.given("rotate"))
+      findings_.error(f.where("rotate_about"), f.path_of("rotate_about"), "has no meaning without rotate",
+                      "give rotate, an angle, or leave it out");
+    if (f.has("rotate_about")) out.about = f.get<Vec2>("rotate_about");
+    return out;
+  }
+
   static BlockKind block_kind(const std::string& s) {
     return s == "rigid"    ? BlockKind::kRigid
            : s == "fixed"  ? BlockKind::kFixed

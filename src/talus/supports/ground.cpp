@@ -15,8 +15,9 @@ class JointFinder {
 
   void add_grid(const GridInput& g) {
     if (g.pattern != GridPattern::kRectangles && law_of(g.joint).is_soft()) trouble_ = g.name;
-    add_set(g.joint, {1, 0}, g.columns / (g.max.x - g.min.x));
-    add_set(g.joint, {0, 1}, g.rows / (g.max.y - g.min.y));
+    const Vec2 along{std::cos(g.place.angle), std::sin(g.place.angle)};
+    add_set(g.joint, along, g.columns / (g.max.x - g.min.x));
+    add_set(g.joint, turn_left(along), g.rows / (g.max.y - g.min.y));
   }
 
   // Edges of a mesh run in any direction: what their give adds up to is not known.

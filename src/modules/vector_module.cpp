@@ -153,13 +153,13 @@ class Reader {
   void take_geometry(const Feature& feature, OGRGeometryH g) {
     switch (wkbFlatten(OGR_G_GetGeometryType(g))) {
       case wkbPoint:
-        return take_points(feature, g, true, false);
+        return take_points(feature, g, {.is_point = true});
       case wkbLineString:
-        return take_points(feature, g, false, false);
+        return take_points(feature, g, {});
       case wkbPolygon:
         if (is_dxf_) return leave_out(feature, "filled area", "is no line or point");
         for (int i = 0; i < OGR_G_GetGeometryCount(g); ++i)
-          take_points(feature, OGR_G_GetGeometryRef(g, i), false, i > 0);
+          take_points(feature, OGR_G_GetGeometryRef(g, i), {.is_area = true, .is_hole = i > 0});
         return;
       case wkbMultiPoint:
       case wkbMultiLineString:
@@ -173,9 +173,13 @@ class Reader {
     }
   }
 
-  void take_points(Feature feature, OGRGeometryH g, bool is_point, bool is_hole) {
+  struct Shape {
+    bool is_point = false, is_area = false, is_hole = false;
+  };
+
+  void take_points(Feature feature, OGRGeometryH g, const Shape& shape) {
     if (OGR_G_GetPointCount(g) == 0) return leave_out(feature, "part of a feature", "has no geometry");
-    feature.is_point = is_point, feature.is_hole = is_hole;
+    feature.is_point = shape.is_point, feature.is_area = shape.is_area, feature.is_hole = shape.is_hole;
     double low = 0, high = 0;
     for (int i = 0; i < OGR_G_GetPointCount(g); ++i) {
       const Vec2 p{OGR_G_GetX(g, i), OGR_G_GetY(g, i)};

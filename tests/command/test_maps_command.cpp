@@ -225,7 +225,7 @@ TEST_CASE("import: what cannot be read or is not there is told, and nothing is w
   refused(kMaps + "metres.dxf --as STEPP=joints", 3, "has no layer \"STEPP\"");
   refused(kMaps + "metres.dxf --as STEPP=joints", 3, "did you mean \"STEEP\"?");
   refused(kMaps + "metres.dxf --as STEEP=joint", 3,
-          "USE is joints, fault, outline, opening, bolt, monitor or ignored");
+          "USE is joints, fault, outline, opening, stone, bolt, monitor or ignored");
   refused(kMaps + "metres.dxf --as STEEP=outline", 3, "is not closed: its ends are 10 m apart");
   refused(kMaps + "metres.dxf --as CURVED=bolt", 3, "a bolt is a straight line");
   refused(kMaps + "metres.dxf --unit furlong --as STEEP=joints", 3, "must be auto, m, mm, cm, km, in or ft");

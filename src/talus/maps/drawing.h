@@ -17,6 +17,7 @@ struct Feature {
   std::string id;  // what the file calls it, as in messages: "feature 17", "entity 3B"
   std::map<std::string, std::string> attributes;
   bool is_point = false;
+  bool is_area = false;      // ring of an area
   bool is_hole = false;      // inner ring of an area
   std::vector<Vec2> points;  // in units of the drawing; one for a point; a closed line repeats its first
 };

@@ -26,10 +26,6 @@ std::string section_name(const std::string& text, std::set<std::string>& used) {
   return name;
 }
 
-struct Content {
-  bool points = false, lines = false;
-};
-
 // Layers, or values of the attribute, and what they hold.
 std::map<std::string, Content> content_of(const Drawing& drawing, const std::string& attribute) {
   std::map<std::string, Content> out;
@@ -40,14 +36,15 @@ std::map<std::string, Content> content_of(const Drawing& drawing, const std::str
       if (it == f.attributes.end()) continue;
       key = it->second;
     }
-    (f.is_point ? out[key].points : out[key].lines) = true;
+    Content& holds = out[key];
+    (f.is_point ? holds.points : f.is_area ? holds.areas : holds.lines) = true;
   }
   return out;
 }
 
 }  // namespace
 
-MapUse guessed_use(const std::string& layer, bool has_points, bool has_lines) {
+MapUse guessed_use(const std::string& layer, const Content& holds) {
   std::string lower = layer;
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -55,9 +52,11 @@ MapUse guessed_use(const std::string& layer, bool has_points, bool has_lines) {
     return std::any_of(words.begin(), words.end(),
                        [&lower](const char* w) { return lower.find(w) != std::string::npos; });
   };
-  if (has_points && !has_lines) return MapUse::kMonitor;
+  if (holds.points && !holds.lines && !holds.areas) return MapUse::kMonitor;
   if (says({"outline", "boundary", "border", "domain", "region"})) return MapUse::kOutline;
   if (says({"opening", "excavation", "tunnel", "cavern"})) return MapUse::kOpening;
+  if (lower == "stone" || says({"stones", "block", "brick", "masonry"})) return MapUse::kStone;
+  if (holds.areas && !holds.lines) return MapUse::kOutline;
   if (says({"bolt", "anchor"})) return MapUse::kBolt;
   if (says({"fault"})) return MapUse::kFault;
   return MapUse::kJoints;
@@ -85,6 +84,7 @@ MapSections import_map(const ImportRequest& request, const DrawingReader& reader
     m.unit = drawing_unit(request.unit);
     m.use = use;
     if (use == MapUse::kOutline) m.material = "rock";
+    if (use == MapUse::kStone) m.material = "stone";
     if (use == MapUse::kBolt) m.type = "bolt";
     maps.list.push_back(std::move(m));
   };
@@ -103,11 +103,12 @@ MapSections import_map(const ImportRequest& request, const DrawingReader& reader
   if (findings.has_errors()) return {};
   if (request.uses.empty()) {
     for (const auto& [what, holds] : content) {
-      const MapUse use = guessed_use(what, holds.points, holds.lines);
+      const MapUse use = guessed_use(what, holds);
       add(what, use);
       findings.warning({}, what,
                        fmt::format("taken for {} (a guess)", map_use_names()[static_cast<size_t>(use)]),
-                       fmt::format("--as \"{}=...\" says what it is", what));
+                       fmt::format("--as \"{}=...\" says what it is{}", what,
+                                   holds.areas ? ": outline, opening, stone for areas" : ""));
     }
     if (content.empty())
       findings.error({}, "",

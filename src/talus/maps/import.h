@@ -19,7 +19,13 @@ struct ImportRequest {
 /// make_sections finds go to `findings`.
 MapSections import_map(const ImportRequest& request, const DrawingReader& reader, Findings& findings);
 
-/// The use that the name of a layer and what lies on it suggest.
-MapUse guessed_use(const std::string& layer, bool has_points, bool has_lines);
+/// What lies on a layer, or has one value of an attribute.
+struct Content {
+  bool points = false, lines = false, areas = false;
+};
+
+/// The use that the name of a layer and what lies on it suggest. Areas are outlines unless the name says
+/// otherwise, never joints.
+MapUse guessed_use(const std::string& layer, const Content& holds);
 
 }  // namespace talus::maps

@@ -42,6 +42,11 @@ bool takes(const MapInput& map, const Feature& f) {
          std::find(map.values.begin(), map.values.end(), it->second) != map.values.end();
 }
 
+// What it becomes is what a closed line encloses.
+bool is_closed_use(MapUse use) {
+  return use == MapUse::kOutline || use == MapUse::kOpening || use == MapUse::kStone;
+}
+
 std::string layers_text(const Drawing& d) {
   std::map<std::string, int> count;
   for (const Feature& f : d.features) ++count[f.layer];
@@ -134,9 +139,12 @@ class SectionMaker {
       return drawing.leave_out(f.layer, f.is_point ? "point" : "line", "has too few points");
     if (f.is_point != (m.use == MapUse::kMonitor))
       return drawing.leave_out(f.layer, f.is_point ? "point" : "line", fmt::format("cannot become {}", use));
-    const bool area = m.use == MapUse::kOutline || m.use == MapUse::kOpening;
-    if (f.is_hole && area)
+    if (f.is_hole && is_closed_use(m.use))
       return drawing.leave_out(f.layer, "hole in an area", "draw it as an area of its own");
+    if (f.is_area && !is_closed_use(m.use) && ++areas_[m.name] == 1)
+      findings_.warning(m.where, "map." + m.name + ".becomes",
+                        fmt::format("\"{}\" takes areas, {} the first: their rims become lines", use, f.id),
+                        "\"outline\", \"opening\" or \"stone\" takes them as what they enclose");
     Taken t;
     t.map = map, t.id = f.id, t.is_point = f.is_point, t.points = f.points;
     taken_.push_back(std::move(t));
@@ -252,7 +260,7 @@ class SectionMaker {
           wrong(fmt::format("has {} points", t.points.size()), "a bolt is a straight line");
         continue;
       }
-      if (m.use != MapUse::kOutline && m.use != MapUse::kOpening) continue;
+      if (!is_closed_use(m.use)) continue;
       const double gap = norm(t.points.back() - t.points.front());
       if (!t.is_closed && gap > std::max(maps_.snap, round_)) {
         wrong(fmt::format("is not closed: its ends are {:.3g} m apart", gap),
@@ -393,10 +401,13 @@ class SectionMaker {
         return "[[fault]]\n" + head + key("joint", m.joint) + "points = " + points(map, lines_.at(i)) + "\n";
       case MapUse::kOutline:
         return "[[region]]\n" + head + key("material", m.material) + key("joint", m.joint) +
-               "polygon = " + ring(map, p) + "\n";
+               key("kind", m.kind) + "polygon = " + ring(map, p) + "\n";
       case MapUse::kOpening:
         return "[[opening]]\n" + head + "shape = \"polygon\"\n" + (m.rock_kept ? "rock = \"kept\"\n" : "") +
                key("joint", m.joint) + "polygon = " + ring(map, rings_.at(i)) + "\n";
+      case MapUse::kStone:
+        return "[[block]]\n" + head + key("material", m.material) + key("kind", m.kind) +
+               "polygon = " + ring(map, p) + "\n";
       case MapUse::kBolt:
         return "[[bolt]]\n" + head + key("type", m.type) + "from = " + point(p[0]) + "\nto = " + point(p[1]) +
                "\n";
@@ -451,6 +462,7 @@ class SectionMaker {
   std::vector<Taken> taken_;
   std::map<size_t, Polyline> lines_;  // joints and faults after cleaning, by their place in taken_
   std::map<size_t, Polygon> rings_;   // outlines and openings
+  std::map<std::string, int> areas_;  // taken as lines, of each map
   int decimals_ = 6;
   double round_ = 1e-6;  // [m]
   MapSections out_;

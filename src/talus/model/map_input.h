@@ -10,7 +10,7 @@
 
 namespace talus {
 
-enum class MapUse { kJoints, kFault, kOutline, kOpening, kBolt, kMonitor, kIgnored };
+enum class MapUse { kJoints, kFault, kOutline, kOpening, kStone, kBolt, kMonitor, kIgnored };
 
 /// The words of the model file, in the order of MapUse.
 const std::vector<std::string>& map_use_names();
@@ -30,6 +30,7 @@ struct MapInput {
   double unit = std::numeric_limits<double>::quiet_NaN();  // [m] of one unit of the file; NaN: the file says
   MapUse use = MapUse::kJoints;
   std::string joint, material, type;  // names in the model; "": none
+  std::string kind;                   // of outlines and stones, "": deformable
   bool rock_kept = false;             // openings
   Where where, where_file, where_layer, where_attribute, where_unit;
 };

@@ -42,6 +42,7 @@ class MapsReader : private SectionReader {
     m.joint = f.get<std::string>("joint");
     m.material = f.get<std::string>("material");
     m.type = f.get<std::string>("type");
+    if (f.given("kind")) m.kind = f.get<std::string>("kind");
     m.rock_kept = f.get<std::string>("rock") == "kept";
     m.where = f.where(), m.where_file = f.where("file"), m.where_layer = f.where("layer");
     m.where_attribute = f.where("attribute"), m.where_unit = f.where("unit");
@@ -58,7 +59,8 @@ class MapsReader : private SectionReader {
   void check_keys(const Fields& f, MapUse use) {
     const std::map<std::string, std::vector<MapUse>> belongs{
         {"joint", {MapUse::kJoints, MapUse::kFault, MapUse::kOutline, MapUse::kOpening}},
-        {"material", {MapUse::kOutline}},
+        {"material", {MapUse::kOutline, MapUse::kStone}},
+        {"kind", {MapUse::kOutline, MapUse::kStone}},
         {"type", {MapUse::kBolt}},
         {"rock", {MapUse::kOpening}}};
     for (const auto& [key, uses] : belongs) {
@@ -67,7 +69,7 @@ class MapsReader : private SectionReader {
       if (f.given(key) && !has)
         findings_.error(f.where(key), f.path_of(key), fmt::format("has no meaning for \"{}\"", word),
                         "leave it out");
-      if (!f.given(key) && has && uses.size() == 1 && key != "rock")
+      if (!f.given(key) && has && (key == "material" || key == "type"))
         findings_.error(f.where(), f.path_of(key), fmt::format("is missing for becomes = \"{}\"", word));
     }
   }
@@ -78,8 +80,8 @@ class MapsReader : private SectionReader {
 }  // namespace
 
 const std::vector<std::string>& map_use_names() {
-  static const std::vector<std::string> names{"joints", "fault",   "outline", "opening",
-                                              "bolt",   "monitor", "ignored"};
+  static const std::vector<std::string> names{"joints", "fault", "outline", "opening",
+                                              "stone",  "bolt",  "monitor", "ignored"};
   return names;
 }
 

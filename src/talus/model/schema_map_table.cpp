@@ -44,15 +44,24 @@ std::vector<SectionSpec> map_sections() {
          .type = K::kChoice,
          .required = true,
          .choices = map_use_names(),
-         .doc = "`joints`: one `[[traces]]`. `fault`: a `[[fault]]` per line. `outline`, `opening`: a "
-                "`[[region]]`, "
-                "an `[[opening]]` per closed line. `bolt`: a `[[bolt]]` per line, from its first point. "
-                "`monitor`: a point monitor per point. `ignored`: nothing, without a warning."},
+         .doc =
+             "`joints`: one `[[traces]]`. `fault`: a `[[fault]]` per line. `outline`, `opening`, `stone`: a "
+             "`[[region]]`, an `[[opening]]`, a `[[block]]` per closed line or area; an area has no holes. "
+             "`bolt`: a `[[bolt]]` per line, from its first point. "
+             "`monitor`: a point monitor per point. `ignored`: nothing, without a warning."},
         {.name = "joint",
          .type = K::kName,
          .refers_to = "joint",
          .doc = "Key `joint` of what it becomes (joints, faults, outlines, openings with kept rock)."},
-        {.name = "material", .type = K::kName, .refers_to = "material", .doc = "Material of an outline."},
+        {.name = "material",
+         .type = K::kName,
+         .refers_to = "material",
+         .doc = "Material of outlines and stones."},
+        {.name = "kind",
+         .type = K::kChoice,
+         .default_text = "\"deformable\"",
+         .choices = {"deformable", "rigid", "fixed"},
+         .doc = "Key `kind` of outlines and stones."},
         {.name = "type", .type = K::kName, .refers_to = "bolt_type", .doc = "Type of bolts."},
         {.name = "rock",
          .type = K::kChoice,

@@ -150,6 +150,42 @@ TEST_CASE("maps: wrong ones are told") {
   CHECK(told.find("is not closed: its ends are 6 m apart") != std::string::npos);
 }
 
+TEST_CASE("maps: areas are outlines, openings or stones, of any kind; as joints they warn") {
+  Drawing d = drawing(1, {0, 0});
+  const auto area = [&d](const std::string& layer, const Polyline& ring, bool is_hole = false) {
+    Feature f = line(layer, ring);
+    f.is_area = true, f.is_hole = is_hole;
+    d.features.push_back(f);
+  };
+  area("wall", {{20, 0}, {21, 0}, {21, 1}, {20, 1}, {20, 0}});
+  area("wall", {{20, 1}, {21, 1}, {21, 2}, {20, 2}, {20, 1}});
+  area("wall", {{20.2, 1.2}, {20.4, 1.2}, {20.4, 1.4}, {20.2, 1.2}}, true);
+  MapsInput maps = section_maps();
+  maps.list[0].kind = "rigid";
+  maps.list.push_back(map_of("stone", "wall", MapUse::kStone));
+  maps.list.back().material = "stone", maps.list.back().kind = "fixed";
+  std::string told;
+  const MapSections made = sections(maps, d, &told);
+  CHECK(told.empty());
+  CHECK(map_report_text(made.report).find("hole in an area") != std::string::npos);
+  const std::string text =
+      "talus = 1\n[material.stone]\ndensity = 2700\nyoung = \"5 GPa\"\npoisson = 0.2\n" + made.text;
+  Findings findings("m.toml", text);
+  const Model model = read_model("m.toml", text, {}, findings);
+  INFO(findings.render());
+  CHECK(!findings.has_errors());
+  REQUIRE(model.blocks.size() == 2);
+  CHECK(model.blocks[1].name == "stone-2");
+  CHECK(model.blocks[1].kind == BlockKind::kFixed);
+  CHECK(std::abs(signed_area(model.blocks[1].polygon)) == doctest::Approx(1));
+  CHECK(model.regions[0].kind == BlockKind::kRigid);
+
+  maps.list.back() = map_of("rims", "wall", MapUse::kJoints);
+  maps.list[0].kind.clear();
+  CHECK(!sections(maps, d, &told).text.empty());
+  CHECK(told.find("map.rims.becomes: \"joints\" takes areas") != std::string::npos);
+}
+
 TEST_CASE("maps in a model text: lines keep their numbers, wrong keys are told") {
   const std::string text =
       "talus = 1\n[maps]\nsnap = \"5 cm\"\n[[map]]\nname = \"rock\"\nfile = \"d.dxf\"\n"
@@ -185,6 +221,7 @@ TEST_CASE("maps in a model text: lines keep their numbers, wrong keys are told")
   told("\"outline\"", "\"outlines\"", "did you mean \"outline\"?");
   told("material = \"stone\"", "type = \"bar\"", "map.rock.type: has no meaning for \"outline\"");
   told("material = \"stone\"", "", "map.rock.material: is missing");
+  told("material = \"stone\"", "material = \"stone\"\nkind = \"soft\"", "map.rock.kind");
   told("layer = \"edge\"", "layer = \"egde\"", "did you mean \"edge\"?");
   told("layer = \"edge\"", "attribute = \"set\"", "map.rock.values: is missing");
   told("[maps]\nsnap", "maps.snap", "is written in a way that cannot be replaced");
@@ -193,10 +230,15 @@ TEST_CASE("maps in a model text: lines keep their numbers, wrong keys are told")
 }
 
 TEST_CASE("import: guesses from names and shapes") {
-  CHECK(guessed_use("Outline of face", false, true) == MapUse::kOutline);
-  CHECK(guessed_use("TUNNEL", false, true) == MapUse::kOpening);
-  CHECK(guessed_use("F1 fault", false, true) == MapUse::kFault);
-  CHECK(guessed_use("rock bolts", false, true) == MapUse::kBolt);
-  CHECK(guessed_use("anything", true, false) == MapUse::kMonitor);
-  CHECK(guessed_use("set 3", false, true) == MapUse::kJoints);
+  CHECK(guessed_use("Outline of face", {.lines = true}) == MapUse::kOutline);
+  CHECK(guessed_use("TUNNEL", {.lines = true}) == MapUse::kOpening);
+  CHECK(guessed_use("F1 fault", {.lines = true}) == MapUse::kFault);
+  CHECK(guessed_use("rock bolts", {.lines = true}) == MapUse::kBolt);
+  CHECK(guessed_use("anything", {.points = true}) == MapUse::kMonitor);
+  CHECK(guessed_use("set 3", {.lines = true}) == MapUse::kJoints);
+  // areas are never joints
+  CHECK(guessed_use("set 3", {.areas = true}) == MapUse::kOutline);
+  CHECK(guessed_use("limestone", {.areas = true}) == MapUse::kOutline);
+  CHECK(guessed_use("cavern", {.areas = true}) == MapUse::kOpening);
+  CHECK(guessed_use("Stones", {.areas = true}) == MapUse::kStone);
 }

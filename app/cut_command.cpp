@@ -54,7 +54,7 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   write_file(out / "blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
   write_file(out / "slivers.csv", slivers_csv(cut));
   write_file(out / "report.txt", report);
-  plot::write_cut_picture(model, cut, out / "cut");
+  plot::write_cut_picture(model, cut, layout, out / "cut");
   if (expanded.has_maps) plot::write_map_picture(expanded.report, out / "map");
   fmt::print(
       "{}\nwritten to {}: cut.png and cut.svg (picture), {}blocks.json (for cut.blocks), blocks.csv, "

@@ -23,6 +23,7 @@
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/model/schema.h"
+#include "talus/plot/cut_picture.h"
 #include "talus/run/base_report.h"
 #include "talus/run/problem_file.h"
 #include "talus/run/progress.h"
@@ -83,7 +84,8 @@ void print_time(const talus::PreparedRun& run) {
                at_most ? "at most about " : "about ", talus::readable_seconds(sum), stages);
 }
 
-int check(const ModelArguments& args) {
+int check(const ModelArguments& args, const std::string& folder, bool force) {
+  if (!folder.empty()) talus::check_result_folder(folder, force);
   const std::string text = talus::read_text_file(args.file);
   talus::Findings findings(args.file, text);
   talus::Cut cut;
@@ -130,6 +132,12 @@ int check(const ModelArguments& args) {
   fmt::print("  output     {}{}: {} rows of histories, {} rows of steps, {} frames\n",
              at_most ? "at most " : "about ", talus::readable_bytes(p.output), p.history_rows, p.step_rows,
              p.frames);
+  if (!folder.empty()) {
+    talus::open_result_folder(folder, force, talus::ResultKind::kCut);
+    const auto stem = std::filesystem::path(folder) / "cut";
+    talus::plot::write_cut_picture(run.scene.model, cut, run.scene.layout, stem);
+    fmt::print("  picture    {0}.png, {0}.svg: blocks, joints and what acts on them\n", stem.string());
+  }
   return talus::kExitOk;
 }
 
@@ -237,7 +245,9 @@ int run_command(int argc, char** argv) {
       app.add_subcommand("check", "check a model and predict its steps, memory and output; runs nothing");
   add_model_arguments(*check_verb, model);
   add_strict(*check_verb, model);
-  check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml");
+  check_verb->add_option("-o,--output", folder, "folder for a picture of the model, cut.png and cut.svg");
+  check_verb->add_flag("--force", force, "replace the picture in that folder");
+  check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml -o out/check");
 
   CLI::App* cut_verb = app.add_subcommand(
       "cut", "cut regions into blocks: statistics, picture and a blocks file; runs nothing");
@@ -345,7 +355,7 @@ int run_command(int argc, char** argv) {
     return talus::kExitUsage;
   }
   if (*run_verb) return run(model, how);
-  if (*check_verb) return check(model);
+  if (*check_verb) return check(model, folder, force);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);

@@ -49,6 +49,21 @@ TEST_CASE("command: check predicts and runs nothing") {
   CHECK(files == 1);  // the log of this test
 }
 
+TEST_CASE("command: check -o draws the model, and replaces no file of others") {
+  const Folder f;
+  CHECK(shell(f, fmt::format("$talus check {} -o out", kBar)).code == 0);
+  CHECK(fs::exists(f / "out" / "cut.png"));
+  CHECK(fs::exists(f / "out" / "cut.svg"));
+  CHECK(!fs::exists(f / "out" / "summary.json"));
+  const Outcome again = shell(f, fmt::format("$talus check {} -o out", kBar));
+  CHECK(again.code == 4);
+  has(again.text, "--force");
+  CHECK(shell(f, fmt::format("$talus check {} -o out --force", kBar)).code == 0);
+  fs::remove(f / "out" / "cut.png");
+  CHECK(shell(f, fmt::format("$talus check {} -o out --force", kBar)).code ==
+        4);  // now it could be anybody's
+}
+
 TEST_CASE("command: a run writes every result file, and refuses to overwrite") {
   const Folder f;
   const std::string out = (f / "out").string();

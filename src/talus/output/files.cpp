@@ -59,6 +59,7 @@ void check_result_folder(const fs::path& folder, bool force) {
                     folder.string()));
   const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
                     fs::exists(folder / "record.json", ec) || fs::exists(folder / "safety.json", ec) ||
+                    (fs::exists(folder / "cut.svg", ec) && fs::exists(folder / "cut.png", ec)) ||
                     (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
   if (!empty && !ours)
     throw FileError(

@@ -62,9 +62,25 @@ std::string degrees_text(double radians) {
   return fmt::format("{}{:g}\u00b0", tenths < 0 ? "\u2212" : "", std::abs(tenths) / 10);
 }
 
+bool was_cut(const Layout& layout, const BlockShape& block) { return block.group >= layout.first_cut_group; }
+
+std::string joint_name(const Model& model, int joint) {
+  return joint < 0 ? "hard and frictionless" : "joint \"" + model.joints[at(joint)].name + "\"";
+}
+
+// The joint along lines of an origin; "" where it differs from region to region, or is none.
+std::string joint_text(const Model& model, const Cut& cut, const Origin& origin) {
+  if (origin.kind == OriginKind::kSide || origin.kind == OriginKind::kConstruction) return "";
+  if (origin.joint >= 0) return "; " + joint_name(model, origin.joint);
+  int joint = cut.regions.empty() ? -1 : cut.regions.front().joint;
+  for (const CutRegion& region : cut.regions)
+    if (region.joint != joint) return "";
+  return "; " + joint_name(model, joint < 0 ? model.default_joint : joint);
+}
+
 std::string label_of(const Cut& cut, const Origin& origin) {
   if (origin.kind == OriginKind::kSide) return "outline";
-  if (origin.kind == OriginKind::kConstruction) return "construction cut";
+  if (origin.kind == OriginKind::kConstruction) return "construction cut, glued";
   if (origin.kind == OriginKind::kSurveyed)
     for (const SurveyNote& note : cut.surveys)
       if (note.name == origin.name) return origin.name + ": " + counted(at(note.inside), "trace");
@@ -77,15 +93,17 @@ std::string label_of(const Cut& cut, const Origin& origin) {
 
 }  // namespace
 
-double joint_line_width(const Cut& cut, double scale) {
+double joint_line_width(const Cut& cut, const Layout& layout, double scale) {
   constexpr double kShare = 0.055;
-  if (cut.blocks.empty()) return 1;
   std::vector<double> areas;
   for (const CutBlock& block : cut.blocks) areas.push_back(std::abs(signed_area(cut.polygon(block))));
+  for (const BlockShape& block : layout.blocks)
+    if (!was_cut(layout, block)) areas.push_back(std::abs(signed_area(block.polygon)));
+  if (areas.empty()) return 1;
   return std::clamp(kShare * std::sqrt(median(std::move(areas))) * scale, 0.15, 1.6);
 }
 
-std::vector<Layer> make_areas(const Model& model, const Cut& cut) {
+std::vector<Layer> make_areas(const Model& model, const Cut& cut, const Layout& layout) {
   constexpr int kFixed = INT_MAX - 1, kKept = INT_MAX;  // behind all materials
   std::map<int, Layer> areas;
   for (const CutBlock& block : cut.blocks) {
@@ -95,18 +113,21 @@ std::vector<Layer> make_areas(const Model& model, const Cut& cut) {
     std::vector<int>& edges = areas[key].edges;
     edges.insert(edges.end(), block.edge.begin(), block.edge.end());
   }
+  for (const BlockShape& block : layout.blocks)
+    if (!was_cut(layout, block))
+      areas[block.kind == BlockKind::kFixed ? kFixed : block.material].polygons.push_back(block.polygon);
   std::vector<Layer> list;
   for (auto& [key, area] : areas) {
     area.edges = outline_edges(std::move(area.edges));
     area.pen.color = key == kKept ? kKeptTint : key == kFixed ? kFixedTint : kTints[at(key) % kTints.size()];
     area.label = key == kKept ? "kept in openings" : key == kFixed ? "fixed" : "";
-    if (at(key) < model.materials.size()) area.label = model.materials[at(key)].name;
+    if (at(key) < model.materials.size()) area.label = "material " + model.materials[at(key)].name;
     list.push_back(std::move(area));
   }
   return list;
 }
 
-std::vector<Layer> make_lines(const Cut& cut, double joint_width) {
+std::vector<Layer> make_lines(const Model& model, const Cut& cut, const Layout& layout, double joint_width) {
   constexpr std::size_t kOpenings = 0, kSides = 1, kOthers = 2;
   std::vector<Layer> lines(kOthers + cut.origins.size());
   const auto place = [&cut](std::size_t origin) {
@@ -119,7 +140,7 @@ std::vector<Layer> make_lines(const Cut& cut, double joint_width) {
     const Origin& origin = cut.origins[o];
     Layer& own = lines[place(o)];
     own.pen = pen_of(origin.kind, color, joint_width);
-    own.label = label_of(cut, origin);
+    own.label = label_of(cut, origin) + joint_text(model, cut, origin);
     color += place(o) >= kOthers && origin.kind != OriginKind::kConstruction;
     if (place(o) == kOpenings) names += (openings++ == 0 ? "" : ", ") + origin.name;
   }
@@ -130,7 +151,17 @@ std::vector<Layer> make_lines(const Cut& cut, double joint_width) {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   for (const int edge : edges) lines[place(at(cut.edge_origin[at(edge)]))].edges.push_back(edge);
-  std::erase_if(lines, [](const Layer& layer) { return layer.edges.empty(); });
+
+  Layer written{{kBlack, std::clamp(joint_width, 0.4, 1.2), {}}, "", {}};
+  for (const BlockShape& block : layout.blocks)
+    if (!was_cut(layout, block)) written.polygons.push_back(block.polygon);
+  written.label = counted(written.polygons.size(), "written block");
+  if (written.polygons.size() > 1)
+    written.label += "; between them " + joint_name(model, model.default_joint);
+  if (!layout.pair_joint.empty())
+    written.label += fmt::format(" or as {} say", counted(layout.pair_joint.size(), "[[contact_pair]]"));
+  lines.push_back(std::move(written));
+  std::erase_if(lines, [](const Layer& layer) { return layer.edges.empty() && layer.polygons.empty(); });
   return lines;
 }
 

@@ -1,34 +1,35 @@
 #pragma once
-// What a cut picture shows of the cut, sorted by how it is drawn: areas by material, lines by where they come
-// from, dead ends. Colours, widths and labels are chosen here; nothing is drawn.
+// What a cut picture shows of the blocks, sorted by how it is drawn: areas by material, lines by where they
+// come from, dead ends. Colours, widths and labels are chosen here; nothing is drawn.
 
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "talus/cut/cut.h"
-#include "talus/model/model.h"
+#include "talus/cut/layout.h"
 #include "talus/plot/sheet.h"
 
 namespace talus::plot {
 
-/// Edges of the cut that are drawn in one go.
+/// Edges of the cut, and polygons of blocks that were not cut, that are drawn in one go.
 struct Layer {
   Pen pen;  // its colour fills an area
   std::string label;
   std::vector<int> edges;
+  std::vector<Polygon> polygons = {};  // [m]
 };
 
 /// Width [px] that leaves the blocks to be seen, from an arch of 20 to a slope of 100 000: a share of the
 /// size of the median block.
 /// @param scale  [px/m]
-double joint_line_width(const Cut& cut, double scale);
+double joint_line_width(const Cut& cut, const Layout& layout, double scale);
 
-/// Areas in one tint with the edges around them: materials, then fixed rock, then rock kept in openings.
-std::vector<Layer> make_areas(const Model& model, const Cut& cut);
+/// Areas in one tint: materials, then fixed rock, then rock kept in openings.
+std::vector<Layer> make_areas(const Model& model, const Cut& cut, const Layout& layout);
 
-/// Lines of one origin, each edge once, most important first. Openings share a layer, and so do sides.
-std::vector<Layer> make_lines(const Cut& cut, double joint_width);
+/// Lines of one origin, each edge once, most important first; then the outlines of blocks that were not cut.
+/// Openings share a layer, and so do sides. Labels name the joint along the line.
+std::vector<Layer> make_lines(const Model& model, const Cut& cut, const Layout& layout, double joint_width);
 
 /// Of edges that merging has taken away: red, and wide enough to be seen.
 Pen merged_pen(double joint_width);

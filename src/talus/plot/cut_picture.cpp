@@ -11,6 +11,7 @@
 #include "talus/output/files.h"
 #include "talus/plot/axes.h"
 #include "talus/plot/canvas.h"
+#include "talus/plot/conditions.h"
 #include "talus/plot/cut_layers.h"
 #include "talus/plot/edge_chains.h"
 #include "talus/plot/legend.h"
@@ -27,6 +28,7 @@ constexpr double kLargestWidth = 1100, kLargestHeight = 1200;  // of the frame
 constexpr double kLeastFrame = 64;                             // along either axis
 constexpr double kLeastSheet = 480;                            // width
 constexpr double kPad = 10;                                    // from the model to the frame
+constexpr double kRoomForSymbols = 34;                         // the same where something acts
 
 // Everything the sheet shows and where; both files are drawn from it.
 struct Picture {
@@ -34,6 +36,7 @@ struct Picture {
   View view;
   Axis x, y;
   std::vector<Layer> areas, lines;
+  std::vector<Condition> conditions;
   std::vector<std::pair<Vec2, Vec2>> dead_ends;  // [m]
   Pen dead_end_pen, merged_pen;
   Names names;
@@ -46,25 +49,32 @@ struct Picture {
 // ------------------------------------------------------------------------------------------------- layout
 
 // The frame lies at the corner of the sheet for now.
-View make_view(const Cut& cut) {
+View make_view(const Model& model, const Cut& cut, const Layout& layout) {
   std::vector<Vec2> points;
+  for (const BlockShape& block : layout.blocks)
+    if (block.group < layout.first_cut_group)
+      points.insert(points.end(), block.polygon.begin(), block.polygon.end());
+  for (const BoltInput& bolt : model.bolts) points.insert(points.end(), {bolt.from, bolt.to});
   for (const CutRegion& region : cut.regions)
     points.insert(points.end(), region.polygon.begin(), region.polygon.end());
   if (points.empty()) points = {{0, 0}, {1, 1}};
   const Box box = bounding_box(points);
   const Range x = widened({box.min.x, box.max.x}), y = widened({box.min.y, box.max.y});
+  const bool something_acts =
+      !model.supports.empty() || !model.boundaries.empty() || !model.loads.empty() || !model.blocks.empty();
+  const double pad = something_acts ? kRoomForSymbols : kPad;
   View view;
   view.middle = {x.lo + x.length() / 2, y.lo + y.length() / 2};
-  view.scale = std::min((kLargestWidth - 2 * kPad) / x.length(), (kLargestHeight - 2 * kPad) / y.length());
-  view.frame.w = std::max(kLeastFrame, std::ceil(x.length() * view.scale + 2 * kPad));
-  view.frame.h = std::max(kLeastFrame, std::ceil(y.length() * view.scale + 2 * kPad));
+  view.scale = std::min((kLargestWidth - 2 * pad) / x.length(), (kLargestHeight - 2 * pad) / y.length());
+  view.frame.w = std::max(kLeastFrame, std::ceil(x.length() * view.scale + 2 * pad));
+  view.frame.h = std::max(kLeastFrame, std::ceil(y.length() * view.scale + 2 * pad));
   return view;
 }
 
 // Title at the left and number of blocks at the right; a narrow model has a wider sheet where they need it.
-void place_title(cairo_t* cr, const Model& model, Picture& picture) {
+void place_title(cairo_t* cr, const Model& model, const Layout& layout, Picture& picture) {
   constexpr double kWidestTitle = 800, kBetween = 24;
-  picture.count = counted(picture.cut->blocks.size(), "block");
+  picture.count = counted(layout.blocks.size(), "block");
   if (!picture.cut->openings.empty())
     picture.count += ", " + counted(picture.cut->openings.size(), "opening");
   set_font(cr, kFontSize);
@@ -92,14 +102,14 @@ void place_legend(cairo_t* cr, double right, Picture& picture) {
   picture.height = std::ceil(std::max(below, legend.bottom()) + kMargin);
 }
 
-Picture make_picture(cairo_t* cr, const Model& model, const Cut& cut) {
+Picture make_picture(cairo_t* cr, const Model& model, const Cut& cut, const Layout& layout) {
   constexpr double kSlim = 400, kOutside = 190;  // names of a slim model have room to its right
   Picture picture;
   picture.cut = &cut;
-  picture.view = make_view(cut);
-  const double joint_width = joint_line_width(cut, picture.view.scale);
-  picture.areas = make_areas(model, cut);
-  picture.lines = make_lines(cut, joint_width);
+  picture.view = make_view(model, cut, layout);
+  const double joint_width = joint_line_width(cut, layout, picture.view.scale);
+  picture.areas = make_areas(model, cut, layout);
+  picture.lines = make_lines(model, cut, layout, joint_width);
   picture.dead_ends = visible_dead_ends(model, cut);
   picture.dead_end_pen = dead_end_pen(joint_width);
   picture.merged_pen = merged_pen(joint_width);
@@ -111,13 +121,14 @@ Picture make_picture(cairo_t* cr, const Model& model, const Cut& cut) {
   frame.y = kMargin + kTitleRow;
   Rect room = frame;
   if (frame.w < kSlim) room.w += kOutside;
-  picture.names = place_names(cr, model, cut, picture.view, room);
+  picture.names = place_names(cr, model, cut, layout, picture.view, room);
+  picture.conditions = conditions_of(model, layout, picture.view);
   double right = frame.right() + picture.x.widest / 2;
   for (const Name& name : picture.names.names) right = std::max(right, name.box.right() + 1);
   picture.width = std::max(kLeastSheet, std::ceil(right) + kMargin);
-  place_title(cr, model, picture);
-  picture.legend = legend_entries(cut, picture.areas, picture.lines, picture.dead_end_pen, picture.merged_pen,
-                                  picture.names);
+  place_title(cr, model, layout, picture);
+  picture.legend = legend_entries(model, cut, picture.areas, picture.lines, picture.conditions,
+                                  picture.dead_end_pen, picture.merged_pen, picture.names);
   place_legend(cr, right, picture);
   return picture;
 }
@@ -135,11 +146,24 @@ void add_chains_to_path(cairo_t* cr, const std::vector<int>& edges, const Pictur
   }
 }
 
+void add_polygons_to_path(cairo_t* cr, const std::vector<Polygon>& polygons, const Picture& picture) {
+  for (const Polygon& polygon : polygons) {
+    for (const Vec2 corner : polygon) {
+      const Vec2 p = picture.view.to_sheet(corner);
+      cairo_line_to(cr, p.x, p.y);
+    }
+    cairo_close_path(cr);
+    cairo_new_sub_path(cr);
+  }
+}
+
 void draw_section(cairo_t* cr, const Picture& picture) {
   cairo_set_fill_rule(cr, CAIRO_FILL_RULE_EVEN_ODD);  // the chains around an area run in either direction
   for (const Layer& area : picture.areas) {
     set_color(cr, area.pen.color);
     add_chains_to_path(cr, area.edges, picture);
+    cairo_fill(cr);
+    add_polygons_to_path(cr, area.polygons, picture);
     cairo_fill(cr);
   }
   set_pen(cr, picture.dead_end_pen);
@@ -152,6 +176,7 @@ void draw_section(cairo_t* cr, const Picture& picture) {
   for (auto lines = picture.lines.rbegin(); lines != picture.lines.rend(); ++lines) {
     set_pen(cr, lines->pen);
     add_chains_to_path(cr, lines->edges, picture);
+    add_polygons_to_path(cr, lines->polygons, picture);
     cairo_stroke(cr);
   }
   set_pen(cr, picture.merged_pen);
@@ -162,6 +187,7 @@ void draw_section(cairo_t* cr, const Picture& picture) {
 void draw(cairo_t* cr, const Picture& picture) {
   draw_section(cr, picture);
   draw_axes(cr, picture.view, picture.x, picture.y);
+  for (const Condition& condition : picture.conditions) draw_condition(cr, condition);
   draw_names(cr, picture.names);
   draw_legend(cr, picture.legend);
   set_color(cr, kText);
@@ -173,13 +199,14 @@ void draw(cairo_t* cr, const Picture& picture) {
 
 }  // namespace
 
-void write_cut_picture(const Model& model, const Cut& cut, const std::filesystem::path& stem) {
+void write_cut_picture(const Model& model, const Cut& cut, const Layout& layout,
+                       const std::filesystem::path& stem) {
   std::filesystem::path svg = stem, png = stem;
   svg += ".svg";
   png += ".png";
   std::string svg_content, png_content;
   try {
-    const Picture picture = make_picture(make_measuring_context().get(), model, cut);
+    const Picture picture = make_picture(make_measuring_context().get(), model, cut, layout);
     const auto draw_all = [&picture](cairo_t* cr) { draw(cr, picture); };
     svg_content = svg_bytes(picture.width, picture.height, draw_all);
     png_content = png_bytes(picture.width, picture.height, draw_all);

@@ -10,8 +10,10 @@ namespace {
 constexpr double kSampleWidth = 30, kColumnGap = 24, kWidestEntry = 420;  // [px]
 constexpr std::size_t kMostLayers = 60;
 
-void draw_sample(cairo_t* cr, const LegendEntry& entry) {
+void draw_entry(cairo_t* cr, const LegendEntry& entry) {
   constexpr double kLeastLine = 1.2, kSquareHeight = 12;
+  if (entry.kind == LegendEntry::kSymbol)
+    draw_sample(cr, entry.condition, {entry.x, entry.y - kLegendRow / 2, kSampleWidth, kLegendRow});
   if (entry.kind == LegendEntry::kMarker) draw_marker(cr, {entry.x + kSampleWidth / 2, entry.y});
   if (entry.kind == LegendEntry::kLine) {
     Pen pen = entry.pen;
@@ -32,13 +34,13 @@ void draw_sample(cairo_t* cr, const LegendEntry& entry) {
 
 }  // namespace
 
-std::vector<LegendEntry> legend_entries(const Cut& cut, const std::vector<Layer>& areas,
-                                        const std::vector<Layer>& lines, const Pen& dead_ends,
+std::vector<LegendEntry> legend_entries(const Model& model, const Cut& cut, const std::vector<Layer>& areas,
+                                        const std::vector<Layer>& lines,
+                                        const std::vector<Condition>& conditions, const Pen& dead_ends,
                                         const Pen& merged, const Names& names) {
   using Entry = LegendEntry;
   std::vector<Entry> list;
-  if (areas.size() > 1)
-    for (const Layer& area : areas) list.push_back({Entry::kSquare, area.label, area.pen});
+  for (const Layer& area : areas) list.push_back({Entry::kSquare, area.label, area.pen});
   for (const Layer& l : lines) list.push_back({Entry::kLine, l.label, l.pen});
   if (list.size() > kMostLayers) {
     const std::size_t more = list.size() - kMostLayers;
@@ -50,6 +52,14 @@ std::vector<LegendEntry> legend_entries(const Cut& cut, const std::vector<Layer>
         {Entry::kLine,
          fmt::format("dead ends removed: {:.{}f} m", cut.dead_end_length, cut.dead_end_length < 100 ? 1 : 0),
          dead_ends});
+  for (const Condition& c : conditions) list.push_back({Entry::kSymbol, c.label, {}, 0, 0, 0, c});
+  for (std::size_t s = 0; s < model.stages.size(); ++s) {
+    const StageInput& stage = model.stages[s];
+    if (stage.excavate.empty()) continue;
+    std::string text = fmt::format("stage {} \"{}\" takes out ", s + 1, stage.name);
+    for (std::size_t k = 0; k < stage.excavate.size(); ++k) text += (k > 0 ? ", " : "") + stage.excavate[k];
+    list.push_back({Entry::kNote, text, {}});
+  }
   if (!names.markers.empty()) {
     std::string text = counted(names.markers.size(), "monitored point");
     if (names.left_out > 0) text += fmt::format(" ({} without name)", names.left_out);
@@ -96,7 +106,7 @@ Rect place_legend(cairo_t* cr, Vec2 corner, double available, std::size_t most_c
 void draw_legend(cairo_t* cr, const std::vector<LegendEntry>& entries) {
   set_font(cr, kFontSize);
   for (const LegendEntry& entry : entries) {
-    draw_sample(cr, entry);
+    draw_entry(cr, entry);
     set_color(cr, kText);
     draw_text(cr, entry.text, entry.x + entry.indent(), entry.y, 0);
   }

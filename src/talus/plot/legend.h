@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/plot/conditions.h"
 #include "talus/plot/cut_layers.h"
 #include "talus/plot/name_places.h"
 #include "talus/plot/sheet.h"
@@ -14,21 +15,23 @@ namespace talus::plot {
 constexpr double kLegendRow = 19;  // height of one [px]
 
 struct LegendEntry {
-  enum Kind { kLine, kSquare, kMarker, kNote };
+  enum Kind { kLine, kSquare, kMarker, kSymbol, kNote };
   Kind kind = kLine;
   std::string text;
-  Pen pen;              // of the line; its colour fills the square
-  double width = 0;     // sample and text
-  double x = 0, y = 0;  // left end and middle height
+  Pen pen;                   // of the line; its colour fills the square
+  double width = 0;          // sample and text
+  double x = 0, y = 0;       // left end and middle height
+  Condition condition = {};  // of a symbol
 
   /// Where the text begins, from the left end.
   double indent() const { return kind == kNote ? 0 : 37; }
 };
 
-/// Entries for what the picture shows, without places: areas, when there are several, and lines, up to 60
-/// together; then dead ends, monitored points and slivers.
-std::vector<LegendEntry> legend_entries(const Cut& cut, const std::vector<Layer>& areas,
-                                        const std::vector<Layer>& lines, const Pen& dead_ends,
+/// Entries for what the picture shows, without places: areas and lines, up to 60 together; then dead ends,
+/// conditions, monitored points, what is taken out in which stage, and slivers.
+std::vector<LegendEntry> legend_entries(const Model& model, const Cut& cut, const std::vector<Layer>& areas,
+                                        const std::vector<Layer>& lines,
+                                        const std::vector<Condition>& conditions, const Pen& dead_ends,
                                         const Pen& merged, const Names& names);
 
 /// Puts the entries into rows of aligned columns, as many as there is room for, and shortens texts of more

@@ -120,7 +120,8 @@ class Placer {
 };
 
 // The name in the middle of the opening, if it fits there.
-std::optional<Name> place_inside(cairo_t* cr, const OpeningInput& opening, const View& view, Placer& placer) {
+std::optional<Name> place_inside(cairo_t* cr, const OpeningInput& opening, const std::string& label,
+                                 const View& view, Placer& placer) {
   constexpr double kAir = 8;  // [px] around the name
   std::vector<Segment> outline;
   add_to_sheet(opening.polygon, true, view, outline);
@@ -128,12 +129,21 @@ std::optional<Name> place_inside(cairo_t* cr, const OpeningInput& opening, const
   if (!contains(opening.polygon, middle)) return {};
   for (const double size : {kFontSize, 11.0, 9.0}) {
     set_font(cr, size);
-    const std::string text = fitted(cr, opening.name, view.frame.w);
+    const std::string text = fitted(cr, label, view.frame.w);
     const Rect box = centered(view.to_sheet(middle), text_width(cr, text) + kAir, size + kAir);
     if (meets_any(box, outline)) continue;
     if (const auto name = placer.place({text, size, box, {}})) return name;
   }
   return {};
+}
+
+// " (2)" behind the name of what the second stage takes out.
+std::string stage_mark(const Model& model, const std::string& name) {
+  for (std::size_t s = 0; s < model.stages.size(); ++s) {
+    const std::vector<std::string>& out = model.stages[s].excavate;
+    if (std::find(out.begin(), out.end(), name) != out.end()) return " (" + std::to_string(s + 1) + ")";
+  }
+  return "";
 }
 
 // Text that can be read above lines of any colour.
@@ -157,13 +167,22 @@ Vec2 Name::end_of_leader() const {
   return {std::clamp(from->x, box.x, box.right()), std::clamp(from->y, box.y, box.bottom())};
 }
 
-Names place_names(cairo_t* cr, const Model& model, const Cut& cut, const View& view, const Rect& room) {
+Names place_names(cairo_t* cr, const Model& model, const Cut& cut, const Layout& layout, const View& view,
+                  const Rect& room) {
   Names out;
-  if (cut.blocks.empty()) return out;
+  if (layout.blocks.empty()) return out;
   std::vector<std::string> monitors;  // names of those in sight
   for (const MonitorInput& monitor : model.monitors) {
-    const Vec2 p = view.to_sheet(monitor.point);
-    if (monitor.kind != MonitorKind::kPoint || !is_inside(Rect{p.x, p.y, 0, 0}, view.frame)) continue;
+    Vec2 place = monitor.point;
+    if (monitor.kind == MonitorKind::kBlock) {
+      const std::vector<int> blocks = layout.blocks_called(monitor.target_a);
+      if (blocks.empty()) continue;
+      place = polygon_moments(layout.blocks[at(blocks.front())].polygon).centroid;
+    } else if (monitor.kind != MonitorKind::kPoint) {
+      continue;
+    }
+    const Vec2 p = view.to_sheet(place);
+    if (!is_inside(Rect{p.x, p.y, 0, 0}, view.frame)) continue;
     out.markers.push_back(p);
     monitors.push_back(monitor.name);
   }
@@ -174,8 +193,8 @@ Names place_names(cairo_t* cr, const Model& model, const Cut& cut, const View& v
 
   Placer placer(room, out.markers, std::move(borders));
   for (const OpeningInput& opening : model.openings) {
-    if (opening.kept) continue;
-    if (const auto name = place_inside(cr, opening, view, placer)) out.names.push_back(*name);
+    const std::string label = opening.name + stage_mark(model, opening.name);
+    if (const auto name = place_inside(cr, opening, label, view, placer)) out.names.push_back(*name);
   }
   set_font(cr, kMonitorFont);
   for (std::size_t i = 0; i < monitors.size(); ++i) {

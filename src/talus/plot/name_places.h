@@ -1,15 +1,14 @@
 #pragma once
-// Markers of monitored points, and where the names of monitors and of empty openings go on a cut picture:
-// beside their markers, not over each other nor over other markers; at the end of a thin line where it is
-// crowded.
+// Markers of monitored points and blocks, and where the names of monitors and of openings go on a cut
+// picture: beside their markers, not over each other nor over other markers; at the end of a thin line where
+// it is crowded.
 
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "talus/cut/cut.h"
-#include "talus/model/model.h"
+#include "talus/cut/layout.h"
 #include "talus/plot/sheet.h"
 
 namespace talus::plot {
@@ -30,9 +29,11 @@ struct Names {
   std::size_t left_out = 0;   // monitors without name, for want of room
 };
 
-/// Places markers and names. Monitors outside the frame have none, and neither has an empty cut.
+/// Places markers and names. Monitors outside the frame have none, and neither has a model without blocks.
+/// Openings that a stage takes out have its number behind their name.
 /// @param room  names stay inside
-Names place_names(cairo_t* cr, const Model& model, const Cut& cut, const View& view, const Rect& room);
+Names place_names(cairo_t* cr, const Model& model, const Cut& cut, const Layout& layout, const View& view,
+                  const Rect& room);
 
 /// Draws one marker, for the legend.
 void draw_marker(cairo_t* cr, Vec2 p);

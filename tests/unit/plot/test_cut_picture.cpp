@@ -69,7 +69,8 @@ std::string svg_of(const std::string& text) {
   const Cut cut = cut_model(model, findings);
   INFO(findings.render());
   CHECK(model.shapes_readable);
-  plot::write_cut_picture(model, cut, folder.path / "cut");
+  const Layout layout = make_layout(model, cut, findings);
+  plot::write_cut_picture(model, cut, layout, folder.path / "cut");
   CHECK(content(folder.path / "cut.png").substr(0, 8) == "\x89PNG\r\n\x1a\n");
   const std::string svg = content(folder.path / "cut.svg");
   CHECK(svg.substr(0, 5) == "<?xml");
@@ -147,7 +148,7 @@ TEST_CASE("write_cut_picture draws every trace as one line and every origin as o
   CHECK(flat[0].x.size() == 2 * 10);
   CHECK(steep[0].x.size() == 2 * 20);
   const auto fill = paths(svg, kSand);  // 231 blocks, but only their common outline
-  REQUIRE(fill.size() == 1);
+  REQUIRE(fill.size() == 2);            // and its sample
   CHECK(std::count(fill[0].data.begin(), fill[0].data.end(), 'Z') == 1);
 }
 
@@ -158,7 +159,7 @@ TEST_CASE("write_cut_picture leaves openings blank and shows kept rock in a tint
            rock + "\"\n";
   };
   const std::string removed = svg_of(model("removed")), kept = svg_of(model("kept"));
-  REQUIRE(paths(removed, kSand).size() == 1);
+  REQUIRE(paths(removed, kSand).size() == 2);  // and its sample
   CHECK(paths(removed, kYellow).empty());
   CHECK(paths(kept, kYellow).size() == 2);  // and its sample
   const auto circle = paths(removed, kBlack);
@@ -261,7 +262,7 @@ TEST_CASE("write_cut_picture copes with odd models") {
 TEST_CASE("write_cut_picture throws when a file cannot be written") {
   const TemporaryFolder folder;
   const fs::path stem = folder.path / "missing" / "cut";
-  CHECK_THROWS_WITH_AS(plot::write_cut_picture({}, {}, stem), doctest::Contains("missing/cut.svg"),
+  CHECK_THROWS_WITH_AS(plot::write_cut_picture({}, {}, {}, stem), doctest::Contains("missing/cut.svg"),
                        std::runtime_error);
   CHECK(fs::is_empty(folder.path));
 }

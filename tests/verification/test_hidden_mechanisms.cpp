@@ -25,9 +25,11 @@ PreparedRun prepare(const std::string& text, const std::vector<std::string>& ove
   return prepare_run("case.toml", text, overrides, findings);
 }
 
+std::string point(Vec2 p) { return fmt::format("[{:.17g}, {:.17g}]", p.x, p.y); }
+
 std::string points(const Polygon& polygon) {
   std::string out;
-  for (const Vec2 p : polygon) out += fmt::format("{}[{:.17g}, {:.17g}]", out.empty() ? "" : ", ", p.x, p.y);
+  for (const Vec2 p : polygon) out += (out.empty() ? "" : ", ") + point(p);
   return "[" + out + "]";
 }
 
@@ -214,6 +216,36 @@ TEST_CASE("a slope with one fault: the factor of safety is that of the wedge, ho
   const double dip = std::atan2(52.678 - (20 + 4 * 30.0 / 17), 41);
   check_close("one fault in a slope: factor of safety", r.factor(), std::tan(degrees(38)) / std::tan(dip),
               1e-2, 3e-3);
+}
+
+TEST_CASE("a slope with one fault and four anchors: the factor with their yield force") {
+  // anchors of 250 kN a metre, 10 deg below level, deep behind the plane: at the limit all of them yield
+  constexpr double kYield = 250e3, kDown = 10;
+  const Vec2 way{std::cos(degrees(kDown)), -std::sin(degrees(kDown))};
+  std::string bolts = fmt::format(
+      "[bolt_type.anchor]\nkind = \"anchored\"\ndiameter = \"32 mm\"\nyoung = \"200 GPa\"\nyield_force = "
+      "{:.17g}\nspacing = \"1 m\"\n",
+      kYield);
+  for (const double y : {30.0, 34.0, 38.0, 42.0}) {
+    const Vec2 head{40 + (y - 20) * 17 / 30, y};
+    bolts += fmt::format("[[bolt]]\nname = \"b{:g}\"\nfrom = {}\nto = {}\ntype = \"anchor\"\n", y,
+                         point(head), point(head + 22.0 * way));
+  }
+  const Vec2 exit{44, 20 + 4 * 30.0 / 17}, end{85, 52.678};
+  const PreparedRun prepared = prepare(rock({{0, 0}, {110, 0}, {110, 50}, {57, 50}, {40, 20}, {0, 20}},
+                                            {"base", "right", "crest", "face", "foot", "left"}, 38, 0,
+                                            fault("plane", exit, end) + bolts));
+  CHECK(prepared.scene.blocks.count == 2);
+  const SafetyResult r = seek_safety(prepared, Workers());
+  REQUIRE(r.status == SafetyStatus::kFound);
+  // along and across the plane: W sin b - T cos(b + down) = (W cos b + T sin(b + down)) tan(phi) / F
+  const double dip = std::atan2(end.y - exit.y, end.x - exit.x), at = dip + degrees(kDown);
+  const Vec2 top{exit.x + (50 - exit.y) / std::tan(dip), 50};
+  const double weight = kDensity * kG * std::abs(signed_area(Polygon{exit, top, {57, 50}})),
+               pull = 4 * kYield;
+  const double exact = (weight * std::cos(dip) + pull * std::sin(at)) * std::tan(degrees(38)) /
+                       (weight * std::sin(dip) - pull * std::cos(at));
+  check_close("one fault in a slope, four anchors: factor of safety", r.factor(), exact, 1e-2, 3e-3);
 }
 
 TEST_CASE("a factor of safety is refused of merged or deleted slivers, unless they are accepted") {

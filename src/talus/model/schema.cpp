@@ -56,10 +56,11 @@ std::string_view type_text(const KeySpec& k) {
 }
 
 std::string allowed_text(const KeySpec& k) {
-  std::string out = k.range.describe(k.dimension == D::kAngle ? D::kAngle : D::kNone);
+  const D shown = k.dimension == D::kAngle ? D::kAngle : D::kNone;
+  std::string out = k.range.describe(shown);
   for (const std::string& c : k.choices) out += (out.empty() ? "`" : ", `") + c + "`";
   if (k.usual.given())
-    out += fmt::format("{}usually {}", out.empty() ? "" : "; ", k.usual.describe(D::kNone));
+    out += fmt::format("{}usually {}", out.empty() ? "" : "; ", k.usual.describe(shown));
   if (!k.refers_to.empty()) out = fmt::format("name of a {}", k.refers_to);
   return out;
 }

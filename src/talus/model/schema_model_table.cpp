@@ -86,12 +86,13 @@ std::vector<SectionSpec> model_sections() {
         {.name = "friction_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532, .max_open = false},
+         .usual = {.min = 0.017453292519943295},
          .default_text = "\"0 deg\"",
          .doc = "Friction angle (at most 89 deg)."},
         {.name = "cohesion",
          .dimension = D::kStress,
          .range = kNonNegative,
-         .usual = {.max = 1e9},
+         .usual = {.min = 100, .max = 1e9},
          .default_text = "\"0 Pa\"",
          .doc = "Cohesion of faces that touch at the start; lost for good, with the tensile strength, when "
                 "the face "
@@ -99,6 +100,7 @@ std::vector<SectionSpec> model_sections() {
         {.name = "tensile_strength",
          .dimension = D::kStress,
          .range = kNonNegative,
+         .usual = {.min = 100, .max = 1e9},
          .default_text = "\"0 Pa\"",
          .doc = "Tensile strength of faces that touch at the start."},
         {.name = "normal_stiffness",

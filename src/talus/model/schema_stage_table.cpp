@@ -60,6 +60,7 @@ SectionSpec stage_section() {
        {.name = "duration",
         .dimension = D::kTime,
         .range = kPositive,
+        .usual = {.max = 1e5},
         .required = true,
         .doc = "Length; for a static stage the limit after which the run stops with an error."},
        {.name = "time_step",

@@ -153,4 +153,15 @@ std::string joint_row(const Scene& scene, const JointPoint& p, const std::string
       p.normal_force, p.shear_force, p.slip, p.slip_signed, p.opening, p.rise, state_name(p.state));
 }
 
+std::string free_field_side(const Scene& scene, const JointSummary& joints) {
+  if (joints.slipped_joints == 0) return "";
+  const JointPoint& p = joints.most_residual;
+  for (const BoundaryPoint& side : scene.boundaries.points) {
+    const BoundaryInput& input = scene.model.boundaries[static_cast<size_t>(side.boundary)];
+    if (input.kind == BoundaryKind::kFreeField && (side.block == p.block_a || side.block == p.block_b))
+      return input.name;
+  }
+  return "";
+}
+
 }  // namespace talus

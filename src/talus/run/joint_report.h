@@ -61,4 +61,7 @@ struct JointSummary {
 std::string joint_header();
 std::string joint_row(const Scene& scene, const JointPoint& p, const std::string& stage, double time);
 
+/// Name of the free-field side at which the joint with the largest slip ends; "" when it ends at none.
+std::string free_field_side(const Scene& scene, const JointSummary& joints);
+
 }  // namespace talus

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "talus/base/rank.h"
+#include "talus/model/joint_law.h"
 #include "talus/run/resolution.h"
 
 namespace talus {
@@ -20,6 +21,9 @@ constexpr double kCannotBend = 8;
 // Share of a block's size over which points that hold it must reach; share of its thickness by which the
 // weight above may close its joints.
 constexpr double kLeastHeld = 0.05, kMostClosing = 0.05;
+// A history that stands beyond its end at more than this share of its peak drives on; one that lasts so many
+// times as long as all stages hardly begins; shaking of so many times gravity is no earthquake.
+constexpr double kDrivesOn = 0.05, kHardlyBegins = 10, kMostShaking = 10;
 // A step that is a larger share of the shortest period of a motion does not follow it.
 constexpr double kStepsPerPeriod = 10;
 
@@ -31,16 +35,23 @@ class Plausible {
   void check() {
     check_gravity();
     check_what_holds();
+    check_glue();
     check_friction();
     check_bending();
     check_steps();
     check_static_only();
+    check_histories();
+    check_outputs();
     check_held();
     check_closing();
   }
 
  private:
   void check_gravity() {
+    if (model_.gravity.y == 0 && model_.gravity.x != 0)
+      findings_.warning(model_.where_gravity, "model.gravity",
+                        fmt::format("{:.3g} m/s2 along x alone: things fall sideways", model_.gravity.x),
+                        "[0, -9.81] is downwards");
     if (norm(model_.gravity) > 0 || is_driven()) return;
     findings_.warning(model_.where_gravity, "model.gravity",
                       "is none, and nothing else drives the model: nothing will happen",
@@ -60,16 +71,89 @@ class Plausible {
     return false;
   }
 
+  // Whether anything holds the model along y, or moves it there, in a stage.
+  bool is_held_in(int stage) const {
+    for (const BlockShape& b : scene_.layout.blocks)
+      if (b.kind == BlockKind::kFixed || b.kind == BlockKind::kDriven) return true;
+    for (const SupportInput& s : model_.supports)
+      if (s.acts_in(stage) && s.y.kind != Motion::kFree) return true;
+    const bool is_static = model_.stages[static_cast<size_t>(stage)].kind == StageKind::kStatic;
+    for (const BoundaryInput& b : model_.boundaries)
+      if (b.acts_in(stage) && (!is_static || b.hold != StaticHold::kFree || b.kind == BoundaryKind::kTied))
+        return true;
+    return false;
+  }
+
   void check_what_holds() {
-    if (norm(model_.gravity) == 0) return;
-    const auto held = [](const BlockShape& b) {
-      return b.kind == BlockKind::kFixed || b.kind == BlockKind::kDriven;
-    };
-    if (!model_.supports.empty() || !model_.boundaries.empty() ||
-        std::any_of(scene_.layout.blocks.begin(), scene_.layout.blocks.end(), held))
+    if (model_.gravity.y == 0) return;
+    for (size_t i = 0; i < model_.stages.size(); ++i) {
+      if (is_held_in(static_cast<int>(i))) continue;
+      const bool nothing = model_.supports.empty() && model_.boundaries.empty();
+      findings_.warning(nothing ? model_.where_gravity : model_.stages[i].where,
+                        nothing ? "support" : "stage." + model_.stages[i].name,
+                        nothing ? "nothing holds the model: all of it falls"
+                                : "nothing holds the model along y in this stage: all of it falls",
+                        "give a [[support]] with y, a [[boundary]] or a block of kind = \"fixed\"");
       return;
-    findings_.warning(model_.where_gravity, "support", "nothing holds the model: all of it falls",
-                      "give a [[support]], a [[boundary]] or a block of kind = \"fixed\"");
+    }
+  }
+
+  bool glues(int joint) const {
+    return joint >= 0 && JointLaw(model_.joints[static_cast<size_t>(joint)]).holds();
+  }
+
+  // Pairs that a joint with strength shall hold together, and which share no face.
+  void check_glue() {
+    const Layout& layout = scene_.layout;
+    const auto group = [&layout](int block) { return layout.blocks[static_cast<size_t>(block)].group; };
+    std::set<std::pair<int, int>> joined;  // groups
+    bool default_used = false;
+    for (const BondFace& face : scene_.bonds.faces) {
+      joined.insert(std::minmax(group(face.block_a), group(face.block_b)));
+      default_used = default_used || face.joint == layout.default_joint;
+    }
+    for (const ContactPairInput& p : model_.contact_pairs) {
+      if (!glues(p.joint)) continue;
+      bool found = false;
+      for (const int a : layout.groups_called(p.name_a))
+        for (const int b : layout.groups_called(p.name_b))
+          found = found || joined.count(std::minmax(a, b)) > 0;
+      if (found) continue;
+      findings_.warning(
+          p.where, "contact_pair",
+          fmt::format("joint \"{}\" shall hold \"{}\" and \"{}\" together, which share no face{}",
+                      model_.joints[static_cast<size_t>(p.joint)].name, p.name_a, p.name_b,
+                      gap_text(p.name_a, p.name_b)),
+          "draw their corners at the same place, or take a joint without strength");
+    }
+    if (!glues(layout.default_joint) || default_used || layout.blocks.size() < 2 ||
+        !layout.pair_joint.empty())
+      return;
+    if (layout.blocks.back().group >= layout.first_mesh_group) return;  // edges have joints of their own
+    findings_.warning({1, 1, ""}, "contact.joint",
+                      fmt::format("\"{}\" shall hold blocks together, and no two of them share a face",
+                                  model_.joints[static_cast<size_t>(layout.default_joint)].name),
+                      "draw blocks that touch with their corners at the same place");
+  }
+
+  // How far the blocks of two names are apart.
+  std::string gap_text(const std::string& a, const std::string& b) const {
+    constexpr size_t kMost = 300;  // blocks: every edge is held against every corner
+    const std::vector<int> of_a = scene_.layout.blocks_called(a), of_b = scene_.layout.blocks_called(b);
+    if (of_a.size() * of_b.size() > kMost * kMost) return "";
+    double gap = std::numeric_limits<double>::infinity();
+    const auto look = [&](const Polygon& corners, const Polygon& edges) {
+      for (const Vec2 p : corners)
+        for (size_t k = 0; k < edges.size(); ++k)
+          gap = std::min(gap, distance_to_segment(p, edges[k], edges[(k + 1) % edges.size()]));
+    };
+    for (const int i : of_a)
+      for (const int j : of_b) {
+        const Polygon& one = scene_.layout.blocks[static_cast<size_t>(i)].polygon;
+        const Polygon& other = scene_.layout.blocks[static_cast<size_t>(j)].polygon;
+        look(one, other), look(other, one);
+      }
+    return std::isfinite(gap) && gap > 0 ? fmt::format(": they lie {:.3g} m apart", gap) : "";
   }
 
   void check_friction() {
@@ -164,6 +248,100 @@ class Plausible {
     for (const BlockInput& b : model_.blocks)
       tell_static_only(b.where, "block." + b.name, {},
                        {b.motion_x.history, b.motion_y.history, b.motion_rotation.history});
+  }
+
+  double dynamic_time() const {
+    double sum = 0;
+    for (const StageInput& s : model_.stages)
+      if (s.kind == StageKind::kDynamic) sum += s.duration;
+    return sum;
+  }
+
+  // Histories that swing and are used as if they ended, or began, elsewhere.
+  void check_histories() {
+    const double time = dynamic_time();
+    if (!(time > 0)) return;
+    std::set<int> velocities, accelerations;
+    const auto add_motion = [&](const Motion& m) {
+      if (m.kind == Motion::kVelocity) velocities.insert(m.history);
+    };
+    for (const SupportInput& s : model_.supports) add_motion(s.x), add_motion(s.y);
+    for (const BlockInput& b : model_.blocks) add_motion(b.motion_x), add_motion(b.motion_y);
+    // those of boundaries are looked at where they are read
+    std::map<int, double> factor;
+    for (const LoadInput& l : model_.loads) {
+      if (l.kind != LoadKind::kAcceleration) continue;
+      accelerations.insert({l.x.history, l.y.history});
+      for (const Signal& s : {l.x, l.y}) factor[s.history] = std::max(factor[s.history], std::abs(s.factor));
+    }
+    for (size_t i = 0; i < model_.histories.size(); ++i) {
+      const History& h = model_.histories[i];
+      const bool is_velocity = velocities.count(static_cast<int>(i)) > 0,
+                 is_acceleration = accelerations.count(static_cast<int>(i)) > 0;
+      if ((is_velocity || is_acceleration) && swings(h))
+        check_motion(h, time, is_acceleration ? factor[static_cast<int>(i)] : 0);
+    }
+  }
+
+  // Whether it goes to and fro, as shaking does.
+  static bool swings(const History& h) {
+    int turns = 0;
+    double sign = 0;
+    for (const double v : h.value) {
+      if (v * sign < 0) ++turns;
+      if (v != 0) sign = v;
+    }
+    return turns >= 3;
+  }
+
+  void check_motion(const History& h, double time, double factor) {
+    double peak = 0;
+    for (const double v : h.value) peak = std::max(peak, std::abs(v));
+    const std::string path = "history." + h.name;
+    if (h.time.back() < time && std::abs(h.value.back()) > kDrivesOn * peak)
+      findings_.warning(
+          h.where, path,
+          fmt::format("ends at {:.4g} s with {:.3g}, {:.0f} % of its peak, and is held there to the end "
+                      "of the stages at {:.4g} s",
+                      h.time.back(), h.value.back(), 100 * std::abs(h.value.back()) / peak, time),
+          "let it end at 0, or end the stage with it");
+    if (factor == 0 && std::abs(h.value.front()) > kDrivesOn * peak)
+      findings_.warning(h.where, path,
+                        fmt::format("begins with {:.3g}, {:.0f} % of its peak: a blow at t = 0",
+                                    h.value.front(), 100 * std::abs(h.value.front()) / peak),
+                        "let it begin at 0");
+    if (h.time.back() > kHardlyBegins * time)
+      findings_.warning(
+          h.where, path,
+          fmt::format("lasts {:.4g} s, and the dynamic stages {:.4g} s: only its beginning acts",
+                      h.time.back(), time),
+          "is its time in ms? Else make the stage longer");
+    const double gravity = norm(model_.gravity), shaking = factor * peak;
+    if (gravity > 0 && shaking > kMostShaking * gravity)
+      findings_.warning(
+          h.where, path,
+          fmt::format("shakes with {:.4g} m/s2, {:.0f} times gravity", shaking, shaking / gravity),
+          "is the record in cm/s2 (gal)? Then give scale = 0.01");
+  }
+
+  void check_outputs() {
+    double longest = 0;
+    bool all_dynamic = true;
+    for (const StageInput& s : model_.stages) {
+      longest = std::max(longest, s.duration);
+      all_dynamic = all_dynamic && s.kind == StageKind::kDynamic;
+    }
+    if (!all_dynamic) return;
+    const OutputInput& o = model_.output;
+    const auto check = [&](const Where& where, const char* path, double interval) {
+      if (interval > longest)
+        findings_.warning(
+            where, path,
+            fmt::format("{:.4g} s is longer than any stage: nothing is written between its ends", interval),
+            "make it shorter");
+    };
+    check(o.where_history, "output.history_interval", o.history_interval);
+    check(o.where_field, "output.field_interval", o.field_interval);
   }
 
   // Points that alone hold a block, nearer to each other than a share of its size: it turns about them all

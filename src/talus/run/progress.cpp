@@ -122,6 +122,12 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
     out += fmt::format("  slipped         {} joint{}, by {:.3g} m at most: {}; all in slips.csv\n",
                        joints.slipped_joints, joints.slipped_joints == 1 ? "" : "s",
                        joints.most_residual.residual_slip(), place_text(scene, joints.most_residual));
+  if (const std::string side = free_field_side(scene, joints); !side.empty())
+    out += fmt::format(
+        "  WARNING         the largest slip ends at the free-field side \"{}\": the ground beyond, which "
+        "does not "
+        "slip, holds it; move the side away\n",
+        side);
   out += fmt::format(
       "  results         {0}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "
       "(ParaView)\n"

@@ -421,6 +421,8 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
   if (audit)
     for (const std::string& line : audit->lines(b.name)) warnings.push_back("audit: " + line);
   j["valid"] = audit ? ordered_json(audit->valid()) : ordered_json();
+  if (const std::string side = free_field_side(scene, joints); !side.empty())
+    warnings.push_back("the largest slip ends at the free-field side " + side);
   j["warnings"] = warnings;
   j["audit"] = audit_numbers(scene, audit);
 

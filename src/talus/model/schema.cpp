@@ -59,8 +59,7 @@ std::string allowed_text(const KeySpec& k) {
   const D shown = k.dimension == D::kAngle ? D::kAngle : D::kNone;
   std::string out = k.range.describe(shown);
   for (const std::string& c : k.choices) out += (out.empty() ? "`" : ", `") + c + "`";
-  if (k.usual.given())
-    out += fmt::format("{}usually {}", out.empty() ? "" : "; ", k.usual.describe(shown));
+  if (k.usual.given()) out += fmt::format("{}usually {}", out.empty() ? "" : "; ", k.usual.describe(shown));
   if (!k.refers_to.empty()) out = fmt::format("name of a {}", k.refers_to);
   return out;
 }

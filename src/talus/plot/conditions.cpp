@@ -291,6 +291,7 @@ void draw_arrow(cairo_t* cr, const Mark& m, Color color, bool both) {
   const Vec2 tip = both ? m.at + (0.5 * m.length) * m.direction : m.at;
   // a white rim keeps it apart from joints
   set_pen(cr, {kWhite, 4, {}});
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
   line(cr, from, tip);
   set_pen(cr, {color, 1.6, {}});
   line(cr, both ? from + kArrowHead * m.direction : from, tip - kArrowHead * m.direction);

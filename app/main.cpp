@@ -67,21 +67,23 @@ talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings
 // Of taking all steps, by stages; writing and cutting are not in it.
 void print_time(const talus::PreparedRun& run) {
   constexpr double kTrial = 0.6;  // [s]
-  const std::vector<double> cost = talus::time_steps(run, kTrial, talus::threads_for(run.scene.blocks.count));
+  const std::vector<talus::StepCost> cost =
+      talus::time_steps(run, kTrial, talus::threads_for(run.scene.blocks.count));
   double sum = 0;
-  bool at_most = false;
+  bool at_most = false, at_least = false;
   std::string stages;
   for (size_t i = 0; i < run.plans.size(); ++i) {
     const bool is_static = run.scene.model.stages[i].kind == talus::StageKind::kStatic;
-    const double seconds = cost[i] * static_cast<double>(run.plans[i].steps);
-    sum += seconds, at_most = at_most || is_static;
+    const double seconds = cost[i].seconds * static_cast<double>(run.plans[i].steps);
+    sum += seconds, at_most = at_most || is_static, at_least = at_least || cost[i].at_least;
     stages += fmt::format("{}\"{}\" {}{} ({} a step)", i > 0 ? ", " : "", run.scene.model.stages[i].name,
                           is_static ? "at most " : "", talus::readable_seconds(seconds),
-                          talus::readable_seconds(cost[i]));
+                          talus::readable_seconds(cost[i].seconds));
   }
   if (sum > 0)
-    fmt::print("  time       {}{} on this machine, by first steps: {}\n",
-               at_most ? "at most about " : "about ", talus::readable_seconds(sum), stages);
+    fmt::print("  time       {}{} on this machine, by first steps: {}{}\n",
+               at_most ? "at most about " : "about ", talus::readable_seconds(sum), stages,
+               at_least ? "; longer, as the solver wanted more sweeps than a trial has" : "");
 }
 
 int check(const ModelArguments& args, const std::string& folder, bool force) {

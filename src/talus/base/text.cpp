@@ -64,7 +64,8 @@ std::string readable_seconds(double seconds) {
   if (seconds < 119.5) return fmt::format("{:.3g} s", seconds);
   const int64_t s = static_cast<int64_t>(seconds + 0.5);
   if (s < 7200) return fmt::format("{} min {:02} s", s / 60, s % 60);
-  return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+  if (s < 72 * 3600) return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+  return fmt::format("{} days", s / 86400);
 }
 
 std::string text_hash(std::string_view text) {

@@ -7,10 +7,15 @@
 
 namespace talus {
 
-/// Mean wall time of a step of each stage [s], from steps of it taken on a copy for about `seconds` in all
-/// (two steps of each at least). Stages are tried from the start of the run, not from the end of the stage
-/// before: contacts are about as many, and a stage that shakes is as cheap as it will be. A stage that ends
-/// at once has the mean of the others; 0 when none could be measured.
-std::vector<double> time_steps(const PreparedRun& run, double seconds, int threads);
+struct StepCost {
+  double seconds = 0;     // mean wall time of a step
+  bool at_least = false;  // steps that the solver did not get through in the sweeps of a trial
+};
+
+/// Cost of a step of each stage, from steps of it taken on a copy for about `seconds` in all (two steps of
+/// each at least, of a limited number of sweeps). A stage begins where the trial of the
+/// one before ended: contacts are about as many as at its end. A stage that ends at once has the mean of the
+/// others; 0 when none could be measured.
+std::vector<StepCost> time_steps(const PreparedRun& run, double seconds, int threads);
 
 }  // namespace talus

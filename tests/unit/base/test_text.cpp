@@ -47,7 +47,7 @@ TEST_CASE("readable_bytes takes the unit in which the number stays below a thous
   CHECK(readable_bytes(3e12) == "3 TB");
 }
 
-TEST_CASE("readable_seconds changes its form at a second, two minutes and two hours") {
+TEST_CASE("readable_seconds changes its form at a second, two minutes, two hours and three days") {
   CHECK(readable_seconds(0) == "0 ms");
   CHECK(readable_seconds(0.85) == "850 ms");
   CHECK(readable_seconds(0.9994) == "999 ms");
@@ -60,7 +60,8 @@ TEST_CASE("readable_seconds changes its form at a second, two minutes and two ho
   CHECK(readable_seconds(7199) == "119 min 59 s");
   CHECK(readable_seconds(7199.6) == "2 h 00 min");
   CHECK(readable_seconds(7380) == "2 h 03 min");
-  CHECK(readable_seconds(360000) == "100 h 00 min");
+  CHECK(readable_seconds(180000) == "50 h 00 min");
+  CHECK(readable_seconds(360000) == "4 days");
 }
 
 TEST_CASE("text_hash is FNV-1a with 64 bits") {

@@ -94,20 +94,19 @@ class Places {
   Places(const Layout& layout, const View& view) : layout_(layout), view_(view) {}
 
   std::vector<Place> of(const Selection& selection) const {
-    std::vector<Place> places;
+    Spaced spaced;
     if (selection.is_edge || !selection.along.empty())
       for (const SelectedEdge& e : selected_edges(layout_, selection)) {
         const Vec2 a = view_.to_sheet(e.from), b = view_.to_sheet(e.to);
         const int parts = std::max(1, static_cast<int>(norm(b - a) / kApart));
-        for (int k = 0; k < parts; ++k)
-          add(places, {a + ((k + 0.5) / parts) * (b - a), on_sheet(e.normal())});
+        for (int k = 0; k < parts; ++k) spaced.add({a + ((k + 0.5) / parts) * (b - a), on_sheet(e.normal())});
       }
-    if (!places.empty()) return places;
+    if (!spaced.places.empty()) return spaced.places;
     for (const SelectedCorner& c : selected_corners(layout_, selection)) {
       const Vec2 middle = polygon_moments(layout_.blocks[at(c.block)].polygon).centroid;
-      add(places, {view_.to_sheet(c.point), on_sheet(unit(c.point - middle))});
+      spaced.add({view_.to_sheet(c.point), on_sheet(unit(c.point - middle))});
     }
-    return places;
+    return spaced.places;
   }
 
   // The edges themselves.
@@ -119,12 +118,24 @@ class Places {
   }
 
  private:
-  static void add(std::vector<Place>& places, const Place& p) {
-    constexpr double kLeast = 0.7 * kApart;
-    for (const Place& o : places)
-      if (norm(o.at - p.at) < kLeast) return;
-    places.push_back(p);
-  }
+  // Places apart from each other, sought in squares as wide as that: an edge may be that of a million blocks.
+  struct Spaced {
+    static constexpr double kLeast = 0.7 * kApart;
+    std::vector<Place> places;
+    std::map<std::pair<int, int>, std::vector<Vec2>> squares;
+
+    void add(const Place& p) {
+      const int i = static_cast<int>(std::floor(p.at.x / kLeast)),
+                j = static_cast<int>(std::floor(p.at.y / kLeast));
+      for (int di = -1; di <= 1; ++di)
+        for (int dj = -1; dj <= 1; ++dj)
+          if (const auto square = squares.find({i + di, j + dj}); square != squares.end())
+            for (const Vec2 o : square->second)
+              if (norm(o - p.at) < kLeast) return;
+      squares[{i, j}].push_back(p.at);
+      places.push_back(p);
+    }
+  };
 
   const Layout& layout_;
   const View& view_;

@@ -79,7 +79,7 @@ class Plausible {
       if (s.acts_in(stage) && s.y.kind != Motion::kFree) return true;
     const bool is_static = model_.stages[static_cast<size_t>(stage)].kind == StageKind::kStatic;
     for (const BoundaryInput& b : model_.boundaries)
-      if (b.acts_in(stage) && (!is_static || b.hold != StaticHold::kFree || b.kind == BoundaryKind::kTied))
+      if (b.acts_in(stage) && b.kind != BoundaryKind::kTied && (!is_static || b.hold != StaticHold::kFree))
         return true;
     return false;
   }

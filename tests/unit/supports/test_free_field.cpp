@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "support/run_case.h"
+#include "talus/run/joint_report.h"
 #include "talus/supports/boundaries.h"
 
 using namespace talus;
@@ -185,6 +186,22 @@ TEST_CASE("a column that limits the time step is named, and a step above its lim
   CHECK_THROWS_WITH_AS(prepare_run("case.toml", fast, {"stage.go.time_step=0.7 ms"}, findings),
                        doctest::Contains("is above the stable limit 0.0005556 s of the free field of left"),
                        InputError);
+}
+
+TEST_CASE("the side at which the joint with the largest slip ends is named") {
+  const Scene scene = scene_of(kGround + grid("g", 0, 6, 3, "soil") + kFixed);
+  std::vector<char> at_side(static_cast<size_t>(scene.blocks.count), 0);
+  for (const BoundaryPoint& p : scene.boundaries.points) at_side[static_cast<size_t>(p.block)] = 1;
+  const auto first = [&at_side](char value) {
+    return static_cast<int>(std::find(at_side.begin(), at_side.end(), value) - at_side.begin());
+  };
+  JointSummary joints;
+  joints.most_residual.block_a = first(0), joints.most_residual.block_b = first(1);
+  CHECK(free_field_side(scene, joints) == "");  // nothing has slipped
+  joints.slipped_joints = 1;
+  CHECK(free_field_side(scene, joints) == "left");
+  joints.most_residual.block_b = joints.most_residual.block_a;
+  CHECK(free_field_side(scene, joints) == "");
 }
 
 TEST_CASE("a static stage after a dynamic one puts the free field to rest and keeps the places") {

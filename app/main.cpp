@@ -12,23 +12,22 @@
 #include <optional>
 
 #include "audit_command.h"
+#include "check_command.h"
 #include "command_pages.h"
 #include "cut_command.h"
 #include "import_command.h"
 #include "new_command.h"
 #include "plot_command.h"
+#include "prepare_model.h"
 #include "record_command.h"
 #include "report_command.h"
 #include "safety_command.h"
 #include "talus/base/text.h"
-#include "talus/base/text_file.h"
 #include "talus/model/schema.h"
-#include "talus/plot/cut_picture.h"
 #include "talus/run/base_report.h"
 #include "talus/run/problem_file.h"
 #include "talus/run/progress.h"
 #include "talus/run/resolution.h"
-#include "talus/run/trial.h"
 #include "talus/talus.h"
 #include "verify_command.h"
 
@@ -37,11 +36,7 @@ namespace {
 volatile std::sig_atomic_t stop_requested = 0;
 extern "C" void request_stop(int) { stop_requested = 1; }
 
-struct ModelArguments {
-  std::string file;
-  std::vector<std::string> overrides;
-  bool strict = false;
-};
+using talus::app::ModelArguments;
 
 void add_model_arguments(CLI::App& verb, ModelArguments& args) {
   verb.add_option("MODEL", args.file, "model file (TOML)")->required();
@@ -56,93 +51,6 @@ void add_strict(CLI::App& verb, ModelArguments& args) {
   verb.add_flag("--strict", args.strict, "take warnings of the model for errors");
 }
 
-talus::PreparedRun prepare(const ModelArguments& args, talus::Findings& findings, const std::string& text,
-                           talus::Cut* cut = nullptr) {
-  talus::PreparedRun run = talus::prepare_run(args.file, text, args.overrides, findings, cut);
-  if (args.strict) findings.throw_if_any();
-  if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
-  return run;
-}
-
-// Of taking all steps, by stages; writing and cutting are not in it.
-void print_time(const talus::PreparedRun& run) {
-  constexpr double kTrial = 0.6;  // [s]
-  const std::vector<talus::StepCost> cost =
-      talus::time_steps(run, kTrial, talus::threads_for(run.scene.blocks.count));
-  double sum = 0;
-  bool at_most = false, at_least = false;
-  std::string stages;
-  for (size_t i = 0; i < run.plans.size(); ++i) {
-    const bool is_static = run.scene.model.stages[i].kind == talus::StageKind::kStatic;
-    const double seconds = cost[i].seconds * static_cast<double>(run.plans[i].steps);
-    sum += seconds, at_most = at_most || is_static, at_least = at_least || cost[i].at_least;
-    stages += fmt::format("{}\"{}\" {}{} ({} a step)", i > 0 ? ", " : "", run.scene.model.stages[i].name,
-                          is_static ? "at most " : "", talus::readable_seconds(seconds),
-                          talus::readable_seconds(cost[i].seconds));
-  }
-  if (sum > 0)
-    fmt::print("  time       {}{} on this machine, by first steps: {}{}\n",
-               at_most ? "at most about " : "about ", talus::readable_seconds(sum), stages,
-               at_least ? "; longer, as the solver wanted more sweeps than a trial has" : "");
-}
-
-int check(const ModelArguments& args, const std::string& folder, bool force) {
-  if (!folder.empty()) talus::check_result_folder(folder, force);
-  const std::string text = talus::read_text_file(args.file);
-  talus::Findings findings(args.file, text);
-  talus::Cut cut;
-  const talus::PreparedRun run = prepare(args, findings, text, &cut);
-  const talus::Prediction p = talus::predict(run.scene, run.plans);
-  fmt::print("{}: no errors, {} warning{}\n", args.file, findings.warning_count(),
-             findings.warning_count() == 1 ? "" : "s");
-  fmt::print("  blocks     {}; {} glued faces, {} contact points at the start, {} supported points{}\n",
-             p.blocks, p.bond_faces, p.contacts, p.supported,
-             p.boundary > 0 ? fmt::format(", {} points at boundaries", p.boundary) : "");
-  fmt::print("{}{}", talus::base_report(run.scene), talus::resolution_report(run.scene));
-  for (size_t i = 0; i < run.plans.size(); ++i) {
-    const talus::StagePlan& plan = run.plans[i];
-    const talus::StageInput& stage = run.scene.model.stages[i];
-    const std::string bound =
-        talus::bound_name(run.scene, plan).empty()
-            ? (stage.implicit ? "no stable limit: elasticity is implicit" : "no block deforms")
-            : fmt::format("stable limit {:.4g} s, set by {}", plan.dt_bound,
-                          talus::bound_name(run.scene, plan)) +
-                  (plan.dt_bound < plan.dt_undamped
-                       ? fmt::format("; {:.4g} s without damping_stiffness", plan.dt_undamped)
-                       : "");
-    fmt::print("  stage      \"{}\": {}{} steps of {:.4g} s ({})\n", stage.name,
-               stage.kind == talus::StageKind::kStatic ? "at most " : "", plan.steps, plan.dt, bound);
-    if (plan.clamped > 0)
-      fmt::print("             moment clamp: {} blocks, up to {:.3g} times\n", plan.clamped,
-                 plan.largest_clamp);
-  }
-  const talus::SliverTable& slivers = cut.slivers;
-  if (slivers.needles + slivers.merged + slivers.deleted + slivers.kept > 0)
-    fmt::print(
-        "  slivers    {} needles without a joint of their own merged; {} merged, {} deleted, {} kept\n",
-        slivers.needles, slivers.merged, slivers.deleted, slivers.kept);
-  fmt::print("{}", talus::sliver_offer_text(talus::sliver_offers(run, cut)));
-  fmt::print("  memory     about {}\n", talus::readable_bytes(p.memory));
-  print_time(run);
-  const bool at_most = std::any_of(run.scene.model.stages.begin(), run.scene.model.stages.end(),
-                                   [](const auto& s) { return s.kind == talus::StageKind::kStatic; });
-  const int joint = run.scene.model.default_joint;
-  fmt::print("  contact    {}\n", joint < 0
-                                      ? "pairs without a joint of their own are frictionless"
-                                      : fmt::format("joint \"{}\" between pairs without their own",
-                                                    run.scene.model.joints[static_cast<size_t>(joint)].name));
-  fmt::print("  output     {}{}: {} rows of histories, {} rows of steps, {} frames\n",
-             at_most ? "at most " : "about ", talus::readable_bytes(p.output), p.history_rows, p.step_rows,
-             p.frames);
-  if (!folder.empty()) {
-    talus::open_result_folder(folder, force, talus::ResultKind::kCut);
-    const auto stem = std::filesystem::path(folder) / "cut";
-    talus::plot::write_cut_picture(run.scene.model, cut, run.scene.layout, stem);
-    fmt::print("  picture    {0}.png, {0}.svg: blocks, joints and what acts on them\n", stem.string());
-  }
-  return talus::kExitOk;
-}
-
 struct RunArguments {
   std::string folder, from;
   bool force = false, quiet = false, profile = false;
@@ -153,9 +61,7 @@ struct RunArguments {
 int run(const ModelArguments& args, const RunArguments& how) {
   const auto& [output, from, force, quiet, profile, dump_step, threads] = how;
   if (from.empty()) talus::check_result_folder(output, force);
-  const std::string text = talus::read_text_file(args.file);
-  talus::Findings findings(args.file, text);
-  talus::PreparedRun prepared = prepare(args, findings, text);
+  auto [findings, prepared] = talus::app::prepare_model(args);
   talus::SavedRun saved;
   const std::string folder = from.empty() ? output : talus::folder_of_saved(from, output);
   if (!from.empty())
@@ -357,12 +263,11 @@ int run_command(int argc, char** argv) {
     return talus::kExitUsage;
   }
   if (*run_verb) return run(model, how);
-  if (*check_verb) return check(model, folder, force);
+  if (*check_verb) return talus::app::check_command(model, folder, force);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
-  if (*safety_verb)
-    return talus::app::safety_command(model.file, model.overrides, folder, force, how.threads, model.strict);
+  if (*safety_verb) return talus::app::safety_command(model, folder, force, how.threads);
   if (*replay_verb) return replay(problem, method, tolerance);
   if (*record_verb) return talus::app::record_command(record);
   if (*report_verb) return talus::app::report_command(report);

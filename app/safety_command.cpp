@@ -5,19 +5,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "talus/base/text_file.h"
 #include "talus/talus.h"
 
 namespace talus::app {
 
-int safety_command(const std::string& file, const std::vector<std::string>& overrides,
-                   const std::string& folder, bool force, int threads, bool strict) {
+int safety_command(const ModelArguments& args, const std::string& folder, bool force, int threads) {
   check_result_folder(folder, force);
-  const std::string text = read_text_file(file);
-  Findings findings(file, text);
-  const PreparedRun prepared = prepare_run(file, text, overrides, findings);
-  if (strict) findings.throw_if_any();
-  if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
+  const PreparedRun prepared = prepare_model(args).run;
   open_result_folder(folder, force, ResultKind::kSafety);
   const std::filesystem::path out(folder);
   write_file(out / "model.toml", prepared.scene.model.text);

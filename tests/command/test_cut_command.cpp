@@ -117,6 +117,16 @@ Outcome check_changed(const std::function<void(nlohmann::json&)>& change) {
 
 }  // namespace
 
+TEST_CASE("command: check -o takes nothing of an earlier cut away but its picture") {
+  const Folder f;
+  REQUIRE(shell(f, fmt::format("$talus cut {} -o out", kSettle)).code == 0);
+  const auto old = fs::last_write_time(f / "out" / "cut.png");
+  CHECK(shell(f, fmt::format("$talus check {} -o out --force", kSettle)).code == 0);
+  for (const char* name : {"cut.json", "blocks.json", "blocks.csv", "report.txt"})
+    CHECK(fs::exists(f / "out" / name));
+  CHECK(fs::last_write_time(f / "out" / "cut.png") > old);
+}
+
 TEST_CASE("command: cut writes every file and runs nothing, with a stage or without") {
   const Folder f;
   for (const std::string& model : {kTunnel, kSettle}) {

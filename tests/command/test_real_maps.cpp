@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/command.h"
+#include "support/shortest_tree.h"
 #include "talus/geometry/polygon.h"
 
 using namespace talus;
@@ -95,17 +96,7 @@ Counted count(const std::string& blocks_file) {
             least = std::min(least, distance_to_segment(point[p], point[f->from], point[f->to]));
     return least;
   };
-  std::vector<double> to(ring.size(), 1e300);
-  std::vector<bool> in(ring.size(), false);
-  to[0] = 0;
-  for (size_t n = 0; n < ring.size(); ++n) {
-    size_t next = ring.size();
-    for (size_t i = 0; i < ring.size(); ++i)
-      if (!in[i] && (next == ring.size() || to[i] < to[next])) next = i;
-    in[next] = true, out.tree += to[next];
-    for (size_t i = 0; i < ring.size(); ++i)
-      if (!in[i]) to[i] = std::min(to[i], distance(next, i));
-  }
+  out.tree = shortest_tree(ring.size(), distance);
   return out;
 }
 

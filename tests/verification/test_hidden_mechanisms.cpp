@@ -245,6 +245,8 @@ TEST_CASE("a slope with one fault and four anchors: the factor with their yield 
                pull = 4 * kYield;
   const double exact = (weight * std::cos(dip) + pull * std::sin(at)) * std::tan(degrees(38)) /
                        (weight * std::sin(dip) - pull * std::cos(at));
+  // a trial lasts 3 s, in which anchors stretch a little before they yield: the factor found is 0.63 % below;
+  // with anchors ten times as stiff it is 1.7332, after 30 s 1.7388, and 1.7337 exactly
   check_close("one fault in a slope, four anchors: factor of safety", r.factor(), exact, 1e-2, 3e-3);
 }
 

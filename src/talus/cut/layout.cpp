@@ -125,7 +125,7 @@ void check_overlaps(const Layout& layout, Findings& findings) {
   std::set<std::pair<int, int>> told;  // groups; one place of a cut region is enough
   for (const auto& [i, j] : close_pairs(boxes, 0)) {
     const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
-    const bool cut_a = a.group >= layout.first_cut_group, cut_b = b.group >= layout.first_cut_group;
+    const bool cut_a = layout.was_cut(a), cut_b = layout.was_cut(b);
     const bool in_mesh = a.group >= layout.first_mesh_group && !cut_a;  // from outside: anything may be wrong
     if ((a.group == b.group && !in_mesh) || (cut_a && cut_b)) continue;  // these share their corners exactly
     const Overlap overlap = polygon_overlap(a.polygon, b.polygon);

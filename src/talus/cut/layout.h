@@ -41,6 +41,8 @@ struct Layout {
   int needles_merged = 0, slivers_merged = 0, slivers_deleted = 0, slivers_kept = 0;  // of the cut
   std::vector<char> glued;  // [joints] bonded: no law for blocks that meet at a corner; empty: none
 
+  /// Whether a block was cut out of a region, together with others.
+  bool was_cut(const BlockShape& block) const { return block.group >= first_cut_group; }
   /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and
   /// frictionless. A joint given for the pair goes first; then that of the edge, where two differ that of the
   /// lower block; then the default.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "talus/base/error.h"
@@ -141,7 +142,7 @@ class SectionMaker {
       return drawing.leave_out(f.layer, f.is_point ? "point" : "line", fmt::format("cannot become {}", use));
     if (f.is_hole && is_closed_use(m.use))
       return drawing.leave_out(f.layer, "hole in an area", "draw it as an area of its own");
-    if (f.is_area && !is_closed_use(m.use) && ++areas_[m.name] == 1)
+    if (f.is_area && !is_closed_use(m.use) && areas_.insert(m.name).second)
       findings_.warning(m.where, "map." + m.name + ".becomes",
                         fmt::format("\"{}\" takes areas, {} the first: their rims become lines", use, f.id),
                         "\"outline\", \"opening\" or \"stone\" takes them as what they enclose");
@@ -462,7 +463,7 @@ class SectionMaker {
   std::vector<Taken> taken_;
   std::map<size_t, Polyline> lines_;  // joints and faults after cleaning, by their place in taken_
   std::map<size_t, Polygon> rings_;   // outlines and openings
-  std::map<std::string, int> areas_;  // taken as lines, of each map
+  std::set<std::string> areas_;       // maps whose areas are taken as lines
   int decimals_ = 6;
   double round_ = 1e-6;  // [m]
   MapSections out_;

@@ -451,7 +451,7 @@ class ModelReader : private SectionReader {
     model_.output.field_interval = f.get("field_interval", 0.0);
     model_.output.save_interval = f.get("save_interval", model_.output.save_interval);
     model_.output.audit = f.get("audit", true);
-    model_.output.where_history = f.where("history_interval"),
+    model_.output.where_history = f.where("history_interval");
     model_.output.where_field = f.where("field_interval");
     model_.output.audit_interval = f.get("audit_interval", 0.0);
   }
@@ -479,13 +479,16 @@ class ModelReader : private SectionReader {
   }
 
   void check_gravity() {
-    const double size = norm(model_.gravity);
-    if (model_.gravity.y <= 0 && size <= kMostGravity) return;
-    findings_.warning(model_.where_gravity, "model.gravity",
-                      model_.gravity.y > 0
-                          ? fmt::format("{:g} m/s2 along y: things fall upwards", model_.gravity.y)
-                          : fmt::format("{:.3g} m/s2 is more than a centrifuge has", size),
-                      "downwards is [0, -9.81]");
+    const Vec2 g = model_.gravity;
+    std::string unusual;
+    if (g.y > 0)
+      unusual = fmt::format("{:g} m/s2 along y: things fall upwards", g.y);
+    else if (g.y == 0 && g.x != 0)
+      unusual = fmt::format("{:.3g} m/s2 along x alone: things fall sideways", g.x);
+    else if (norm(g) > kMostGravity)
+      unusual = fmt::format("{:.3g} m/s2 is more than a centrifuge has", norm(g));
+    if (!unusual.empty())
+      findings_.warning(model_.where_gravity, "model.gravity", unusual, "downwards is [0, -9.81]");
   }
 
   Model& model_;

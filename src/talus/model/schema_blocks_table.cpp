@@ -94,7 +94,7 @@ std::vector<SectionSpec> block_sections() {
         {.name = "kind",
          .type = K::kChoice,
          .default_text = "\"deformable\"",
-         .choices = {"deformable", "rigid", "fixed"},
+         .choices = undriven_kinds(),
          .doc = "Kind of all its blocks."}}},
 
       {"grid",
@@ -140,7 +140,7 @@ std::vector<SectionSpec> block_sections() {
         {.name = "kind",
          .type = K::kChoice,
          .default_text = "\"deformable\"",
-         .choices = {"deformable", "rigid", "fixed"},
+         .choices = undriven_kinds(),
          .doc = "Kind of all its blocks."},
         rotate_key(),
         rotate_about_key(),

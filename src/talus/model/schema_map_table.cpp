@@ -60,7 +60,7 @@ std::vector<SectionSpec> map_sections() {
         {.name = "kind",
          .type = K::kChoice,
          .default_text = "\"deformable\"",
-         .choices = {"deformable", "rigid", "fixed"},
+         .choices = undriven_kinds(),
          .doc = "Key `kind` of outlines and stones."},
         {.name = "type", .type = K::kName, .refers_to = "bolt_type", .doc = "Type of bolts."},
         {.name = "rock",
@@ -87,7 +87,7 @@ std::vector<SectionSpec> map_sections() {
          .doc = "Shorter lines are left out, and points of a line that lie nearer to the one before."},
         {.name = "curve_step",
          .dimension = D::kAngle,
-         .range = {.min = 0.017453292519943295, .max = 1.5707963267948966},
+         .range = {.min = kDegree, .max = 1.5707963267948966},
          .default_text = "\"10 deg\"",
          .doc =
              "Angle between two points of an arc, circle, ellipse or bulge, 1 to 90 deg; a spline has eight "

@@ -86,7 +86,7 @@ std::vector<SectionSpec> model_sections() {
         {.name = "friction_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532, .max_open = false},
-         .usual = {.min = 0.017453292519943295},
+         .usual = {.min = kDegree},
          .default_text = "\"0 deg\"",
          .doc = "Friction angle (at most 89 deg)."},
         {.name = "cohesion",

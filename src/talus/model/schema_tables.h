@@ -1,6 +1,8 @@
 #pragma once
 // The table of the model file (schema.h) in its parts, one file each.
 
+#include <numbers>
+
 #include "talus/model/schema.h"
 
 namespace talus {
@@ -57,6 +59,11 @@ inline KeySpec move_key() {
           .default_text = "[0, 0]",
           .doc = "Moved by this, after it has been turned."};
 }
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+
+/// What a block can be without a motion of its own.
+inline std::vector<std::string> undriven_kinds() { return {"deformable", "rigid", "fixed"}; }
 
 /// What a block can be, in the order of BlockKind.
 inline const std::vector<std::string>& block_kinds() {

@@ -24,6 +24,28 @@ namespace {
   throw FileError(fmt::format("{}: cannot be {}: {}{}", path.string(), doing, cause, hint));
 }
 
+// Files and folders that a result of this kind may consist of.
+std::vector<const char*> names_of(ResultKind kind) {
+  switch (kind) {
+    case ResultKind::kCut:
+      return {"cut.json",    "cut.svg",    "cut.png", "blocks.json", "blocks.csv",
+              "slivers.csv", "report.txt", "map.svg", "map.png"};
+    case ResultKind::kPicture:
+      return {"cut.svg", "cut.png"};
+    case ResultKind::kRecord:
+      return {"motion.csv",   "record.json",      "acceleration.svg", "acceleration.png", "velocity.svg",
+              "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg",     "spectrum.png"};
+    case ResultKind::kSafety:
+      return {"safety.json", "safety.csv", "model.toml"};
+    case ResultKind::kRun:
+      return {"summary.json",     "model.toml",     "histories.csv", "steps.csv",
+              "joints.csv",       "run.log",        "report.html",   "blocks.csv",
+              "blocks_start.svg", "blocks_end.svg", "bolts.csv",     "slips.csv",
+              "fields",           "plots",          "saved"};
+  }
+  return {};
+}
+
 }  // namespace
 
 void write_file(const fs::path& path, const std::string& content) {
@@ -72,26 +94,10 @@ void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
   check_result_folder(folder, force);
   std::error_code ec;
   if (fs::exists(folder, ec)) {
-    if (kind == ResultKind::kCut) {
-      for (const char* name : {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv",
-                               "report.txt", "map.svg", "map.png"})
-        fs::remove(folder / name, ec);
-    } else if (kind == ResultKind::kRecord) {
-      for (const char* name :
-           {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
-            "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"})
-        fs::remove(folder / name, ec);
-    } else if (kind == ResultKind::kSafety) {
-      for (const char* name : {"safety.json", "safety.csv", "model.toml"}) fs::remove(folder / name, ec);
-    } else {
-      for (const char* name :
-           {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "run.log",
-            "report.html", "blocks.csv", "blocks_start.svg", "blocks_end.svg", "bolts.csv", "slips.csv"})
-        fs::remove(folder / name, ec);
-      for (const char* name : {"fields", "plots", "saved"}) fs::remove_all(folder / name, ec);
+    for (const char* name : names_of(kind)) fs::remove_all(folder / name, ec);
+    if (kind == ResultKind::kRun)
       for (const auto& entry : fs::directory_iterator(folder, ec))
         if (entry.path().filename().string().rfind("step_", 0) == 0) fs::remove(entry.path(), ec);
-    }
   }
   fs::create_directories(folder, ec);
   if (ec) fail(folder, "created", ec.value());

@@ -22,8 +22,7 @@ constexpr double kBandGap = 3, kBandWidth = 3.2;     // [px] from the edge; of t
 constexpr std::size_t kMostNames = 5;                // of one entry in the legend
 
 constexpr Color kSupport{0.15, 0.15, 0.15}, kViscous{0.05, 0.45, 0.50}, kFreeField{0.35, 0.20, 0.65},
-    kTied{0.55, 0.40, 0.05}, kWave{0.05, 0.45, 0.50}, kLoad{0.72, 0.10, 0.35}, kMotion{0.60, 0.05, 0.60},
-    kSpan{0.25, 0.25, 0.25};
+    kTied{0.55, 0.40, 0.05}, kLoad{0.72, 0.10, 0.35}, kMotion{0.60, 0.05, 0.60}, kSpan{0.25, 0.25, 0.25};
 constexpr Color kBolts[] = {
     {0.05, 0.15, 0.60}, {0.00, 0.42, 0.15}, {0.55, 0.10, 0.10}, {0.40, 0.10, 0.55}};  // types
 
@@ -141,7 +140,7 @@ class Places {
   const View& view_;
 };
 
-bool moves(const Motion& m) { return m.kind == Motion::kVelocity || m.kind == Motion::kDisplacement; }
+bool moves(const Motion& m) { return m.history >= 0; }
 
 // Along the axis, away from the block.
 Vec2 along_axis(Vec2 axis, Vec2 outward) { return dot(axis, outward) < 0 ? -1.0 * axis : axis; }
@@ -181,7 +180,7 @@ void add_boundaries(const Model& model, const Places& places, Collection& all) {
     const char* along = b.history_y < 0   ? "waves along x come in"
                         : b.history_x < 0 ? "waves along y come in"
                                           : "waves along x and y come in";
-    Condition& wave = all.add(Symbol::kArrow, kWave, along, b.name, b.stages, {0, -1});
+    Condition& wave = all.add(Symbol::kArrow, kViscous, along, b.name, b.stages, {0, -1});
     for (const Place& p : places.of(b)) wave.marks.push_back({p.at, -1.0 * p.outward, kArrowLength});
   }
 }
@@ -255,13 +254,11 @@ void add_spans(const Model& model, const View& view, Collection& all) {
 
 // ------------------------------------------------------------------------------------------------ drawing
 
-void add_head(cairo_t* cr, Vec2 tip, Vec2 way) {
-  const Vec2 side = turn_right(way), back = tip - kArrowHead * way;
+// A triangle as wide as high, behind its tip.
+void add_triangle(cairo_t* cr, Vec2 tip, Vec2 back) {
+  const Vec2 half = 0.5 * turn_right(back), base = tip + back;
   cairo_move_to(cr, tip.x, tip.y);
-  for (const double s : {0.5, -0.5}) {
-    const Vec2 p = back + (s * kArrowHead) * side;
-    cairo_line_to(cr, p.x, p.y);
-  }
+  for (const Vec2 p : {base + half, base - half}) cairo_line_to(cr, p.x, p.y);
   cairo_close_path(cr);
 }
 
@@ -272,13 +269,7 @@ void line(cairo_t* cr, Vec2 a, Vec2 b) {
 }
 
 void draw_pin(cairo_t* cr, const Mark& m, Color color) {
-  const Vec2 side = turn_right(m.direction), base = m.at + kPinSize * m.direction;
-  cairo_move_to(cr, m.at.x, m.at.y);
-  for (const double s : {0.5, -0.5}) {
-    const Vec2 p = base + (s * kPinSize) * side;
-    cairo_line_to(cr, p.x, p.y);
-  }
-  cairo_close_path(cr);
+  add_triangle(cr, m.at, kPinSize * m.direction);
   set_color(cr, kWhite);
   cairo_fill_preserve(cr);
   set_pen(cr, {color, 1.1, {}});
@@ -306,8 +297,8 @@ void draw_arrow(cairo_t* cr, const Mark& m, Color color, bool both) {
   line(cr, from, tip);
   set_pen(cr, {color, 1.6, {}});
   line(cr, both ? from + kArrowHead * m.direction : from, tip - kArrowHead * m.direction);
-  add_head(cr, tip, m.direction);
-  if (both) add_head(cr, from, -1.0 * m.direction);
+  add_triangle(cr, tip, -kArrowHead * m.direction);
+  if (both) add_triangle(cr, from, kArrowHead * m.direction);
   cairo_fill(cr);
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "talus/base/rank.h"
 #include "talus/plot/edge_chains.h"
@@ -62,8 +63,6 @@ std::string degrees_text(double radians) {
   return fmt::format("{}{:g}\u00b0", tenths < 0 ? "\u2212" : "", std::abs(tenths) / 10);
 }
 
-bool was_cut(const Layout& layout, const BlockShape& block) { return block.group >= layout.first_cut_group; }
-
 std::string joint_name(const Model& model, int joint) {
   return joint < 0 ? "hard and frictionless" : "joint \"" + model.joints[at(joint)].name + "\"";
 }
@@ -91,6 +90,21 @@ std::string label_of(const Cut& cut, const Origin& origin) {
   return origin.name;
 }
 
+// Blocks that were not cut, and what lies between them: joints of grids and pairs, and the default elsewhere.
+std::string written_label(const Model& model, const Layout& layout, std::size_t count) {
+  const bool alone = count == layout.blocks.size();
+  std::string text = alone ? counted(count, "block") : counted(count, "other block");
+  if (count < 2) return text;
+  std::set<std::string> own;
+  for (const auto& [groups, joint] : layout.pair_joint)
+    if (std::max(groups.first, groups.second) < layout.first_mesh_group) own.insert(joint_name(model, joint));
+  constexpr std::size_t kMost = 2;  // names
+  if (own.empty() || own.size() > kMost)
+    return text + "; between them " + joint_name(model, model.default_joint);
+  for (const std::string& name : own) text += (name == *own.begin() ? "; " : ", ") + name;
+  return text + ", elsewhere " + joint_name(model, model.default_joint);
+}
+
 }  // namespace
 
 double joint_line_width(const Cut& cut, const Layout& layout, double scale) {
@@ -98,7 +112,7 @@ double joint_line_width(const Cut& cut, const Layout& layout, double scale) {
   std::vector<double> areas;
   for (const CutBlock& block : cut.blocks) areas.push_back(std::abs(signed_area(cut.polygon(block))));
   for (const BlockShape& block : layout.blocks)
-    if (!was_cut(layout, block)) areas.push_back(std::abs(signed_area(block.polygon)));
+    if (!layout.was_cut(block)) areas.push_back(std::abs(signed_area(block.polygon)));
   if (areas.empty()) return 1;
   return std::clamp(kShare * std::sqrt(median(std::move(areas))) * scale, 0.15, 1.6);
 }
@@ -114,7 +128,7 @@ std::vector<Layer> make_areas(const Model& model, const Cut& cut, const Layout& 
     edges.insert(edges.end(), block.edge.begin(), block.edge.end());
   }
   for (const BlockShape& block : layout.blocks)
-    if (!was_cut(layout, block))
+    if (!layout.was_cut(block))
       areas[block.kind == BlockKind::kFixed ? kFixed : block.material].polygons.push_back(block.polygon);
   std::vector<Layer> list;
   for (auto& [key, area] : areas) {
@@ -154,12 +168,8 @@ std::vector<Layer> make_lines(const Model& model, const Cut& cut, const Layout& 
 
   Layer written{{kBlack, std::clamp(joint_width, 0.4, 1.2), {}}, "", {}};
   for (const BlockShape& block : layout.blocks)
-    if (!was_cut(layout, block)) written.polygons.push_back(block.polygon);
-  written.label = counted(written.polygons.size(), "written block");
-  if (written.polygons.size() > 1)
-    written.label += "; between them " + joint_name(model, model.default_joint);
-  if (!layout.pair_joint.empty())
-    written.label += fmt::format(" or as {} say", counted(layout.pair_joint.size(), "[[contact_pair]]"));
+    if (!layout.was_cut(block)) written.polygons.push_back(block.polygon);
+  written.label = written_label(model, layout, written.polygons.size());
   lines.push_back(std::move(written));
   std::erase_if(lines, [](const Layer& layer) { return layer.edges.empty() && layer.polygons.empty(); });
   return lines;

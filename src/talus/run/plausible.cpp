@@ -48,10 +48,6 @@ class Plausible {
 
  private:
   void check_gravity() {
-    if (model_.gravity.y == 0 && model_.gravity.x != 0)
-      findings_.warning(model_.where_gravity, "model.gravity",
-                        fmt::format("{:.3g} m/s2 along x alone: things fall sideways", model_.gravity.x),
-                        "[0, -9.81] is downwards");
     if (norm(model_.gravity) > 0 || is_driven()) return;
     findings_.warning(model_.where_gravity, "model.gravity",
                       "is none, and nothing else drives the model: nothing will happen",

@@ -65,12 +65,13 @@ int threads_for(int blocks);
 /// What --profile prints: the share of each part of a step in the time of the run.
 std::string profile_text(const Profile& profile, int threads, int64_t steps);
 
-/// Reads, checks and plans a model. `cut`, when given, takes the cut of its regions. Throws InputError with
-/// all findings; warnings are left in `findings`.
 struct PreparedRun {
   Scene scene;
   std::vector<StagePlan> plans;
 };
+
+/// Reads, checks and plans a model. `cut`, when given, takes the cut of its regions. Throws InputError with
+/// all findings; warnings are left in `findings`.
 PreparedRun prepare_run(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides, Findings& findings, Cut* cut = nullptr);
 

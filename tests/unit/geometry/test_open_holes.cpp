@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/box_polygon.h"
+#include "support/shortest_tree.h"
 #include "talus/base/random.h"
 #include "talus/geometry/arrangement.h"
 #include "talus/geometry/polygon_check.h"
@@ -43,18 +44,7 @@ bool cross_anywhere(const Polyline& a, const Polyline& b) {
 
 // The shortest tree that connects all rings.
 double tree_length(const std::vector<Polyline>& rings) {
-  std::vector<double> to(rings.size(), 1e300);
-  std::vector<bool> in(rings.size(), false);
-  to[0] = 0;
-  double sum = 0;
-  for (size_t n = 0; n < rings.size(); ++n) {
-    size_t next = rings.size();
-    for (size_t i = 0; i < rings.size(); ++i)
-      if (!in[i] && (next == rings.size() || to[i] < to[next])) next = i;
-    in[next] = true, sum += to[next];
-    for (size_t i = 0; i < rings.size(); ++i) to[i] = std::min(to[i], distance(rings[next], rings[i]));
-  }
-  return sum;
+  return shortest_tree(rings.size(), [&rings](size_t i, size_t j) { return distance(rings[i], rings[j]); });
 }
 
 // Faces of the rings and the cuts, islands among them.

@@ -67,6 +67,17 @@ MapSections sections(const MapsInput& maps, const Drawing& d, std::string* told 
   return out;
 }
 
+// The sections and their material as a model, without an error.
+Model model_of(const MapSections& made) {
+  const std::string text =
+      "talus = 1\n[material.stone]\ndensity = 2700\nyoung = \"5 GPa\"\npoisson = 0.2\n" + made.text;
+  Findings findings("m.toml", text);
+  Model model = read_model("m.toml", text, {}, findings);
+  INFO(findings.render());
+  CHECK(!findings.has_errors());
+  return model;
+}
+
 }  // namespace
 
 TEST_CASE("maps: the same drawing in other units and far from zero gives the same sections") {
@@ -85,12 +96,7 @@ TEST_CASE("maps: the same drawing in other units and far from zero gives the sam
 
 TEST_CASE("maps: ends near the outline go through it, and the sections are a model") {
   const MapSections made = sections(section_maps(), drawing(1, {0, 0}));
-  const std::string text =
-      "talus = 1\n[material.stone]\ndensity = 2700\nyoung = \"5 GPa\"\npoisson = 0.2\n" + made.text;
-  Findings findings("m.toml", text);
-  const Model model = read_model("m.toml", text, {}, findings);
-  INFO(findings.render());
-  CHECK(!findings.has_errors());
+  const Model model = model_of(made);
   REQUIRE(model.traces.size() == 1);
   const Polyline& level = model.traces[0].lines[0];
   CHECK(level.front().x < 0);
@@ -168,12 +174,7 @@ TEST_CASE("maps: areas are outlines, openings or stones, of any kind; as joints 
   const MapSections made = sections(maps, d, &told);
   CHECK(told.empty());
   CHECK(map_report_text(made.report).find("hole in an area") != std::string::npos);
-  const std::string text =
-      "talus = 1\n[material.stone]\ndensity = 2700\nyoung = \"5 GPa\"\npoisson = 0.2\n" + made.text;
-  Findings findings("m.toml", text);
-  const Model model = read_model("m.toml", text, {}, findings);
-  INFO(findings.render());
-  CHECK(!findings.has_errors());
+  const Model model = model_of(made);
   REQUIRE(model.blocks.size() == 2);
   CHECK(model.blocks[1].name == "stone-2");
   CHECK(model.blocks[1].kind == BlockKind::kFixed);

@@ -9,46 +9,8 @@
 using namespace talus;
 using namespace talus::test;
 
-namespace {
-
-// A block on a floor under gravity, shaken; tests replace one piece of it.
-const std::string kSound = R"~(talus = 1
-[model]
-gravity = [0, -9.81]
-[material.rock]
-density = 2700
-young = "20 GPa"
-poisson = 0.25
-[joint.face]
-friction_angle = "35 deg"
-normal_stiffness = "10 GPa/m"
-shear_stiffness = "5 GPa/m"
-[contact]
-joint = "face"
-[history.motion]
-expression = "0.1*sin(2*_pi*2*t)"
-duration = "2 s"
-[[block]]
-name = "floor"
-polygon = [[-5, -1], [5, -1], [5, 0], [-5, 0]]
-material = "rock"
-kind = "driven"
-motion_x = { velocity = "motion" }
-[[block]]
-name = "stone"
-polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
-material = "rock"
-[[stage]]
-name = "shake"
-kind = "dynamic"
-duration = "2 s"
-elasticity = "implicit"
-)~";
-
-}  // namespace
-
 TEST_CASE("plausible mistakes are told at their line") {
-  REQUIRE(told(kSound) == "");
+  REQUIRE(told(kShakenBlock) == "");
   struct Mistake {
     std::string from, to, line, says;
     bool is_error = false;
@@ -150,7 +112,7 @@ TEST_CASE("plausible mistakes are told at their line") {
       {"[[stage]]", "[output]\nfield_interval = 20\n[[stage]]", "28:1", "output.field_interval"},
   };
   for (const Mistake& m : mistakes) {
-    const std::string message = told(replaced(kSound, m.from, m.to));
+    const std::string message = told(replaced(kShakenBlock, m.from, m.to));
     INFO(message);
     CHECK(message.find(m.says) != std::string::npos);
     CHECK(message.find("model.toml:" + m.line) != std::string::npos);
@@ -186,12 +148,13 @@ time_step = "1 ms"
 }
 
 TEST_CASE("strength between blocks that do not touch, and stages in which nothing holds, are warned of") {
-  const std::string strong = replaced(kSound, "\"35 deg\"", "\"35 deg\"\ncohesion = \"1 MPa\"");
+  const std::string strong = replaced(kShakenBlock, "\"35 deg\"", "\"35 deg\"\ncohesion = \"1 MPa\"");
   CHECK(told(strong) == "");
   CHECK(told(replaced(strong, "[[0, 0], [1, 0], [1, 1], [0, 1]]", "[[0, 0.1], [1, 0.1], [1, 1], [0, 1]]"))
             .find("contact.joint: \"face\" shall hold blocks together, and no two of them share a face") !=
         std::string::npos);
-  const std::string free = replaced(kSound, "kind = \"driven\"\nmotion_x = { velocity = \"motion\" }\n", "");
+  const std::string free =
+      replaced(kShakenBlock, "kind = \"driven\"\nmotion_x = { velocity = \"motion\" }\n", "");
   const std::string base = "[[support]]\nname = \"base\"\nedge = [[-5, -1], [5, -1]]\n";
   CHECK(told(free + base).find("is named by nothing") != std::string::npos);  // the motion, and no more
   CHECK(told(free + base).find("nothing holds") == std::string::npos);
@@ -249,22 +212,20 @@ TEST_CASE("unusual and right: no warning") {
            {"[[0, 0], [1, 0], [1, 1], [0, 1]]",
             "[[0, 0.3], [1, 0.3], [1, 1.3], [0, 1.3]]"},  // it falls first
            {"duration = \"2 s\"\nelasticity", "duration = \"2 s\"\ndamping_mass = \"1 1/s\"\nelasticity"},
+           // a deep mine
            {"[[stage]]",
-            "[in_situ]\nstress_xx = \"-60 MPa\"\nstress_yy = \"-60 MPa\"\nstress_xy = 0\n[[stage]]"},  // a
-                                                                                                       // deep
-                                                                                                       // mine
+            "[in_situ]\nstress_xx = \"-60 MPa\"\nstress_yy = \"-60 MPa\"\nstress_xy = 0\n[[stage]]"},
            {"[[stage]]",
             "[[load]]\nname = \"blast\"\npressure = \"bang\"\nedge = [[0, 1], [1, 1]]\n[history.bang]\n"
             "time = [0, 0.1, 0.3]\nvalue = [0, 5e8, 0]\n[[stage]]"},  // a blast
-           {"[[stage]]",
-            "[[load]]\nname = \"pull\"\npressure = -1e4\nedge = [[0, 1], [1, 1]]\n[[stage]]"},  // suction of
-                                                                                                // wind
+           // suction of wind
+           {"[[stage]]", "[[load]]\nname = \"pull\"\npressure = -1e4\nedge = [[0, 1], [1, 1]]\n[[stage]]"},
            {"[[stage]]", "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = \"10 s\"\n[[stage]]"},
+           // said for the pair alone
            {"[contact]\njoint = \"face\"",
-            "[[contact_pair]]\nbetween = [\"stone\", \"floor\"]\njoint = \"face\""},  // said for the pair
-                                                                                      // alone
+            "[[contact_pair]]\nbetween = [\"stone\", \"floor\"]\njoint = \"face\""},
        }) {
     INFO(c.to);
-    CHECK(told(replaced(kSound, c.from, c.to)) == "");
+    CHECK(told(replaced(kShakenBlock, c.from, c.to)) == "");
   }
 }

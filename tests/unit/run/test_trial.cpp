@@ -7,37 +7,11 @@
 #include "support/told.h"
 
 using namespace talus;
+using namespace talus::test;
 
 TEST_CASE("trial steps: a cost for every stage, one that rests at once too, and the run as it was") {
-  const std::string text = R"(talus = 1
-[model]
-gravity = [0, -9.81]
-[material.rock]
-density = 2700
-young = "20 GPa"
-poisson = 0.25
-[joint.face]
-friction_angle = "35 deg"
-[contact]
-joint = "face"
-[[block]]
-name = "floor"
-polygon = [[-5, -1], [5, -1], [5, 0], [-5, 0]]
-material = "rock"
-kind = "fixed"
-[[block]]
-name = "stone"
-polygon = [[0, 0.5], [1, 0.5], [1, 1.5], [0, 1.5]]
-material = "rock"
-[[stage]]
-name = "fall"
-kind = "dynamic"
-duration = "1 s"
-[[stage]]
-name = "short"
-kind = "dynamic"
-duration = "1 us"
-)";
+  const std::string text =
+      kShakenBlock + "[[stage]]\nname = \"short\"\nkind = \"dynamic\"\nduration = \"1 us\"\n";
   Findings findings("model.toml", text);
   const PreparedRun run = prepare_run("model.toml", text, {}, findings);
   const std::vector<StepCost> cost = time_steps(run, 0.02, 1);

@@ -66,7 +66,7 @@ std::vector<BenchBlock> TalusEngine::blocks() const {
 
 std::vector<BenchContact> TalusEngine::contacts() const {
   std::vector<BenchContact> list;
-  const RowRange range = work_.rows.range(RowFamily::kContacts);
+  const RowRange range = work_.rows.range(Family::kContact);
   for (size_t r = range.begin; r < range.end; ++r) {
     const PointRows& p = work_.rows.points[r];
     const auto a = static_cast<size_t>(p.block_a);

@@ -96,8 +96,8 @@ void rest(const std::string& name, int threads) {
   const Scene& s = engine.scene();
   const StepWork& w = engine.work();
   for (size_t i = 0; i < engine.state().contacts.size(); ++i) {
-    const PointRows& p = w.rows.points[w.rows.range(RowFamily::kContacts).begin + i];
-    const Impulse& impulse = w.rows.impulse[w.rows.range(RowFamily::kContacts).begin + i];
+    const PointRows& p = w.rows.points[w.rows.range(Family::kContact).begin + i];
+    const Impulse& impulse = w.rows.impulse[w.rows.range(Family::kContact).begin + i];
     const double size = std::min(s.blocks.size[static_cast<size_t>(p.block_a)],
                                  s.blocks.size[static_cast<size_t>(p.block_b)]);
     double closure = p.row[0].compliance * impulse[0];

@@ -442,7 +442,7 @@ class SnapshotObserver : public Observer {
     }
     if (std::any_of(parts.begin(), parts.end(), [](int n) { return n > 1; })) s.stretch.clear();
     const WorkDone& w = i.state.work;
-    s.dissipated = -(w.contact_closing + w.friction + w.damping) * force * length;
+    s.dissipated = -(w[Cause::kContactClosing] + w[Cause::kFriction] + w[Cause::kDamping]) * force * length;
     add_rows(i, s);
     for (const auto& [key, f] : sum_.face) s.pair_mean[{key[0], -1, key[2], -1}] += (1.0 / summed_) * f;
     for (const auto& [key, f] : sum_.held) s.held_mean[key] = (1.0 / summed_) * f;

@@ -78,8 +78,8 @@ TEST_CASE("anchored bolt after yield: unloads and reloads along its stiffness, y
   }
   // plastic work: yield force x plastic part, and what is stored at the end; taken from the drawn block
   const double left = path[7].force * path[7].force / (2 * kStiffness);
-  check_close("anchored bolt work / by hand", r.run.energy.work.bolts / -(kYield * second + left), 1, 1e-2,
-              1e-3);
+  check_close("anchored bolt work / by hand", r.run.energy.work[Cause::kBolts] / -(kYield * second + left), 1,
+              1e-2, 1e-3);
   check_below("anchored bolt energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }
 

@@ -257,7 +257,7 @@ TEST_CASE("bolt that ruptures: its force goes to nothing once, and the ledger sh
     largest = std::max(largest, force);
     if (force == 0 && last_force > 0) ++drops, gone = true;
     again = again || (gone && force != 0);
-    if (gone && after == 0) after = i.report.energy.work.bolts;
+    if (gone && after == 0) after = i.report.energy.work[Cause::kBolts];
     last_force = force;
   });
   CHECK(drops == 1);
@@ -265,8 +265,8 @@ TEST_CASE("bolt that ruptures: its force goes to nothing once, and the ledger sh
   CHECK(r.column("rod.ruptured").back() == 1);
   check_close("rupture: largest force / yield force", largest, 1e4, 1e-9, 1e-12);
   // within one step of travel of the rupture, 6 um of 3 mm, and the damping of alpha
-  check_close("rupture: work of the bolt [J]", r.run.energy.work.bolts, -20, 1e-2, 1e-3);
-  check_close("rupture: no work after it [J]", r.run.energy.work.bolts, after, 1e-3, 1e-12);
+  check_close("rupture: work of the bolt [J]", r.run.energy.work[Cause::kBolts], -20, 1e-2, 1e-3);
+  check_close("rupture: no work after it [J]", r.run.energy.work[Cause::kBolts], after, 1e-3, 1e-12);
   check_below("rupture: energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }
 
@@ -278,7 +278,7 @@ TEST_CASE("elastic bolt: its work is what it stores") {
   double worst = 0, most = 0;
   run_case(slide_text(slide), {"contact.alpha=0", "joint.face.friction_angle=0"}, [&](const Instant& i) {
     const double stored = stored_energy(i.state.bolts[0]);
-    worst = std::max(worst, std::abs(stored + i.report.energy.work.bolts));
+    worst = std::max(worst, std::abs(stored + i.report.energy.work[Cause::kBolts]));
     most = std::max(most, stored);
   });
   check_below("bolt energy stored + work of the bolt / largest", worst / most, 1e-2, 1e-4);

@@ -171,7 +171,8 @@ uint64_t hash_of(const State& s) {
   }
   for (const Contact& c : s.contacts) hash.add(c.force[0]), hash.add(c.force[1]);
   const WorkDone& w = s.work;
-  hash.add(w.contact_closing), hash.add(w.friction), hash.add(w.implicit), hash.add(s.energy_start);
+  hash.add(w[Cause::kContactClosing]), hash.add(w[Cause::kFriction]), hash.add(w[Cause::kImplicit]),
+      hash.add(s.energy_start);
   return hash.value();
 }
 

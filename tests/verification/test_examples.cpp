@@ -264,8 +264,8 @@ TEST_CASE("example absorbing_bar: the wave leaves, and takes its energy along") 
   check_below("absorbing_bar velocity left in the middle [m/s]", left, 1e-2, 5e-3);
   check_close("absorbing_bar displacement left [m]", r.column("middle.displacement_x").back(),
               2 / 3.14159265358979 * 1.41421356e-3, 5e-3, 1e-3);
-  check_close("absorbing_bar work of the push [J]", r.run.energy.work.loads, 1000, 1e-2, 1e-3);
-  check_close("absorbing_bar work of the edge [J]", r.run.energy.work.boundary, -1000, 1e-2, 1e-3);
+  check_close("absorbing_bar work of the push [J]", r.run.energy.work[Cause::kLoads], 1000, 1e-2, 1e-3);
+  check_close("absorbing_bar work of the edge [J]", r.run.energy.work[Cause::kBoundary], -1000, 1e-2, 1e-3);
   check_below("absorbing_bar energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }
 
@@ -288,7 +288,7 @@ TEST_CASE("example hammer: the waves leave through the edges") {
   });
   check_below("hammer kinetic energy left / largest", last / most, 1e-2, 1e-3);
   check_close("hammer work of the edges / work of the blow",
-              r.run.energy.work.boundary / r.run.energy.work.loads, -1, 1e-2, 1e-3);
+              r.run.energy.work[Cause::kBoundary] / r.run.energy.work[Cause::kLoads], -1, 1e-2, 1e-3);
   check_below("hammer energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 

@@ -296,7 +296,7 @@ duration = 1
     Run out;
     std::vector<double> friction;
     const CaseResult r = run_case(c.text(), {}, [&](const Instant& i) {
-      if (i.stage == 1) friction.push_back(i.report.energy.work.friction);
+      if (i.stage == 1) friction.push_back(i.report.energy.work[Cause::kFriction]);
     });
     const auto last = static_cast<size_t>(c.steps_looked_at());
     const auto tail = [last](const std::vector<double>& v) {

@@ -43,7 +43,7 @@ Rocked rocked(const std::string& joint, const std::string& turn, const std::stri
           "[[monitor]]\nname = \"west\"\nsupport = \"west\"\n[[monitor]]\nname = \"east\"\nsupport = "
           "\"east\"\n",
       [&](const Instant& i) {
-        out.stored.push_back(-i.report.energy.work.joints);
+        out.stored.push_back(-i.report.energy.work[Cause::kJoints]);
         out.left_over = std::max(out.left_over, std::abs(i.report.energy.left_over));
       });
   return out;

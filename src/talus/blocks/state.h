@@ -9,6 +9,7 @@
 #include "talus/base/vec2.h"
 #include "talus/blocks/block_set.h"
 #include "talus/blocks/bolt.h"
+#include "talus/blocks/work_done.h"
 
 namespace talus {
 
@@ -126,26 +127,6 @@ struct FaceState {
   std::array<double, 2> offset{};      // tangential, of the tied points when it broke, less slip [m]
   std::array<double, 4> mean_force{};  // running mean of normal, tangential of point 0 and of point 1 [N]
   std::array<double, 2> slip{};        // along the tangent, of points at the limit of their shear [m]
-};
-
-/// Work done since the start [J], by cause; > 0: energy given to the blocks. `joints`: elastic joints, stored
-/// and lost. `boundary`: dashpots, what waves bring in, reactions that stand in for static ones, ties of
-/// sides. `bolts`: of rock bolts, stored and lost. `implicit`: what block-implicit elasticity adds to the
-/// elastic force of the step's beginning.
-struct WorkDone {
-  double loads = 0, supports = 0, boundary = 0, bonds = 0, joints = 0, contact_closing = 0, friction = 0,
-         damping = 0, bolts = 0, implicit = 0;
-
-  WorkDone& operator+=(const WorkDone& o) {
-    loads += o.loads, supports += o.supports, bonds += o.bonds, joints += o.joints;
-    contact_closing += o.contact_closing, friction += o.friction, damping += o.damping;
-    implicit += o.implicit, boundary += o.boundary, bolts += o.bolts;
-    return *this;
-  }
-  double total() const {
-    return loads + supports + boundary + bonds + joints + contact_closing + friction + damping + bolts +
-           implicit;
-  }
 };
 
 /// How a static stage comes to rest, looked at every 250 steps.

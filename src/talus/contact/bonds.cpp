@@ -212,16 +212,14 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
 
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
                    const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
-                   const Workers& workers, RowSet& rows, std::vector<int>& owner) {
-  owner.clear();
+                   const Workers& workers, RowSet& rows) {
+  const size_t first = rows.size();
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
     if (state.face[f].broken || !blocks.interact(face.block_a, face.block_b)) continue;
-    owner.push_back(static_cast<int>(2 * f));
-    owner.push_back(static_cast<int>(2 * f) + 1);
+    const size_t at = rows.add_more(Family::kFace, 2);
+    for (const size_t end : {0U, 1U}) rows.owner[at + end] = {Family::kFace, static_cast<int>(2 * f + end)};
   }
-  rows.begin(RowFamily::kBonds);
-  const size_t first = rows.add_more(owner.size());
 
   const auto add = [&](size_t f, size_t at) {
     const BondFace& face = bonds.faces[f];
@@ -258,20 +256,18 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     }
     guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});
   };
-  workers.for_chunks(owner.size() / 2, kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) add(static_cast<size_t>(owner[2 * i]) / 2, first + 2 * i);
+  workers.for_chunks((rows.size() - first) / 2, kGrain, [&](size_t begin, size_t end) {
+    for (size_t at = first + 2 * begin; at < first + 2 * end; at += 2) add(rows.owner[at].at() / 2, at);
   });
 }
 
-void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
-                    State& state) {
-  const size_t first = rows.range(RowFamily::kBonds).begin;
-  const auto remember = [&](size_t i) {
-    const size_t r = first + i;
+void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows, const StepClock& clock,
+                    const Workers& workers, State& state) {
+  const RowRange range = rows.range(Family::kFace);
+  const auto remember = [&](size_t r) {
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
-    const auto point = static_cast<size_t>(owner[i]);
+    const size_t point = rows.owner[r].at();
     state.bond_force[point] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
     if (p.row[1].compliance == 0 || !slides(p, impulse)) return;
     // what is off after the step, but for the elastic slip under its force
@@ -279,8 +275,8 @@ void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& 
         face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
         clock.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, clock);
   };
-  workers.for_chunks(owner.size(), 2 * kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) remember(i);
+  workers.for_chunks(range.size(), 2 * kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) remember(range.begin + i);
   });
 }
 

@@ -39,16 +39,13 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 
 /// Rows of all intact faces (two points each), with the first guess from the last step.
 /// @param before  rates half a step ago
-/// @param owner   becomes 2 * face + end for each row
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
                    const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
-                   const Workers& workers, RowSet& rows, std::vector<int>& owner);
+                   const Workers& workers, RowSet& rows);
 
 /// After the solution: forces, and the slip of points that slide at the limit of an elastic shear.
-/// @param owner  of each row, as from add_bond_rows
-void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows,
-                    const std::vector<int>& owner, const StepClock& clock, const Workers& workers,
-                    State& state);
+void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows, const StepClock& clock,
+                    const Workers& workers, State& state);
 
 /// How far the tied points of a face are apart, material point from material point, counted from the joint
 /// without force (the stress of the ground has closed it).

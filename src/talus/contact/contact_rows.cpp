@@ -201,6 +201,7 @@ class ContactRows {
     }
     rows_.points[first_ + i] = p;
     rows_.impulse[first_ + i] = guess;
+    rows_.owner[first_ + i] = {Family::kContact, static_cast<int>(i)};
   }
 
   // Bias of the shear row of a place that is `off` from where it sticks [m/s].
@@ -338,8 +339,7 @@ class ContactRows {
 void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
                       const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                       const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
-  rows.begin(RowFamily::kContacts);
-  const size_t first = rows.add_more(state.contacts.size());
+  const size_t first = rows.add_more(Family::kContact, state.contacts.size());
   resize_sparingly(place, state.contacts.size());
   const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
   workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
@@ -350,7 +350,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
 
 void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
                        const Workers& workers, State& state) {
-  const size_t first = rows.range(RowFamily::kContacts).begin;
+  const size_t first = rows.range(Family::kContact).begin;
   workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const PointRows& p = rows.points[first + i];

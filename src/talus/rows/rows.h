@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "talus/blocks/state.h"
+#include "talus/rows/owner.h"
 
 namespace talus {
 
@@ -47,66 +48,44 @@ void resize_sparingly(std::vector<T>& v, size_t n) {
   v.resize(n);
 }
 
-/// Whose rows they are, in the order in which they stand in a set. Who adds rows and reads them back asks for
-/// it; solvers never do.
-enum class RowFamily { kBonds, kContacts, kSupports, kBoundaries, kTies, kBolts };
-inline constexpr size_t kRowFamilies = static_cast<size_t>(RowFamily::kBolts) + 1;
-
 struct RowRange {
   size_t begin = 0, end = 0;
   size_t size() const { return end - begin; }
 };
 
-/// A row as one of its family.
-struct RowPlace {
-  RowFamily family = RowFamily::kBonds;
-  size_t index = 0;  // within the family
-};
-
-/// Whether two faces of blocks meet there: an intact face or a contact.
-inline bool is_joint(RowFamily family) {
-  return family == RowFamily::kBonds || family == RowFamily::kContacts;
-}
-
 struct RowSet {
   std::vector<PointRows> points;
   std::vector<Impulse> impulse;  // in: first guess; out: solution
+  std::vector<RowOwner> owner;
 
-  void add(const PointRows& p, const Impulse& guess) {
-    const size_t i = add_more(1);
-    points[i] = p, impulse[i] = guess;
+  void add(const PointRows& p, const Impulse& guess, RowOwner whose = {}) {
+    const size_t i = add_more(whose.family, 1);
+    points[i] = p, impulse[i] = guess, owner[i] = whose;
   }
-  /// Room for `count` more points, to be written by the caller; returns the index of the first. Between
-  /// restart() and finish() old points are written over, not made anew.
-  size_t add_more(size_t count) {
+  /// Room for `count` more points of a family, to be written by the caller; returns the index of the first.
+  /// Between restart() and finish() old points are written over, not made anew.
+  /// @pre  none of a later family is there
+  size_t add_more(Family family, size_t count) {
     const size_t first = next_;
     next_ += count;
-    range_[family_].end = next_;
-    if (points.size() < next_) resize_sparingly(points, next_), resize_sparingly(impulse, next_);
+    for (size_t f = static_cast<size_t>(family); f < end_.size(); ++f) end_[f] = next_;
+    if (points.size() < next_)
+      resize_sparingly(points, next_), resize_sparingly(impulse, next_), resize_sparingly(owner, next_);
     return first;
   }
-  void restart() { next_ = 0, family_ = 0, range_ = {}; }
-  /// What is added from here on is of this family. @pre  none of a later one is there
-  void begin(RowFamily family) {
-    family_ = static_cast<size_t>(family);
-    range_[family_] = {next_, next_};
-  }
-  void finish() { points.resize(next_), impulse.resize(next_); }
+  void restart() { next_ = 0, end_ = {}; }
+  void finish() { points.resize(next_), impulse.resize(next_), owner.resize(next_); }
   size_t size() const { return next_; }
 
-  RowRange range(RowFamily family) const { return range_[static_cast<size_t>(family)]; }
-  /// Bonds and contacts, which stand together: where faces of blocks meet.
-  RowRange joints() const { return {range(RowFamily::kBonds).begin, range(RowFamily::kContacts).end}; }
-  /// @pre  there is a row r
-  RowPlace place(size_t r) const {
-    size_t f = 0;
-    while (r >= range_[f].end) ++f;
-    return {static_cast<RowFamily>(f), r - range_[f].begin};
+  /// Those of a family, which stand together.
+  RowRange range(Family family) const {
+    const auto f = static_cast<size_t>(family);
+    return {f == 0 ? 0 : end_[f - 1], end_[f]};
   }
 
  private:
-  size_t next_ = 0, family_ = 0;
-  std::array<RowRange, kRowFamilies> range_{};
+  size_t next_ = 0;
+  std::array<size_t, kAllFamilies.size()> end_{};
 };
 
 /// Bounds of row k of a point when its normal impulse is p_n.

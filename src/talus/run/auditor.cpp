@@ -55,8 +55,9 @@ void Auditor::at(const Instant& i, bool frame) {
   if (i.report.failed && failed_++ == 0) first_failed_ = i.state.time, worst_failed_ = i.report.worst;
   const Energy& e = i.report.energy;
   largest_energy_ = std::max(largest_energy_, e.largest());
-  if (e.work.contact_closing > closing_)
-    closing_ = e.work.contact_closing, closing_friction_ = e.work.friction, closing_time_ = i.state.time;
+  if (e.work[Cause::kContactClosing] > closing_)
+    closing_ = e.work[Cause::kContactClosing], closing_friction_ = e.work[Cause::kFriction],
+    closing_time_ = i.state.time;
 
   const double interval = scene_.model.output.audit_interval;
   bool due = frame;
@@ -134,10 +135,10 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
   audit::Frame frame;
   frame.time = i.state.time, frame.step = i.plan.dt;
   for (int k = 0; k < scene_.blocks.count; ++k) frame.blocks.push_back(shape(i, k));
-  const size_t bonds = i.work.rows.range(RowFamily::kBonds).end;
+  const size_t bonds = i.work.rows.range(Family::kFace).end;
   for (size_t r = 0; r < bonds; ++r) {  // the first family
     const PointRows& row = i.work.rows.points[r];
-    const BondFace& face = scene_.bonds.faces[static_cast<size_t>(i.work.bond_owner[r]) / 2];
+    const BondFace& face = scene_.bonds.faces[i.work.rows.owner[r].at() / 2];
     audit::Point p;
     p.block_a = face.block_a, p.block_b = face.block_b, p.joint = face.joint;
     p.place = point_now(scene_, i.state, row);

@@ -26,32 +26,25 @@ void impulse_at(const auto& knots, double t, double (&out)[3]) {
 }  // namespace
 
 std::vector<std::string> step_columns() {
-  return {"t [s]",
-          "dt [s]",
-          "contacts",
-          "closed contacts",
-          "islands",
-          "largest island [points]",
-          "iterations",
-          "contact error [m]",
-          "drift [m]",
-          "failed steps",
-          "unbalanced",
-          "broken faces",
-          "kinetic energy [J]",
-          "strain energy [J]",
-          "gravity work [J]",
-          "load work [J]",
-          "support work [J]",
-          "boundary work [J]",
-          "bond work [J]",
-          "joint work [J]",
-          "contact closing work [J]",
-          "friction work [J]",
-          "damping work [J]",
-          "bolt work [J]",
-          "implicit work [J]",
-          "energy left over [J]"};
+  std::vector<std::string> columns{"t [s]",
+                                   "dt [s]",
+                                   "contacts",
+                                   "closed contacts",
+                                   "islands",
+                                   "largest island [points]",
+                                   "iterations",
+                                   "contact error [m]",
+                                   "drift [m]",
+                                   "failed steps",
+                                   "unbalanced",
+                                   "broken faces",
+                                   "kinetic energy [J]",
+                                   "strain energy [J]",
+                                   "gravity work [J]",
+                                   "energy left over [J]"};
+  for (const std::string_view cause : kCauseName)
+    columns.insert(columns.end() - 1, fmt::format("{} work [J]", cause));
+  return columns;
 }
 
 std::vector<double> step_row(const Instant& i) {
@@ -59,32 +52,24 @@ std::vector<double> step_row(const Instant& i) {
   const Energy& e = r.energy;
   int broken = 0;
   for (const FaceState& f : i.state.face) broken += f.broken;
-  return {i.state.time,
-          i.plan.dt,
-          static_cast<double>(r.contacts),
-          static_cast<double>(r.closed),
-          static_cast<double>(r.solve.islands),
-          static_cast<double>(r.solve.largest_island),
-          static_cast<double>(r.solve.iterations),
-          r.error.worst,
-          r.drift,
-          r.failed ? 1.0 : 0.0,
-          r.unbalanced,
-          static_cast<double>(broken),
-          e.kinetic,
-          e.strain,
-          e.gravity,
-          e.work.loads,
-          e.work.supports,
-          e.work.boundary,
-          e.work.bonds,
-          e.work.joints,
-          e.work.contact_closing,
-          e.work.friction,
-          e.work.damping,
-          e.work.bolts,
-          e.work.implicit,
-          e.left_over};
+  std::vector<double> row{i.state.time,
+                          i.plan.dt,
+                          static_cast<double>(r.contacts),
+                          static_cast<double>(r.closed),
+                          static_cast<double>(r.solve.islands),
+                          static_cast<double>(r.solve.largest_island),
+                          static_cast<double>(r.solve.iterations),
+                          r.error.worst,
+                          r.drift,
+                          r.failed ? 1.0 : 0.0,
+                          r.unbalanced,
+                          static_cast<double>(broken),
+                          e.kinetic,
+                          e.strain,
+                          e.gravity};
+  row.insert(row.end(), e.work.by.begin(), e.work.by.end());
+  row.push_back(e.left_over);
+  return row;
 }
 
 Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::move(sink)) {
@@ -148,7 +133,7 @@ void Histories::add_columns(const std::string& name, const std::vector<std::stri
 void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<double>& row) const {
   const RowSet& rows = instant.work.rows;
   double step[3] = {0, 0, 0};
-  for (size_t r = 0; r < rows.joints().end; ++r) {
+  for (size_t r = 0; r < rows.range(Family::kContact).end; ++r) {
     const PointRows& p = rows.points[r];
     const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
     const bool forward = c.in_a[a] && c.in_b[b], backward = c.in_b[a] && c.in_a[b];

@@ -17,8 +17,7 @@ std::string set_of(const Scene& scene, int block, int edge) {
 }
 
 // An intact end of a face: what parts it is elastic, unless it stands open or slid at its limit.
-std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t index) {
-  const auto owner = static_cast<size_t>(i.work.bond_owner[index]);
+std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_t owner) {
   const BondFace& face = scene.bonds.faces[owner / 2];
   if (face.unbreakable) return std::nullopt;
   JointPoint out;
@@ -60,10 +59,10 @@ Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
 }
 
 std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size_t row) {
-  const auto [family, index] = i.work.rows.place(row);
-  if (!is_joint(family)) return std::nullopt;
+  const RowOwner owner = i.work.rows.owner[row];
+  if (!is_joint(owner.family)) return std::nullopt;
   std::optional<JointPoint> out =
-      family == RowFamily::kBonds ? face_point(scene, i, index) : contact_point(scene, i, index);
+      owner.family == Family::kFace ? face_point(scene, i, owner.at()) : contact_point(scene, i, owner.at());
   if (!out) return out;
   const PointRows& p = i.work.rows.points[row];
   out->block_a = p.block_a, out->block_b = p.block_b;
@@ -75,8 +74,8 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size
 
 std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
   std::vector<std::pair<size_t, size_t>> out;
-  const RowRange bonds = i.work.rows.range(RowFamily::kBonds);
-  const size_t first = i.work.rows.range(RowFamily::kContacts).begin;
+  const RowRange bonds = i.work.rows.range(Family::kFace);
+  const size_t first = i.work.rows.range(Family::kContact).begin;
   for (size_t r = bonds.begin; r < bonds.end; r += 2) out.emplace_back(r, r + 1);  // the two ends of a face
   for (const ContactPair& pair : i.state.pairs) {
     for (int k = 0; k < pair.count; ++k) {

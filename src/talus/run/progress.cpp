@@ -84,7 +84,7 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         "J\n",
         r.closure(), r.largest_energy,
         r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
-        0.0 - r.energy.work.contact_closing);
+        0.0 - r.energy.work[Cause::kContactClosing]);
   }
   if (r.closed_share > 0.05)
     out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);

@@ -30,9 +30,9 @@ bool is_due(double time, double dt, double interval, double& next) {
 }
 
 // Number of a family in frames: ties are counted with the boundaries.
-int kind_of(RowFamily family) {
+int kind_of(Family family) {
   constexpr int kKind[] = {1, 0, 2, 3, 3, 4};
-  static_assert(std::size(kKind) == kRowFamilies);
+  static_assert(std::size(kKind) == kFamilies.size());
   return kKind[static_cast<size_t>(family)];
 }
 
@@ -46,15 +46,17 @@ std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
     f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.clock.dt_kick;
     f.normal_force = rows.impulse[r][0] / i.work.clock.dt_kick;
     f.shear_force = rows.impulse[r][1] / i.work.clock.dt_kick;
-    const auto [family, index] = rows.place(r);
-    f.kind = kind_of(family);
+    const RowOwner owner = rows.owner[r];
+    f.kind = kind_of(owner.family);
     f.block_a = p.block_a, f.block_b = p.block_b;
-    f.corner = static_cast<int>(index);
-    if (family == RowFamily::kBonds) f.corner = i.work.bond_owner[index];
-    if (family == RowFamily::kTies) f.corner += static_cast<int>(rows.range(RowFamily::kBoundaries).size());
-    if (family == RowFamily::kContacts) {
-      const ContactKey& key = i.state.contacts[index].key;
-      f.corner = key.vertex, f.edge = key.edge, f.gap = i.work.places[index].gap;
+    if (owner.family == Family::kFace) {
+      f.corner = owner.index;
+    } else if (owner.family == Family::kContact) {
+      const ContactKey& key = i.state.contacts[owner.at()].key;
+      f.corner = key.vertex, f.edge = key.edge, f.gap = i.work.places[owner.at()].gap;
+    } else {  // number among those of its kind that act
+      const Family first = owner.family == Family::kTie ? Family::kBoundary : owner.family;
+      f.corner = static_cast<int>(r - rows.range(first).begin);
     }
     if (const auto joint = joint_point(scene, i, r)) {
       f.slip = joint->slip, f.opening = joint->opening;
@@ -334,7 +336,7 @@ void Recorder::write_joints(const Instant& i, int stage) {
   joint_summary_ = {};
   SlipList slipped;
   if (joints_.empty()) joints_ = joint_header();
-  for (size_t r = 0; r < i.work.rows.joints().end; ++r) {
+  for (size_t r = 0; r < i.work.rows.range(Family::kContact).end; ++r) {
     const auto point = joint_point(scene_, i, r);
     if (!point || point->state == JointState::kApart) continue;
     joint_summary_.add(*point);
@@ -495,23 +497,19 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
       {"contact_error_time [s]", r.worst_error_time},
       {"contact_error_at", r.worst_error_row}};
   const Energy& e = r.energy;
-  j["energy [J]"] = {{"kinetic", e.kinetic},
-                     {"between_steps", e.between},
-                     {"strain", e.strain},
-                     {"gravity_work", e.gravity},
-                     {"load_work", e.work.loads},
-                     {"support_work", e.work.supports},
-                     {"boundary_work", e.work.boundary},
-                     {"bond_work", e.work.bonds},
-                     {"joint_work", e.work.joints},
-                     {"contact_closing_work", e.work.contact_closing},
-                     {"friction_work", e.work.friction},
-                     {"damping_work", e.work.damping},
-                     {"bolt_work", e.work.bolts},
-                     {"implicit_work", e.work.implicit},
-                     {"left_over", e.left_over},
-                     {"left_over_largest", r.largest_left_over},
-                     {"term_largest", r.largest_energy}};
+  auto& energy = j["energy [J]"];
+  energy = {{"kinetic", e.kinetic},
+            {"between_steps", e.between},
+            {"strain", e.strain},
+            {"gravity_work", e.gravity}};
+  for (size_t k = 0; k < kCauses; ++k) {
+    std::string name(kCauseName[k]);
+    std::replace(name.begin(), name.end(), ' ', '_');
+    energy[name + "_work"] = e.work.by[k];
+  }
+  energy["left_over"] = e.left_over;
+  energy["left_over_largest"] = r.largest_left_over;
+  energy["term_largest"] = r.largest_energy;
   j["energy_closure"] = r.closure();
   for (const Histories::Peak& p : peaks) j["monitors"][p.name]["peak_velocity [m/s]"] = p.velocity;
   j["frames"] = frames;

@@ -353,7 +353,7 @@ class Runner {
   // How deep a contact has gone, where, and what would keep it from it.
   std::string closed_text(const StepReport& r) const {
     const auto row = static_cast<size_t>(r.closed_row);
-    const Contact& c = state_.contacts[work_.rows.place(row).index];
+    const Contact& c = state_.contacts[work_.rows.owner[row].at()];
     const auto a = static_cast<size_t>(c.key.block_a);
     const Vec2 at =
         scene_.blocks.centroid[a] + offset_now(state_, a, scene_.blocks.corner(c.key.block_a, c.key.vertex));

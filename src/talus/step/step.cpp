@@ -51,11 +51,15 @@ BlockRate operator-(const BlockRate& u, const BlockRate& v) { return {u.a - v.a,
 
 // Work of an impulse, 1/2 p (v0 + v1): `late` of p v1 belongs to the interval after it, the rest to the one
 // before.
-void tally(double& before, double& after, const BlockForce& impulse, const BlockRate& v0, const BlockRate& v1,
-           double late) {
+struct ImpulseWork {
+  double before = 0, after = 0;
+};
+ImpulseWork work_of(const BlockForce& impulse, const BlockRate& v0, const BlockRate& v1, double late) {
   const double later = late * work(impulse, v1);
-  before += 0.5 * (work(impulse, v0) + work(impulse, v1)) - later;
-  after += later;
+  return {0.5 * (work(impulse, v0) + work(impulse, v1)) - later, later};
+}
+void tally(KickWork& sum, Cause cause, const ImpulseWork& w) {
+  sum.before[cause] += w.before, sum.after[cause] += w.after;
 }
 
 // Sums over the rows of a chunk.
@@ -99,21 +103,11 @@ struct BlockSums {
   }
 };
 
-// Where the work of hard rows goes that are no contact's: those do two kinds.
-double WorkDone::*cause_of(RowFamily family) {
-  switch (family) {
-    case RowFamily::kSupports:
-      return &WorkDone::supports;
-    case RowFamily::kBoundaries:
-    case RowFamily::kTies:
-      return &WorkDone::boundary;
-    case RowFamily::kBolts:
-      return &WorkDone::bolts;
-    case RowFamily::kBonds:
-    case RowFamily::kContacts:
-      break;
-  }
-  return &WorkDone::bonds;
+// Where the work of a point goes: along its normal, along its tangent.
+std::array<Cause, 2> causes_of(Family family, const PointRows& p, const Impulse& impulse) {
+  if (!is_joint(family) || !(p.row[0].compliance + p.row[1].compliance > 0)) return entry(family).cause;
+  return {p.row[0].compliance > 0 ? Cause::kJoints : Cause::kContactClosing,
+          slides(p, impulse) ? Cause::kFriction : Cause::kJoints};
 }
 
 // What one solver made of a step.
@@ -286,7 +280,7 @@ class Kick {
     work_.rows.restart();
     const Model& model = scene_.model;
     add_bond_rows(blocks_, scene_.bonds, work_.laws, state_, work_.rate_before, clock_, work_.workers,
-                  work_.rows, work_.bond_owner);
+                  work_.rows);
     add_contact_rows(blocks_, model, work_.laws, state_, work_.rate_before, clock_, work_.workers, work_.rows,
                      work_.places);
     add_support_rows(blocks_, model, scene_.supported, state_, clock_, work_.rows);
@@ -338,8 +332,8 @@ class Kick {
   // Points of faces that are tied without any give.
   size_t hard_ties() const {
     size_t count = 0;
-    const RowRange bonds = work_.rows.range(RowFamily::kBonds);
-    for (size_t r = bonds.begin; r < bonds.end; ++r) count += work_.rows.points[r].row[0].compliance == 0;
+    const RowRange faces = work_.rows.range(Family::kFace);
+    for (size_t r = faces.begin; r < faces.end; ++r) count += work_.rows.points[r].row[0].compliance == 0;
     return count;
   }
 
@@ -390,19 +384,18 @@ class Kick {
     // a driven block passes on the work that its drive does against the rows
     for (const auto& [block, impulse] : rows_.on_still) {
       const auto k = static_cast<size_t>(block);
-      tally(work_.work.before.supports, work_.work.after.supports, -1.0 * impulse, work_.rate_before[k],
-            state_.rate[k], 0.5);
+      tally(work_.work, Cause::kSupports, work_of(-1.0 * impulse, work_.rate_before[k], state_.rate[k], 0.5));
     }
   }
 
   void tally_row(size_t r, RowSums& s) const {
     const PointRows& p = work_.rows.points[r];
     const Impulse& impulse = work_.rows.impulse[r];
-    const RowPlace place = work_.rows.place(r);
-    const bool contact = place.family == RowFamily::kContacts;
-    if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -work_.places[place.index].gap);
-    if (contact && work_.places[place.index].closed > s.closed_share)
-      s.closed_share = work_.places[place.index].closed, s.closed_row = static_cast<int>(r);
+    const RowOwner owner = work_.rows.owner[r];
+    const bool contact = owner.family == Family::kContact;
+    if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -work_.places[owner.at()].gap);
+    if (contact && work_.places[owner.at()].closed > s.closed_share)
+      s.closed_share = work_.places[owner.at()].closed, s.closed_row = static_cast<int>(r);
     const auto u1 = relative_velocity(p, state_.rate);
     s.error += {clock_.dt * point_error(work_.mobility, work_.rows, r, u1, s.error.worst / clock_.dt),
                 static_cast<int>(r)};
@@ -411,21 +404,12 @@ class Kick {
       if (block >= 0 && !work_.mobility[static_cast<size_t>(block)].moves())
         s.on_still.emplace_back(block, impulse_on(p, impulse, sign));
     const auto u0 = relative_velocity(p, work_.rate_before);
-    const auto add = [&](size_t k, double WorkDone::*cause) {
-      s.work.before.*cause += 0.5 * impulse[k] * u0[k];
-      s.work.after.*cause += 0.5 * impulse[k] * u1[k];
-    };
-    if (is_joint(place.family) && p.row[0].compliance + p.row[1].compliance > 0) {
-      add(0, p.row[0].compliance > 0 ? &WorkDone::joints : &WorkDone::contact_closing);
-      add(1, slides(p, impulse) ? &WorkDone::friction : &WorkDone::joints);
-      ++s.closed;
-    } else if (contact) {
-      add(0, &WorkDone::contact_closing), add(1, &WorkDone::friction);
-      ++s.closed;
-    } else {
-      const auto cause = cause_of(place.family);
-      add(0, cause), add(1, cause);
+    const std::array<Cause, 2> cause = causes_of(owner.family, p, impulse);
+    for (size_t k = 0; k < 2; ++k) {
+      s.work.before[cause[k]] += 0.5 * impulse[k] * u0[k];
+      s.work.after[cause[k]] += 0.5 * impulse[k] * u1[k];
     }
+    s.closed += contact || (is_joint(owner.family) && p.row[0].compliance + p.row[1].compliance > 0);
   }
 
   // Impulse that gives a block this change of its rates: the effective mass times it.
@@ -468,19 +452,17 @@ class Kick {
     if (!blocks_.moves_freely(static_cast<int>(i))) return;
     const double late = late_share(), kick = clock_.dt_kick;
     const BlockForce viscous = (-settings_.damping_mass * kick) * momentum(blocks_, i, mean(v0, v1));
-    tally(s.work.before.loads, s.work.after.loads, kick * load_[i], v0, v1, late);
-    tally(s.work.before.damping, s.work.after.damping, viscous, v0, v1, late);
-    if (settings_.damping_local > 0)
-      tally(s.work.before.damping, s.work.after.damping, local_damping_[i], v0, v1, late);
+    tally(s.work, Cause::kLoads, work_of(kick * load_[i], v0, v1, late));
+    tally(s.work, Cause::kDamping, work_of(viscous, v0, v1, late));
+    if (settings_.damping_local > 0) tally(s.work, Cause::kDamping, work_of(local_damping_[i], v0, v1, late));
 
     if (settings_.damping_stiffness > 0 && blocks_.kind[i] == BlockKind::kDeformable)
-      tally(s.work.before.damping, s.work.after.damping, stiffness_damping(i, v0, implicit(i) ? v1 : v0), v0,
-            v1, late);
+      tally(s.work, Cause::kDamping, work_of(stiffness_damping(i, v0, implicit(i) ? v1 : v0), v0, v1, late));
 
     BlockForce force = forces_[i];
     if (implicit(i)) {
       const BlockForce more{{}, (-tangent_time2()) * tangent_force(i, v1.G - clock_.old_share() * v0.G)};
-      tally(s.work.before.implicit, s.work.after.implicit, more, v0, v1, late);
+      tally(s.work, Cause::kImplicit, work_of(more, v0, v1, late));
       force += (1 / kick) * more;
     }
     const BlockForce rows = (1 / kick) * impulse_for(i, v1 - work_.rate_free[i]);
@@ -504,31 +486,27 @@ class Kick {
     BlockForce own = kick * (forces_[i] + (-1) * load_[i]);
     if (!work_.bolt_forces.empty()) {
       const BlockForce bars = kick * work_.bolt_forces[i];
-      tally(s.work.before.bolts, s.work.after.bolts, bars, v0, v1, late);
+      tally(s.work, Cause::kBolts, work_of(bars, v0, v1, late));
       own += (-1) * bars;
     }
-    double before = 0, after = 0;
-    tally(before, after, own, v0, v1, late);
+    const double before = work_of(own, v0, v1, late).before;
     s.kinetic += before;
     s.jump += before - (1 - late) * work(own, v0);
   }
 
   void remember() {
-    remember_bonds(blocks_, scene_.bonds, work_.rows, work_.bond_owner, clock_, work_.workers, state_);
+    remember_bonds(blocks_, scene_.bonds, work_.rows, clock_, work_.workers, state_);
     remember_contacts(work_.rows, work_.places, clock_, work_.workers, state_);
-    const auto keep = [this](RowFamily family, const auto& points, double sign,
-                             std::vector<std::array<double, 2>>& force) {
-      size_t row = work_.rows.range(family).begin;
-      for (size_t i = 0; i < force.size(); ++i) {
-        force[i] = {0, 0};
-        if (!points[i].active) continue;
-        const Impulse& p = work_.rows.impulse[row++];
-        force[i] = {p[0] / clock_.dt_kick, sign * p[1] / clock_.dt_kick};
-      }
-    };
-    keep(RowFamily::kSupports, scene_.supported, -1, state_.support_force);
-    keep(RowFamily::kBoundaries, scene_.boundaries.points, 1, state_.boundary_force);
-    keep(RowFamily::kTies, scene_.boundaries.ties, 1, state_.tie_force);
+    for (auto* force : {&state_.support_force, &state_.boundary_force, &state_.tie_force})
+      std::fill(force->begin(), force->end(), std::array{0.0, 0.0});
+    for (size_t r = work_.rows.range(Family::kSupport).begin; r < work_.rows.range(Family::kTie).end; ++r) {
+      const RowOwner owner = work_.rows.owner[r];
+      const Impulse& p = work_.rows.impulse[r];
+      const std::array<double, 2> force{p[0] / clock_.dt_kick, p[1] / clock_.dt_kick};
+      if (owner.family == Family::kSupport) state_.support_force[owner.at()] = {force[0], -force[1]};
+      if (owner.family == Family::kBoundary) state_.boundary_force[owner.at()] = force;
+      if (owner.family == Family::kTie) state_.tie_force[owner.at()] = force;
+    }
     remember_bolts(work_.rows, clock_, state_);
   }
 
@@ -562,37 +540,34 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {
   const PointRows& p = work.rows.points[row];
   const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
-  const auto [family, index] = work.rows.place(row);
-  const auto boundary = [&](int which) {
-    return fmt::format("boundary {} at {}", scene.model.boundaries[static_cast<size_t>(which)].name,
-                       name(p.block_a));
+  const RowOwner owner = work.rows.owner[row];
+  const std::string kind = entry(owner.family).name;
+  const auto at = [&](const std::string& what) {
+    return fmt::format("{} {} at {}", kind, what, name(p.block_a));
   };
-  const BoundarySet& b = scene.boundaries;
-  switch (family) {
-    case RowFamily::kBonds:
+  const auto boundary = [&scene](int which) {
+    return scene.model.boundaries[static_cast<size_t>(which)].name;
+  };
+  switch (owner.family) {
+    case Family::kFace:
       break;
-    case RowFamily::kContacts: {
-      const ContactKey& k = state.contacts[index].key;
-      return fmt::format("contact {} corner {} on {} edge {}", name(k.block_a), k.vertex, name(k.block_b),
+    case Family::kContact: {
+      const ContactKey& k = state.contacts[owner.at()].key;
+      return fmt::format("{} {} corner {} on {} edge {}", kind, name(k.block_a), k.vertex, name(k.block_b),
                          k.edge);
     }
-    case RowFamily::kSupports: {
-      const SupportedPoint& s = scene.supported[nth_active(scene.supported, index)];
-      return fmt::format("support {} at {}", scene.model.supports[static_cast<size_t>(s.support)].name,
-                         name(s.block));
-    }
-    case RowFamily::kBoundaries:
-      return boundary(b.points[nth_active(b.points, index)].boundary);
-    case RowFamily::kTies:
-      return boundary(b.ties[nth_active(b.ties, index)].boundary);
-    case RowFamily::kBolts: {
-      const auto [bolt, crossing] = crossing_of_row(state, index);
-      return fmt::format("bolt {} between {} and {}",
-                         scene.model.bolts[static_cast<size_t>(state.bolts[bolt].input)].name,
+    case Family::kSupport:
+      return at(scene.model.supports[static_cast<size_t>(scene.supported[owner.at()].support)].name);
+    case Family::kBoundary:
+      return at(boundary(scene.boundaries.points[owner.at()].boundary));
+    case Family::kTie:
+      return at(boundary(scene.boundaries.ties[owner.at()].boundary));
+    case Family::kBolt:
+      return fmt::format("{} {} between {} and {}", kind,
+                         scene.model.bolts[static_cast<size_t>(state.bolts[owner.at()].input)].name,
                          name(p.block_a), name(p.block_b));
-    }
   }
-  return fmt::format("joint {} - {}", name(p.block_a), name(p.block_b));
+  return fmt::format("{} {} - {}", kind, name(p.block_a), name(p.block_b));
 }
 
 }  // namespace talus

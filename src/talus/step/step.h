@@ -73,7 +73,6 @@ struct StepWork {
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts
   RowSet rows;                       // of all families
-  std::vector<int> bond_owner;       // [n bond rows] 2 * face + end
   std::vector<BlockRate> rate_before;
   std::vector<Vec2> column_velocity;  // [n_column_nodes] of the free field at this instant [m/s]
   KickWork work;

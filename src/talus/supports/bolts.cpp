@@ -172,8 +172,8 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
 
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
                    const StepClock& clock, RowSet& rows) {
-  rows.begin(RowFamily::kBolts);
-  for (const Bolt& bolt : state.bolts) {
+  for (size_t i = 0; i < state.bolts.size(); ++i) {
+    const Bolt& bolt = state.bolts[i];
     for (const BoltCrossing& c : bolt.crossings) {
       const auto j = static_cast<size_t>(c.segment);
       const BoltSegment& s = bolt.segments[j];
@@ -206,24 +206,18 @@ void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector
       }
       Impulse guess{c.row[0] * clock.dt_kick, c.row[1] * clock.dt_kick};
       if (s.ruptured) guess = {0, 0};
-      rows.add(p, guess);
+      rows.add(p, guess, {Family::kBolt, static_cast<int>(i)});
     }
   }
 }
 
 void remember_bolts(const RowSet& rows, const StepClock& clock, State& state) {
-  size_t next = rows.range(RowFamily::kBolts).begin;
+  size_t next = rows.range(Family::kBolt).begin;
   for (Bolt& bolt : state.bolts)
     for (BoltCrossing& c : bolt.crossings) {
       const Impulse& p = rows.impulse[next++];
       c.row = {p[0] / clock.dt_kick, p[1] / clock.dt_kick};
     }
-}
-
-std::pair<size_t, size_t> crossing_of_row(const State& state, size_t index) {
-  size_t bolt = 0;
-  while (index >= state.bolts[bolt].crossings.size()) index -= state.bolts[bolt++].crossings.size();
-  return {bolt, index};
 }
 
 std::vector<BoltPart> bolt_parts(const BlockSet& blocks, const State& state) {

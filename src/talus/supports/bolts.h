@@ -36,9 +36,6 @@ void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector
 /// Takes over the impulses of the rows.
 void remember_bolts(const RowSet& rows, const StepClock& clock, State& state);
 
-/// Bolt and crossing of row `index` of those rows.
-std::pair<size_t, size_t> crossing_of_row(const State& state, size_t index);
-
 /// A piece of a bolt as users see it, of one bolt.
 struct BoltPart {
   int input = -1;  // bolt of the model

@@ -200,7 +200,6 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
                        const std::vector<BlockRate>& before, const StepClock& clock,
                        const std::vector<Vec2>& column_velocity, RowSet& rows) {
-  rows.begin(RowFamily::kBoundaries);
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& point = set.points[i];
     if (!point.active) continue;
@@ -228,7 +227,8 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
         p.row[k].bias = u[k] - 2 * dot(axis[k], target) - 2 * force / z;
       }
     }
-    rows.add(p, {state.boundary_force[i][0] * clock.dt_kick, state.boundary_force[i][1] * clock.dt_kick});
+    rows.add(p, {state.boundary_force[i][0] * clock.dt_kick, state.boundary_force[i][1] * clock.dt_kick},
+             {Family::kBoundary, static_cast<int>(i)});
   }
 }
 

@@ -19,7 +19,6 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
 
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
                       const State& state, const StepClock& clock, RowSet& rows) {
-  rows.begin(RowFamily::kSupports);
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].active) continue;
     const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
@@ -37,7 +36,8 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
     hold(p.row[1], support.y, now.y, -1);
     if (support.x.kind == Motion::kFree) p.lower = p.upper = 0;
     if (support.y.kind == Motion::kFree) p.cohesion = 0;
-    rows.add(p, {state.support_force[i][0] * clock.dt_kick, -state.support_force[i][1] * clock.dt_kick});
+    rows.add(p, {state.support_force[i][0] * clock.dt_kick, -state.support_force[i][1] * clock.dt_kick},
+             {Family::kSupport, static_cast<int>(i)});
   }
 }
 

@@ -16,14 +16,6 @@ struct SupportedPoint {
   bool active = true;  // in this stage; rows are made of active points only
 };
 
-/// Index of active point number `n`. @pre  there is one
-template <class Points>
-size_t nth_active(const Points& points, size_t n) {
-  size_t i = 0;
-  for (;; ++i)
-    if (points[i].active && n-- == 0) return i;
-}
-
 /// All points of all supports, in the order of the model.
 std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
                                              const BlockSet& blocks);

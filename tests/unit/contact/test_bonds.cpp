@@ -255,10 +255,13 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     state.bond_force[1] = {5, 7};
     const double dt = 1e-4, dt_kick = 5e-5;
     RowSet rows;
-    std::vector<int> owner;
     add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {dt, dt_kick, 0.2},
-                  Workers(1), rows, owner);
-    CHECK(owner == std::vector<int>{0, 1});
+                  Workers(1), rows);
+    REQUIRE(rows.size() == 2);
+    for (const int end : {0, 1}) {
+      CHECK(rows.owner[static_cast<size_t>(end)].family == Family::kFace);
+      CHECK(rows.owner[static_cast<size_t>(end)].index == end);
+    }
     REQUIRE(rows.points.size() == 2);
     for (const PointRows& p : rows.points) {
       // normal from b, above, into a: downwards; so the opening counts positive; the tangent points to -x
@@ -279,7 +282,7 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     state.face[0].broken = true;
     rows = {};
     add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {dt, dt_kick, 0.2},
-                  Workers(1), rows, owner);
+                  Workers(1), rows);
     CHECK(rows.points.empty());
   }
 }
@@ -297,9 +300,8 @@ TEST_CASE(
     state.rate[0].a = {push, 0.003};
     state.rate[1].G = {1e-3, 2e-3, -1e-3, 5e-4};  // the two ends move differently
     RowSet rows;
-    std::vector<int> owner;
     add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {1e-4, 9e-5, 0.2},
-                  Workers(1), rows, owner);
+                  Workers(1), rows);
     REQUIRE(rows.points.size() == 2);
     for (size_t r = 0; r < 2; ++r) {
       const PointRows& p = rows.points[r];
@@ -329,12 +331,9 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   state.displacement[1] = {off, -1e-4};
   const StepClock timing{dt, dt_kick, 0.2};
   RowSet rows;
-  std::vector<int> owner;
   const auto make_rows = [&] {
     rows = {};
-    owner.clear();
-    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, timing, Workers(1), rows,
-                  owner);
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, timing, Workers(1), rows);
   };
   make_rows();
   REQUIRE(rows.points.size() == 2);
@@ -343,7 +342,7 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   // 1/(k l t/2) [[2, -1], [-1, 2]]
   const double normal = stiffness * kEnd * 1e-4, limit = kCohesion * kEnd + std::tan(0.5) * normal;
   rows.impulse = {{normal * dt_kick, -limit * dt_kick}, {normal * dt_kick, -0.9 * limit * dt_kick}};
-  remember_bonds(s.blocks, s.bonds, rows, owner, timing, Workers(1), state);
+  remember_bonds(s.blocks, s.bonds, rows, timing, Workers(1), state);
   const double elastic = (2 * limit - 0.9 * limit) / (stiffness * kEnd);
   CHECK(state.face[0].slip[0] == relative(off - elastic, 1e-12));
   CHECK(state.face[0].slip[1] == 0);  // below its limit

@@ -186,30 +186,35 @@ TEST_CASE("row set: whose rows they are, also of families without any") {
   RowSet rows;
   const auto fill = [&rows](size_t bonds, size_t contacts, size_t ties) {
     rows.restart();
-    rows.begin(RowFamily::kBonds);
-    rows.add_more(bonds);
-    rows.begin(RowFamily::kContacts);
-    rows.add_more(contacts);
-    rows.begin(RowFamily::kSupports);
-    rows.begin(RowFamily::kTies);
-    for (size_t i = 0; i < ties; ++i) rows.add({}, {});
+    const auto add = [&rows](Family family, size_t count) {
+      const size_t first = rows.add_more(family, count);
+      for (size_t i = 0; i < count; ++i) rows.owner[first + i] = {family, static_cast<int>(i)};
+    };
+    add(Family::kFace, bonds), add(Family::kContact, contacts), add(Family::kSupport, 0);
+    for (size_t i = 0; i < ties; ++i) rows.add({}, {}, {Family::kTie, static_cast<int>(i)});
     rows.finish();
   };
-  const auto holds = [&rows](RowFamily family, size_t begin, size_t end) {
+  const auto holds = [&rows](Family family, size_t begin, size_t end) {
     const RowRange range = rows.range(family);
     CHECK(range.begin == begin);
     CHECK(range.size() == end - begin);
     for (size_t r = begin; r < end; ++r) {
-      CHECK(rows.place(r).family == family);
-      CHECK(rows.place(r).index == r - begin);
+      CHECK(rows.owner[r].family == family);
+      CHECK(rows.owner[r].at() == r - begin);
     }
   };
   fill(2, 3, 2);
-  holds(RowFamily::kBonds, 0, 2), holds(RowFamily::kContacts, 2, 5), holds(RowFamily::kTies, 5, 7);
-  CHECK(rows.range(RowFamily::kSupports).size() == 0);
-  CHECK(rows.range(RowFamily::kBolts).size() == 0);
-  CHECK(rows.joints().end == 5);
+  CHECK(rows.owner.size() == 7);
+  holds(Family::kFace, 0, 2), holds(Family::kContact, 2, 5), holds(Family::kTie, 5, 7);
+  holds(Family::kSupport, 5, 5), holds(Family::kBolt, 7, 7);
   fill(0, 1, 1);  // the same set, written over
-  holds(RowFamily::kContacts, 0, 1), holds(RowFamily::kTies, 1, 2);
-  CHECK(rows.range(RowFamily::kBonds).size() == 0);
+  CHECK(rows.owner.size() == 2);
+  holds(Family::kFace, 0, 0), holds(Family::kContact, 0, 1), holds(Family::kTie, 1, 2);
+}
+
+TEST_CASE("families: one line of the table each, in their order") {
+  for (size_t i = 0; i < kFamilies.size(); ++i) {
+    CHECK(kFamilies[i].family == kAllFamilies[i]);
+    CHECK(entry(kAllFamilies[i]).name == std::string(kFamilies[i].name));
+  }
 }

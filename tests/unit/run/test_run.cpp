@@ -130,7 +130,7 @@ point = [0.5, 0.5]
   CHECK(r.column("f.mean_force_x")[50] == doctest::Approx(1000).epsilon(1e-9));
   CHECK(r.column("f.impulse_x").back() == doctest::Approx(1000 * 0.995).epsilon(1e-2));
   CHECK(r.column("p.displacement_x").back() == doctest::Approx(0.5).epsilon(1e-9));
-  CHECK(r.run.energy.work.supports == doctest::Approx(500).epsilon(0.02));
+  CHECK(r.run.energy.work[Cause::kSupports] == doctest::Approx(500).epsilon(0.02));
   check_below("driven block, energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
 

@@ -181,7 +181,7 @@ TEST_CASE("the energy ledger of implicit steps closes where motion is linear, st
       const Energy& e = march.report.energy;
       worst = std::max(worst, std::abs(e.left_over) / e.largest());
       closed += march.report.closed > 0;
-      implicit = std::max(implicit, std::abs(e.work.implicit) / e.largest());
+      implicit = std::max(implicit, std::abs(e.work[Cause::kImplicit]) / e.largest());
     }
     CHECK(worst <= 1e-9);  // sums of some thousand terms of the size of the largest
     CHECK(closed > 20);

@@ -149,7 +149,7 @@ TEST_CASE("work of loads: a free block under a pressure") {
   const CaseResult r =
       run_case(kPlate + kBlock +
                "kind = \"rigid\"\n[[load]]\nname = \"l\"\nedge = [[4, 0], [4, 3]]\npressure = \"push\"\n");
-  check_close("work of a pressure [J]", r.run.energy.work.loads,
+  check_close("work of a pressure [J]", r.run.energy.work[Cause::kLoads],
               45e3 * 45e3 / 12e3 * 1e-6 / 2 * (1 - 0.05 * 0.05), 1e-9, 1e-12);
   check_below("work of a pressure: energy left over / largest term", r.run.closure(), 1e-9, 1e-12);
 }

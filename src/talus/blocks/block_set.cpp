@@ -9,6 +9,13 @@
 
 namespace talus {
 
+BlockSet::BlockSet() = default;
+BlockSet::BlockSet(const BlockSet&) = default;
+BlockSet::BlockSet(BlockSet&&) noexcept = default;
+BlockSet& BlockSet::operator=(const BlockSet&) = default;
+BlockSet& BlockSet::operator=(BlockSet&&) noexcept = default;
+BlockSet::~BlockSet() = default;
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -18,6 +18,14 @@ struct PlaneModuli {
 PlaneModuli plane_moduli(double young, double poisson, Plane plane);
 
 struct BlockSet {
+  // made and taken apart in one file: here every file of the program would hold that code
+  BlockSet();
+  BlockSet(const BlockSet&);
+  BlockSet(BlockSet&&) noexcept;
+  BlockSet& operator=(const BlockSet&);
+  BlockSet& operator=(BlockSet&&) noexcept;
+  ~BlockSet();
+
   int count = 0;
   double thickness = 1;  // [m]
 

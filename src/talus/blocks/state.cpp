@@ -2,6 +2,13 @@
 
 namespace talus {
 
+State::State() = default;
+State::State(const State&) = default;
+State::State(State&&) noexcept = default;
+State& State::operator=(const State&) = default;
+State& State::operator=(State&&) noexcept = default;
+State::~State() = default;
+
 namespace {
 
 // Rotated-frame strain U - I of F = I + H with F = R U, and the rotation (cos, sin) of R. Everything is

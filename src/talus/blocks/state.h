@@ -139,6 +139,14 @@ struct RestWatch {
 };
 
 struct State {
+  // made and taken apart in one file: here every file of the program would hold that code
+  State();
+  State(const State&);
+  State(State&&) noexcept;
+  State& operator=(const State&);
+  State& operator=(State&&) noexcept;
+  ~State();
+
   double time = 0;          // [s]
   int64_t step = 0;         // steps completed
   double history_time = 0;  // [s] clock of the histories: time spent in dynamic stages

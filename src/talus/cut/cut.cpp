@@ -11,6 +11,13 @@
 
 namespace talus {
 
+Cut::Cut() = default;
+Cut::Cut(const Cut&) = default;
+Cut::Cut(Cut&&) noexcept = default;
+Cut& Cut::operator=(const Cut&) = default;
+Cut& Cut::operator=(Cut&&) noexcept = default;
+Cut::~Cut() = default;
+
 namespace {
 
 // Noding moves lines by less than a cell of the grid: a face within this many cells of a region belongs to

@@ -48,6 +48,14 @@ struct SliverTable {
 };
 
 struct Cut {
+  // made and taken apart in one file: here every file of the program would hold that code
+  Cut();
+  Cut(const Cut&);
+  Cut(Cut&&) noexcept;
+  Cut& operator=(const Cut&);
+  Cut& operator=(Cut&&) noexcept;
+  ~Cut();
+
   double grid = 0;                    // [m]
   std::vector<CutRegion> regions;     // regions, then arches
   std::vector<std::string> openings;  // names

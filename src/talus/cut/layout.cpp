@@ -15,6 +15,20 @@
 
 namespace talus {
 
+BlockShape::BlockShape() = default;
+BlockShape::BlockShape(const BlockShape&) = default;
+BlockShape::BlockShape(BlockShape&&) noexcept = default;
+BlockShape& BlockShape::operator=(const BlockShape&) = default;
+BlockShape& BlockShape::operator=(BlockShape&&) noexcept = default;
+BlockShape::~BlockShape() = default;
+
+Layout::Layout() = default;
+Layout::Layout(const Layout&) = default;
+Layout::Layout(Layout&&) noexcept = default;
+Layout& Layout::operator=(const Layout&) = default;
+Layout& Layout::operator=(Layout&&) noexcept = default;
+Layout::~Layout() = default;
+
 namespace {
 
 // Overlap smaller than this share of the smaller block is round-off of the coordinates, not a mistake.

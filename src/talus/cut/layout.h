@@ -13,6 +13,14 @@
 namespace talus {
 
 struct BlockShape {
+  // made and taken apart in one file: here every file of the program would hold that code
+  BlockShape();
+  BlockShape(const BlockShape&);
+  BlockShape(BlockShape&&) noexcept;
+  BlockShape& operator=(const BlockShape&);
+  BlockShape& operator=(BlockShape&&) noexcept;
+  ~BlockShape();
+
   std::string name;
   int id = 0;       // number that stays when other blocks are merged or taken out
   int group = 0;    // index of the block, grid, mesh surface, region or opening it belongs to
@@ -27,6 +35,14 @@ struct BlockShape {
 };
 
 struct Layout {
+  // made and taken apart in one file: here every file of the program would hold that code
+  Layout();
+  Layout(const Layout&);
+  Layout(Layout&&) noexcept;
+  Layout& operator=(const Layout&);
+  Layout& operator=(Layout&&) noexcept;
+  ~Layout();
+
   std::vector<BlockShape> blocks;
   std::vector<std::string>
       groups;  // names of blocks, grids, meshes and their surfaces, regions, kept openings

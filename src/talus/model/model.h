@@ -284,6 +284,14 @@ struct SafetyInput {
 };
 
 struct Model {
+  // made and taken apart in one file: here every file of the program would hold that code
+  Model();
+  Model(const Model&);
+  Model(Model&&) noexcept;
+  Model& operator=(const Model&);
+  Model& operator=(Model&&) noexcept;
+  ~Model();
+
   std::string file, title, hash;
   std::string folder;  // that relative paths of the file count from
   std::string text;    // the file as read, byte for byte, with the overrides as closing comments

@@ -72,6 +72,8 @@ std::vector<double> step_row(const Instant& i) {
   return row;
 }
 
+Histories::~Histories() = default;
+
 Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::move(sink)) {
   columns_.push_back("t [s]");
   const BlockSet& blocks = scene.blocks;

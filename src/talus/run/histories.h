@@ -22,6 +22,7 @@ class Histories {
 
   /// @param sink  gets every finished row; rows with window means come half a window late
   Histories(const Scene& scene, Sink sink);
+  ~Histories();
 
   /// "t [s]", then the monitors in the order of the model.
   const std::vector<std::string>& columns() const { return columns_; }

@@ -120,6 +120,8 @@ std::filesystem::path make_folder(const std::filesystem::path& p) {
 
 }  // namespace
 
+Recorder::~Recorder() = default;
+
 Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
     : scene_(scene),
       folder_(std::move(folder)),

@@ -21,6 +21,7 @@ class Recorder : public Observer {
   Recorder(const Scene& scene, std::filesystem::path folder);
   /// Goes on in the folder of a saved run: what was written after the state was saved is cut off.
   Recorder(const Scene& scene, std::filesystem::path folder, Archive& saved);
+  ~Recorder() override;
 
   /// Saves the state in saved/: stage_NN.h5 at the end of each stage; in between at intervals of wall time
   /// step_N.h5, of which the last two stay.

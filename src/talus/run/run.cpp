@@ -15,6 +15,13 @@
 
 namespace talus {
 
+RunResult::RunResult() = default;
+RunResult::RunResult(const RunResult&) = default;
+RunResult::RunResult(RunResult&&) noexcept = default;
+RunResult& RunResult::operator=(const RunResult&) = default;
+RunResult& RunResult::operator=(RunResult&&) noexcept = default;
+RunResult::~RunResult() = default;
+
 namespace {
 
 // Overlap of a contact, as share of the thinner block, at which a run ends.

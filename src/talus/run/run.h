@@ -19,6 +19,14 @@ struct StageResult {
 };
 
 struct RunResult {
+  // made and taken apart in one file: here every file of the program would hold that code
+  RunResult();
+  RunResult(const RunResult&);
+  RunResult(RunResult&&) noexcept;
+  RunResult& operator=(const RunResult&);
+  RunResult& operator=(RunResult&&) noexcept;
+  ~RunResult();
+
   std::vector<StageResult> stages;
   int64_t steps = 0, failed_steps = 0, second_solver_steps = 0, iterations = 0;
   int64_t newton_steps = 0, gauss_seidel_steps = 0;  // whose result stands

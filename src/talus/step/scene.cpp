@@ -10,6 +10,13 @@
 
 namespace talus {
 
+Scene::Scene() = default;
+Scene::Scene(const Scene&) = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene&) = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
 namespace {
 
 // Whether a deformable block may meet another over a joint with friction and without give. With explicit

@@ -10,6 +10,14 @@
 namespace talus {
 
 struct Scene {
+  // made and taken apart in one file: here every file of the program would hold that code
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   Model model;
   Layout layout;
   BlockSet blocks;

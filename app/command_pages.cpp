@@ -60,7 +60,7 @@ std::string bash_script(const CLI::App& app) {
 }
 
 // Text in single quotes for fish.
-std::string quoted(const std::string& text) {
+std::string fish_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return out + "'";
@@ -70,14 +70,14 @@ std::string fish_script(const CLI::App& app) {
   std::string out;
   for (const CLI::App* verb : verbs_of(app)) {
     out += fmt::format("complete -c talus -n __fish_use_subcommand -f -a {} -d {}\n", verb->get_name(),
-                       quoted(verb->get_description()));
+                       fish_quoted(verb->get_description()));
     for (const CLI::Option* option : verb->get_options()) {
       if (names_of(*option).empty()) continue;
       std::string names;
       for (const std::string& s : option->get_snames()) names += " -s " + s;
       for (const std::string& l : option->get_lnames()) names += " -l " + l;
       out += fmt::format("complete -c talus -n '__fish_seen_subcommand_from {}'{} -d {}\n", verb->get_name(),
-                         names, quoted(option->get_description()));
+                         names, fish_quoted(option->get_description()));
     }
   }
   return out;

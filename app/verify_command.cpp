@@ -28,7 +28,7 @@ fs::path cases_program() {
 }
 
 // A word of a shell command.
-std::string quoted(const std::string& text) {
+std::string shell_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
@@ -65,8 +65,8 @@ void add_verify_arguments(CLI::App& verb, VerifyArguments& args) {
 }
 
 int verify_command(const VerifyArguments& args) {
-  std::string command = quoted(cases_program().string()) + " --no-version --no-colors";
-  if (!args.cases.empty()) command += " " + quoted("--test-case=*" + args.cases + "*");
+  std::string command = shell_quoted(cases_program().string()) + " --no-version --no-colors";
+  if (!args.cases.empty()) command += " " + shell_quoted("--test-case=*" + args.cases + "*");
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (!pipe) throw FileError("the verification cases cannot be started");
   if (args.markdown)

@@ -22,6 +22,7 @@ namespace {
 
 using talus::Vec2;
 using namespace talus::test;
+using namespace talus::test::limit;
 
 // Ends a run when something has moved further than what stands.
 class MotionWatch : public talus::Observer {

@@ -5,7 +5,7 @@
 # such suites out unless they are asked for.
 long_table="
 sliding | joints slide at their strength, whatever the mesh | build/release/studies/sliding_joints
-includes | library and program without precompiled headers, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_TESTS=OFF -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
+includes | every file compiled by itself, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
 "
 
 long_suites() { grep -rhoE 'TEST_SUITE\("long: [^" ]+"\)|test_suite\("long: [^" ]+"\)' tests --include='*.cpp' | sed 's/.*long: \([^"]*\)".*/\1/' | sort -u; }

@@ -8,9 +8,9 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <string>
 
+#include "talus/base/angle.h"
 #include "talus/base/version.h"
 #include "talus/maps/vector_module.h"
 
@@ -18,7 +18,6 @@ namespace talus::maps {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kMostFeatures = 1000000;
 
 struct CloseDataset {

@@ -11,6 +11,8 @@
 #include "support/command.h"
 #include "talus/base/text_file.h"
 
+namespace test_audit_command {
+
 using namespace talus;
 using namespace talus::test;
 using nlohmann::json;
@@ -122,3 +124,5 @@ TEST_CASE("command audit: a folder without a run is refused") {
   has(none.text, "there is no such folder");
   CHECK(shell(f, "mkdir empty && $talus audit empty").code == 4);
 }
+
+}  // namespace test_audit_command

@@ -12,6 +12,8 @@
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
 
+namespace test_command {
+
 using namespace talus;
 using namespace talus::test;
 namespace fs = std::filesystem;
@@ -270,3 +272,5 @@ TEST_CASE("command: a failed step is named, written and can be replayed") {
   has(o.text, "worst at");
   CHECK(fs::exists(out + "/step_0.json"));
 }
+
+}  // namespace test_command

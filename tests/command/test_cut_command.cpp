@@ -14,6 +14,8 @@
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
 
+namespace test_cut_command {
+
 using namespace talus;
 using namespace talus::test;
 namespace fs = std::filesystem;
@@ -419,3 +421,5 @@ TEST_CASE("command: a wrong part of a scattered override names --set") {
   has(shell(f, "$talus check m.toml --set joint_set.steep.angle.mean=60").text,
       "from --set joint_set.steep.angle.mean=60");
 }
+
+}  // namespace test_cut_command

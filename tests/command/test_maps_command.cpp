@@ -16,6 +16,8 @@
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
 
+namespace test_maps_command {
+
 using namespace talus;
 using namespace talus::test;
 namespace fs = std::filesystem;
@@ -328,3 +330,5 @@ TEST_CASE("maps: without the module the message says what to install") {
   CHECK(o.code == 4);
   has(o.text, "install the package libgdal-dev");
 }
+
+}  // namespace test_maps_command

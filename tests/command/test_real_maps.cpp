@@ -17,6 +17,8 @@
 #include "support/shortest_tree.h"
 #include "talus/geometry/polygon.h"
 
+namespace test_real_maps {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -133,3 +135,5 @@ TEST_CASE("real trace maps: live joints, short cuts, no crumbs") {
     CHECK(c.smallest >= 0.25 * c.smallest_face);
   }
 }
+
+}  // namespace test_real_maps

@@ -13,6 +13,8 @@
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
 
+namespace test_record_command {
+
 using namespace talus;
 using namespace talus::test;
 namespace fs = std::filesystem;
@@ -142,3 +144,5 @@ TEST_CASE("command: record and its exit codes") {
   CHECK(shell(f, "mkdir mine && echo x > mine/x").code == 0);
   refused("a.AT2 --out mine --force", 4, "holds no results of talus");
 }
+
+}  // namespace test_record_command

@@ -12,6 +12,8 @@
 #include "talus/output/files.h"
 #include "talus/output/text_table.h"
 
+namespace test_results_command {
+
 using namespace talus;
 using namespace talus::test;
 namespace fs = std::filesystem;
@@ -201,3 +203,5 @@ TEST_CASE("command completion and man: made from the verbs") {
   for (const char* part : {".TH TALUS 1", ".SH NAME", "\\fB\\-o, \\-\\-output\\fR", "factor of safety"})
     has(man.text, part);
 }
+
+}  // namespace test_results_command

@@ -12,6 +12,8 @@
 #include "support/command.h"
 #include "talus/base/text_file.h"
 
+namespace test_safety_command {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -40,3 +42,5 @@ TEST_CASE("command: safety prints its trials and writes them") {
   CHECK(dynamic.code == 3);
   has(dynamic.text, "the first stage is not static");
 }
+
+}  // namespace test_safety_command

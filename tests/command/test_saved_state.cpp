@@ -12,6 +12,8 @@
 #include "talus/base/random.h"
 #include "talus/output/files.h"
 
+namespace test_saved_state {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -402,3 +404,5 @@ TEST_CASE("command run --from: what cannot go on is refused") {
   refused("head -c 100 r/steps.csv > s; cp s r/steps.csv; $talus run model.toml" + from, 4,
           "cannot be continued");
 }
+
+}  // namespace test_saved_state

@@ -2,15 +2,14 @@
 // Pieces of models in which blocks meet at junctions of joints, and a run that the audit must find valid.
 
 #include <memory>
-#include <numbers>
 
 #include "support/run_case.h"
 #include "support/tolerance.h"
+#include "talus/base/angle.h"
 #include "talus/run/auditor.h"
 
-namespace talus::test {
+namespace talus::test::junction {
 
-inline constexpr double kDegree = std::numbers::pi / 180;
 inline const double kMu = std::tan(30 * kDegree);
 inline constexpr double kG = 10;
 inline const std::string kHard;
@@ -101,4 +100,4 @@ inline double stage_begins(const CaseResult& r, double duration) {
   return r.column("t [s]").back() - duration;
 }
 
-}  // namespace talus::test
+}  // namespace talus::test::junction

@@ -11,7 +11,7 @@
 
 #include "talus/geometry/polygon.h"
 
-namespace talus::test {
+namespace talus::test::limit {
 
 inline constexpr double kG = 9.81;     // [m/s2]
 inline constexpr double kRadius = 10;  // of the centre line of all arches [m]
@@ -102,4 +102,4 @@ inline std::string columns_text(double friction_degrees) {
   return text;
 }
 
-}  // namespace talus::test
+}  // namespace talus::test::limit

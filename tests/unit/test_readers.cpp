@@ -9,6 +9,8 @@
 #include "talus/base/random.h"
 #include "talus/base/text_file.h"
 
+namespace test_readers {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -36,3 +38,5 @@ TEST_CASE("readers: seeds of the fuzzers, whole and damaged") {
     CHECK(taken > 0);  // at least one seed is a sound text
   }
 }
+
+}  // namespace test_readers

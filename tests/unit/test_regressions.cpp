@@ -11,6 +11,8 @@
 #include "talus/contact/contact_rows.h"
 #include "talus/geometry/polygon_check.h"
 
+namespace test_regressions {
+
 using namespace talus;
 namespace fs = std::filesystem;
 
@@ -153,3 +155,5 @@ TEST_CASE("regression: the folder of a killed run can be replaced by force") {
   CHECK_NOTHROW(open_result_folder(folder, true));
   fs::remove_all(folder);
 }
+
+}  // namespace test_regressions

@@ -6,6 +6,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_absorbing {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -229,3 +231,5 @@ TEST_CASE("static = roller and free: what stands in static stages") {
     check_close(fmt::format("{} base: kept reaction along y [N]", hold), fy, y, 1e-6, 1e-8);
   }
 }
+
+}  // namespace test_absorbing

@@ -8,6 +8,8 @@
 #include "support/tolerance.h"
 #include "talus/model/toml_source.h"
 
+namespace test_bar_impact {
+
 using namespace talus;
 using namespace talus::test;
 using talus::example::BarCase;
@@ -113,3 +115,5 @@ TEST_CASE("A1 bar impact: difference-quotient Jacobian gives the same run") {
   check_close("A1 difference Jacobian, total impulse", d.impulse, a.impulse, 1e-9, 1e-12);
   check_close("A1 difference Jacobian, second peak", d.second_peak, a.second_peak, 1e-9, 1e-12);
 }
+
+}  // namespace test_bar_impact

@@ -7,6 +7,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_base_inputs {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -145,3 +147,5 @@ TEST_CASE("inputs: compliant base, rigid base with its motion, body force in its
   for (const CaseResult* r : {&compliant, &rigid, &body, &ringing})
     check_below("inputs: energy left over / largest term", r->run.closure(), 1e-2, 1e-9);
 }
+
+}  // namespace test_base_inputs

@@ -7,6 +7,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_bolt_history {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -184,3 +186,5 @@ TEST_CASE("bolt installed after an excavation reaches over the gap, not into roc
   CHECK(std::count(tied.begin(), tied.end(), 0) > 0);
   CHECK(std::count(tied.begin(), tied.end(), 2) > 0);
 }
+
+}  // namespace test_bolt_history

@@ -13,6 +13,8 @@
 #include "support/tolerance.h"
 #include "talus/supports/bar.h"
 
+namespace test_bolts {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -334,3 +336,5 @@ TEST_CASE("grouted bar drawn until it ruptures at the joint") {
   CHECK(r.column("m.ruptured").back() == 1);
   check_below("ruptured bar: energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }
+
+}  // namespace test_bolts

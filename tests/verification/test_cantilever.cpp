@@ -4,6 +4,8 @@
 #include "support/tolerance.h"
 #include "support/triangle_fem.h"
 
+namespace test_cantilever {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -119,3 +121,5 @@ TEST_CASE("A6c cantilever of bonded triangles: deflection of the finite elements
                 -small.column("end.displacement_y").back() / (linear / 1000), 1, 1e-6, 1e-7);
   }
 }
+
+}  // namespace test_cantilever

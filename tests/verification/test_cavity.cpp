@@ -5,6 +5,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_cavity {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -95,3 +97,5 @@ TEST_CASE("A7d pressure pulse in a cavity: radial displacement and velocity") {
   check_close("A7d velocity at 3 a [m/s]", largest("r3.velocity_x"), 0.3525, 5e-2, 2e-2);
   check_below("A7d energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
+
+}  // namespace test_cavity

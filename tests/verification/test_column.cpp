@@ -6,6 +6,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_column {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -116,3 +118,5 @@ TEST_CASE("A6a sudden gravity: peak and period") {
                 1e-3);
   }
 }
+
+}  // namespace test_column

@@ -5,6 +5,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_contact_trust {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -174,3 +176,5 @@ TEST_CASE(
   check_below("block at 93.5 % of its friction: moved in the last 2.5 s [m]",
               std::abs(x.back() - x[x.size() / 6]), 1e-6, 1e-9);
 }
+
+}  // namespace test_contact_trust

@@ -13,6 +13,8 @@
 #include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
 
+namespace test_cut_examples {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -149,3 +151,5 @@ TEST_CASE("example settle: nothing passes through anything") {
   check_below("settle, largest overlap / smaller block", worst.share, 1e-3, 2e-4);
   CHECK(r.run.failed_steps == 0);
 }
+
+}  // namespace test_cut_examples

@@ -14,6 +14,8 @@
 #include "talus/base/random.h"
 #include "talus/step/step.h"
 
+namespace test_determinism {
+
 using namespace talus;
 
 namespace {
@@ -247,3 +249,5 @@ TEST_CASE("a run that goes on from a copy of its state has the bits of the unint
     check_checkpoint(scene, 31, 29);
   }
 }
+
+}  // namespace test_determinism

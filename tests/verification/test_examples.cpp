@@ -5,6 +5,8 @@
 #include "talus/model/toml_source.h"
 #include "talus/record/read_record.h"
 
+namespace test_examples {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -426,3 +428,5 @@ TEST_CASE("example rough_joint: breaks, weakens, rides up") {
   CHECK(r.run.broken_faces == 1);
   check_below("rough_joint energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
+
+}  // namespace test_examples

@@ -3,8 +3,11 @@
 #include "support/junction_models.h"
 #include "talus/base/random.h"
 
+namespace test_falling_stones {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::junction;
 
 TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is covered that is free") {
   // nothing known by hand but what the audit asks: a collapse meets every way in which corners can meet
@@ -33,3 +36,5 @@ TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is cove
   }
   audited(text);
 }
+
+}  // namespace test_falling_stones

@@ -6,6 +6,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_frames {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -234,3 +236,5 @@ TEST_CASE("A6b patch test: a bonded partition of any polygons deforms as one aff
     check_below("A6b energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
   }
 }
+
+}  // namespace test_frames

@@ -3,6 +3,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_free_block {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -100,3 +102,5 @@ block = "b"
   check_below("A3c area beyond the physical strain", worst_area, 1e-9, 1e-10);
   check_below("A3c drift of angular momentum over 32 turns", worst_momentum, 1e-10, 5e-15);
 }
+
+}  // namespace test_free_block

@@ -11,6 +11,8 @@
 #include "talus/cut/layout.h"
 #include "talus/talus.h"
 
+namespace test_hidden_mechanisms {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -296,3 +298,5 @@ TEST_SUITE("long: wedges") {
     }
   }
 }
+
+}  // namespace test_hidden_mechanisms

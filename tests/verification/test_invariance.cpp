@@ -7,8 +7,11 @@
 #include "support/limit_models.h"
 #include "support/tolerance.h"
 
+namespace test_invariance {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::limit;
 
 namespace {
 
@@ -481,3 +484,5 @@ TEST_SUITE("long: invariance") {
   TEST_CASE("invariance: mesh with fault") { Subject(case_called("mesh with fault")).check_all(); }
   TEST_CASE("invariance: pile") { Subject(case_called("pile")).check_all(); }
 }
+
+}  // namespace test_invariance

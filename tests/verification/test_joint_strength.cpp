@@ -6,8 +6,11 @@
 #include "support/tolerance.h"
 #include "talus/contact/joint_state.h"
 
+namespace test_joint_strength {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::limit;
 
 namespace {
 
@@ -165,3 +168,5 @@ TEST_CASE("residual friction alone: a face without cohesion weakens at its first
   CHECK(r.run.broken_faces == 1);
   check_energy(r);
 }
+
+}  // namespace test_joint_strength

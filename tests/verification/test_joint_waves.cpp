@@ -7,6 +7,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_joint_waves {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -334,3 +336,5 @@ duration = 1
 }
 
 TEST_SUITE_END();
+
+}  // namespace test_joint_waves

@@ -3,8 +3,11 @@
 
 #include "support/junction_models.h"
 
+namespace test_junctions {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::junction;
 
 namespace {
 
@@ -522,3 +525,5 @@ TEST_CASE("a block that comes from an elastic bed onto a hard one is not thrown 
                 3e-2);
   }
 }
+
+}  // namespace test_junctions

@@ -10,8 +10,11 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_limit_states {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::limit;
 
 namespace {
 
@@ -129,3 +132,5 @@ TEST_CASE("A6g columns on a slope topple below the friction of Goodman and Bray"
     }
   }
 }
+
+}  // namespace test_limit_states

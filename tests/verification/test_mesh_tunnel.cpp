@@ -10,6 +10,8 @@
 #include "talus/base/text_file.h"
 #include "talus/mesh/read_msh.h"
 
+namespace test_mesh_tunnel {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -105,3 +107,5 @@ TEST_CASE("A6j by an unstructured mesh that Gmsh made") {
   check_close("A6j Gmsh's mesh, crown, blocks / exact", crown(r) / -t.exact({0, 1}).y, 1, 3e-2, 1e-2);
   check_below("A6j Gmsh's mesh, energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
+
+}  // namespace test_mesh_tunnel

@@ -10,6 +10,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_oblique {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -167,3 +169,5 @@ TEST_CASE("A4d viscous edge: pressure waves at 60 degrees, shear waves at 30") {
       check_close(fmt::format("A4d {}", name[i][j]), std::abs(found(i, j)), std::abs(law(i, j)), 3e-2, 1e-2,
                   1);
 }
+
+}  // namespace test_oblique

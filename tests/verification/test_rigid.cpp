@@ -6,6 +6,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_rigid {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -270,3 +272,5 @@ TEST_CASE("A6i two blocks on two planes push each other over a frictionless vert
     check_below("A6i energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
   }
 }
+
+}  // namespace test_rigid

@@ -2,8 +2,11 @@
 
 #include "support/junction_models.h"
 
+namespace test_rocked_side {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::junction;
 
 // A block of 1 m x 2 m, driven, turns about its lower right corner, which is kept at one depth in a joint of
 // kn; the block below is held at its two lower corners. With c the depth and theta the turn, by Winkler's
@@ -114,3 +117,5 @@ TEST_CASE("a side that is rocked to 0.05 rad and back gives back the work that i
       check_below("rocked to 0.05 rad and back: shear beyond that of its slip [N]", shear, 400, 1);
   }
 }
+
+}  // namespace test_rocked_side

@@ -7,8 +7,11 @@
 #include "talus/model/toml_source.h"
 #include "talus/talus.h"
 
+namespace test_safety {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::limit;
 
 namespace {
 
@@ -121,3 +124,5 @@ TEST_CASE("example toppling: the factor of safety of Goodman and Bray's columns"
   REQUIRE(r.status == SafetyStatus::kFound);
   check_close("toppling: factor of safety", r.factor(), 1 / std::tan(radians(38.134)), 2e-2, 1e-2);
 }
+
+}  // namespace test_safety

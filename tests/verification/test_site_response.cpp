@@ -8,6 +8,8 @@
 #include "support/tolerance.h"
 #include "talus/run/base_report.h"
 
+namespace test_site_response {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -368,3 +370,5 @@ TEST_CASE(
   check_above("A5 the tower's share, largest relative / largest velocity", largest(apart) / largest(all), 0.1,
               0.1);
 }
+
+}  // namespace test_site_response

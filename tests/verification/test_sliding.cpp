@@ -6,6 +6,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_sliding {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -192,3 +194,5 @@ TEST_CASE("A2f a block that should stick does not creep") {
                 std::abs(r.column("b.displacement_x").back()), 1e-6, 1e-9);
   }
 }
+
+}  // namespace test_sliding

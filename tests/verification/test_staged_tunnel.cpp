@@ -6,6 +6,8 @@
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
 
+namespace test_staged_tunnel {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -103,3 +105,5 @@ TEST_CASE("example staged_tunnel: stress of the ground, weight and balance in ev
   check_close("staged_tunnel width [m]", r.column("width.convergence").back(), 0.47e-3, 5e-2, 2e-2);
   check_below("staged_tunnel energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
+
+}  // namespace test_staged_tunnel

@@ -4,6 +4,8 @@
 #include "support/tolerance.h"
 #include "support/tunnel_model.h"
 
+namespace test_tunnel {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -94,3 +96,5 @@ TEST_CASE("A6j tunnel in equal stress (Lame): closure p a/(2 G) all around") {
   check_close("A6j Lame, crown, blocks / exact", found.crown / exact, 1, 3e-2, 1e-2);
   check_close("A6j Lame, side, blocks / exact", found.side / exact, 1, 3e-2, 1e-2);
 }
+
+}  // namespace test_tunnel

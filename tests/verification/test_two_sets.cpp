@@ -2,8 +2,11 @@
 
 #include "support/junction_models.h"
 
+namespace test_two_sets {
+
 using namespace talus;
 using namespace talus::test;
+using namespace talus::test::junction;
 
 // Two bodies of 2 m x 0.25 m, one on the other along a line of the first of two sets at 20 degrees to each
 // other, turned so that the sets are at 75 and 55 degrees. The other joints have 80 degrees of friction, or
@@ -102,3 +105,5 @@ TEST_SUITE_END();
 TEST_CASE("a crossing of two sets at 20 degrees slides along either at its strength: elastic joints") {
   shear_along_a_set(kElastic);
 }
+
+}  // namespace test_two_sets

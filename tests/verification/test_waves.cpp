@@ -6,6 +6,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_waves {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -187,3 +189,5 @@ TEST_CASE("A4b longitudinal wave: reflected and transmitted share at a step of i
                 1e-3);
   }
 }
+
+}  // namespace test_waves

@@ -7,6 +7,8 @@
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
 
+namespace test_xianglushan {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -104,3 +106,5 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
 }
 
 TEST_SUITE_END();
+
+}  // namespace test_xianglushan

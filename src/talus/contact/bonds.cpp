@@ -18,7 +18,7 @@ constexpr double kTouching = 1e-6;
 constexpr double kAtLimit = 0.99999;
 
 // Faces to a chunk.
-constexpr size_t kGrain = 256;
+constexpr size_t kFaceGrain = 256;
 
 bool holds(const std::vector<JointLaw>& laws, int joint) {
   return joint >= 0 && laws[static_cast<size_t>(joint)].holds();
@@ -256,7 +256,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     }
     guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});
   };
-  workers.for_chunks((rows.size() - first) / 2, kGrain, [&](size_t begin, size_t end) {
+  workers.for_chunks((rows.size() - first) / 2, kFaceGrain, [&](size_t begin, size_t end) {
     for (size_t at = first + 2 * begin; at < first + 2 * end; at += 2) add(rows.owner[at].at() / 2, at);
   });
 }
@@ -275,7 +275,7 @@ void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& 
         face_offset(blocks, state, bonds.faces[point / 2]).tangential[point % 2] +
         clock.dt * relative_velocity(p, state.rate)[1] - elastic_slip(rows, r, clock);
   };
-  workers.for_chunks(range.size(), 2 * kGrain, [&](size_t begin, size_t end) {
+  workers.for_chunks(range.size(), 2 * kFaceGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) remember(range.begin + i);
   });
 }
@@ -306,7 +306,7 @@ bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointLaw& l
 
 int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws, double dt,
                  const Workers& workers, State& state) {
-  return workers.sum_chunks<int>(bonds.faces.size(), kGrain, [&](size_t begin, size_t end, int& broken) {
+  return workers.sum_chunks<int>(bonds.faces.size(), kFaceGrain, [&](size_t begin, size_t end, int& broken) {
     for (size_t f = begin; f < end; ++f) {
       if (bonds.faces[f].unbreakable || state.face[f].broken) continue;
       const auto j = static_cast<size_t>(bonds.faces[f].joint);

@@ -23,7 +23,7 @@ constexpr double kLeastShare = 1e-9;
 constexpr double kNoticed = 0.01;
 
 // Contacts to a chunk.
-constexpr size_t kGrain = 1024;
+constexpr size_t kContactGrain = 1024;
 
 // What an overlap that a point was born with loses in a step: a thousandth of it, at most this share of the
 // smaller block. Pushed out at once it would leave with the speed of overlap over time step.
@@ -342,7 +342,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
   const size_t first = rows.add_more(Family::kContact, state.contacts.size());
   resize_sparingly(place, state.contacts.size());
   const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
-  workers.for_chunks(state.pairs.size(), kGrain / 4, [&](size_t begin, size_t end) {
+  workers.for_chunks(state.pairs.size(), kContactGrain / 4, [&](size_t begin, size_t end) {
     std::vector<Point> points;
     for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);
   });
@@ -351,7 +351,7 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
 void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
                        const Workers& workers, State& state) {
   const size_t first = rows.range(Family::kContact).begin;
-  workers.for_chunks(state.contacts.size(), kGrain, [&](size_t begin, size_t end) {
+  workers.for_chunks(state.contacts.size(), kContactGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const PointRows& p = rows.points[first + i];
       const Impulse& impulse = rows.impulse[first + i];

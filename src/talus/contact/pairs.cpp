@@ -31,7 +31,7 @@ constexpr double kDepthShare = 0.5;
 constexpr double kReuse = 1e-3;
 
 // Pairs to a chunk.
-constexpr size_t kGrain = 256;
+constexpr size_t kPairGrain = 256;
 
 // Contact points of two blocks: as many as Contact::partner can tell apart.
 constexpr size_t kMostPoints = 32767;
@@ -309,9 +309,9 @@ class Updater {
       for (size_t i = begin; i < end; ++i) turning_[i] = turning_speed(blocks_, ahead_.before, i);
     });
     const size_t n = state_.pairs.size();
-    changed_.resize((n + kGrain - 1) / kGrain);
+    changed_.resize((n + kPairGrain - 1) / kPairGrain);
     searched_.assign(changed_.size(), 0);
-    workers.for_chunks(n, kGrain, [&](size_t begin, size_t end) { look_at(begin, end); });
+    workers.for_chunks(n, kPairGrain, [&](size_t begin, size_t end) { look_at(begin, end); });
     SearchReport report;
     bool any = false;
     for (size_t c = 0; c < changed_.size(); ++c) {
@@ -336,7 +336,7 @@ class Updater {
   }
 
   void look_at(size_t begin, size_t end) {
-    Changed& changed = changed_[begin / kGrain];
+    Changed& changed = changed_[begin / kPairGrain];
     ContactSearch search;
     const State& s = state_;
     for (size_t i = begin; i < end; ++i) {
@@ -347,7 +347,7 @@ class Updater {
       if (pair.reuse >= 0 && need <= pair.margin && moved_apart(blocks_, s, pair) <= pair.reuse &&
           !uncovered(blocks_, s, pair, pair.reuse))
         continue;
-      ++searched_[begin / kGrain];
+      ++searched_[begin / kPairGrain];
       const auto [small, large] = by_size(blocks_, pair);
       const double size = std::min(blocks_.size[small], blocks_.size[large]);
       // a power of two times the share: small changes of speed are no reason to seek anew
@@ -405,14 +405,14 @@ class Updater {
     int count = 0;
     for (size_t c = 0; c < changed_.size(); ++c) {
       chunk_begin[c] = count;
-      const size_t end = std::min(state_.pairs.size(), (c + 1) * kGrain);
+      const size_t end = std::min(state_.pairs.size(), (c + 1) * kPairGrain);
       const ContactPair& last = state_.pairs[end - 1];
-      count += last.begin + last.count - state_.pairs[c * kGrain].begin;
+      count += last.begin + last.count - state_.pairs[c * kPairGrain].begin;
       for (const auto& [pair, now] : changed_[c].pair) count += now - state_.pairs[pair].count;
     }
     std::vector<std::vector<Run>> runs(changed_.size());
-    workers.for_chunks(state_.pairs.size(), kGrain, [&](size_t begin, size_t end) {
-      const size_t c = begin / kGrain;
+    workers.for_chunks(state_.pairs.size(), kPairGrain, [&](size_t begin, size_t end) {
+      const size_t c = begin / kPairGrain;
       move_pairs(begin, end, chunk_begin[c], runs[c]);
     });
 
@@ -443,7 +443,7 @@ class Updater {
 
   // New places of the points of pairs [begin, end), which start at `at`.
   void move_pairs(size_t begin, size_t end, int at, std::vector<Run>& runs) {
-    const Changed& c = changed_[begin / kGrain];
+    const Changed& c = changed_[begin / kPairGrain];
     auto changed = c.pair.begin();
     bool go_on = false;  // with the run before
     for (size_t i = begin; i < end; ++i) {

@@ -1,8 +1,7 @@
 #pragma once
 // The table of the model file (schema.h) in its parts, one file each.
 
-#include <numbers>
-
+#include "talus/base/angle.h"
 #include "talus/model/schema.h"
 
 namespace talus {
@@ -59,8 +58,6 @@ inline KeySpec move_key() {
           .default_text = "[0, 0]",
           .doc = "Moved by this, after it has been turned."};
 }
-
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 
 /// What a block can be without a motion of its own.
 inline std::vector<std::string> undriven_kinds() { return {"deformable", "rigid", "fixed"}; }

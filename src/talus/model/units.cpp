@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <numbers>
 
+#include "talus/base/angle.h"
 #include "talus/base/text.h"
 
 namespace talus {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStandardGravity = 9.80665;
 
 struct DimensionName {
@@ -58,48 +57,48 @@ std::vector<std::string> symbols_of(Dimension dimension) {
 }  // namespace
 
 const std::vector<Unit>& all_units() {
-  using D = Dimension;
+  using enum Dimension;
   static const std::vector<Unit> units = {
-      {"m", D::kLength, 1},
-      {"mm", D::kLength, 1e-3},
-      {"cm", D::kLength, 1e-2},
-      {"km", D::kLength, 1e3},
-      {"m2", D::kArea, 1},
-      {"cm2", D::kArea, 1e-4},
-      {"s", D::kTime, 1},
-      {"ms", D::kTime, 1e-3},
-      {"us", D::kTime, 1e-6},
-      {"min", D::kTime, 60},
-      {"m/s", D::kVelocity, 1},
-      {"mm/s", D::kVelocity, 1e-3},
-      {"cm/s", D::kVelocity, 1e-2},
-      {"km/h", D::kVelocity, 1 / 3.6},
-      {"m/s2", D::kAcceleration, 1},
-      {"cm/s2", D::kAcceleration, 1e-2},
-      {"gal", D::kAcceleration, 1e-2},
-      {"g", D::kAcceleration, kStandardGravity},
-      {"rad", D::kAngle, 1},
-      {"deg", D::kAngle, kDegree},
-      {"rad/s", D::kAngularVelocity, 1},
-      {"deg/s", D::kAngularVelocity, kDegree},
-      {"1/s", D::kRate, 1},
-      {"1/min", D::kRate, 1.0 / 60},
-      {"kg/m3", D::kDensity, 1},
-      {"t/m3", D::kDensity, 1e3},
-      {"g/cm3", D::kDensity, 1e3},
-      {"Pa", D::kStress, 1},
-      {"kPa", D::kStress, 1e3},
-      {"MPa", D::kStress, 1e6},
-      {"GPa", D::kStress, 1e9},
-      {"N", D::kForce, 1},
-      {"kN", D::kForce, 1e3},
-      {"MN", D::kForce, 1e6},
-      {"Pa/m", D::kStiffness, 1},
-      {"MPa/m", D::kStiffness, 1e6},
-      {"GPa/m", D::kStiffness, 1e9},
-      {"N/m", D::kLineForce, 1},
-      {"kN/m", D::kLineForce, 1e3},
-      {"MN/m", D::kLineForce, 1e6},
+      {"m", kLength, 1},
+      {"mm", kLength, 1e-3},
+      {"cm", kLength, 1e-2},
+      {"km", kLength, 1e3},
+      {"m2", kArea, 1},
+      {"cm2", kArea, 1e-4},
+      {"s", kTime, 1},
+      {"ms", kTime, 1e-3},
+      {"us", kTime, 1e-6},
+      {"min", kTime, 60},
+      {"m/s", kVelocity, 1},
+      {"mm/s", kVelocity, 1e-3},
+      {"cm/s", kVelocity, 1e-2},
+      {"km/h", kVelocity, 1 / 3.6},
+      {"m/s2", kAcceleration, 1},
+      {"cm/s2", kAcceleration, 1e-2},
+      {"gal", kAcceleration, 1e-2},
+      {"g", kAcceleration, kStandardGravity},
+      {"rad", kAngle, 1},
+      {"deg", kAngle, kDegree},
+      {"rad/s", kAngularVelocity, 1},
+      {"deg/s", kAngularVelocity, kDegree},
+      {"1/s", kRate, 1},
+      {"1/min", kRate, 1.0 / 60},
+      {"kg/m3", kDensity, 1},
+      {"t/m3", kDensity, 1e3},
+      {"g/cm3", kDensity, 1e3},
+      {"Pa", kStress, 1},
+      {"kPa", kStress, 1e3},
+      {"MPa", kStress, 1e6},
+      {"GPa", kStress, 1e9},
+      {"N", kForce, 1},
+      {"kN", kForce, 1e3},
+      {"MN", kForce, 1e6},
+      {"Pa/m", kStiffness, 1},
+      {"MPa/m", kStiffness, 1e6},
+      {"GPa/m", kStiffness, 1e9},
+      {"N/m", kLineForce, 1},
+      {"kN/m", kLineForce, 1e3},
+      {"MN/m", kLineForce, 1e6},
   };
   return units;
 }

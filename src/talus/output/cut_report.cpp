@@ -1,17 +1,15 @@
 #include "talus/output/cut_report.h"
+#include "talus/base/angle.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 namespace talus {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Spread spread_of(std::vector<double> v) {
   if (v.empty()) return {};

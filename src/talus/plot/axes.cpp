@@ -7,7 +7,7 @@
 namespace talus::plot {
 namespace {
 
-constexpr double kGap = 8;  // [px] between labels and the name of the axis
+constexpr double kNameGap = 8;  // [px] between labels and the name of the axis
 
 }  // namespace
 
@@ -30,9 +30,9 @@ Axis make_axis(cairo_t* cr, Range range, double length, bool across) {
   return axis;
 }
 
-double room_left(const Axis& y) { return kFontSize + kGap + y.widest + kTickLength + kTickGap; }
+double room_left(const Axis& y) { return kFontSize + kNameGap + y.widest + kTickLength + kTickGap; }
 
-double room_below() { return kTickLength + kTickGap + 2 * kFontSize + kGap; }
+double room_below() { return kTickLength + kTickGap + 2 * kFontSize + kNameGap; }
 
 void draw_rule(cairo_t* cr, Vec2 from, Vec2 to) {
   cairo_move_to(cr, crisp(from.x), crisp(from.y));
@@ -59,7 +59,7 @@ void draw_axes(cairo_t* cr, const View& view, const Axis& x_axis, const Axis& y_
     draw_text(cr, y_axis.labels[i], frame.x - kTickLength - kTickGap, y, 1);
   }
   set_color(cr, kText);
-  draw_text(cr, "x [m]", frame.middle().x, label_y + kFontSize + kGap, 0.5);
+  draw_text(cr, "x [m]", frame.middle().x, label_y + kFontSize + kNameGap, 0.5);
   cairo_save(cr);
   cairo_translate(cr, frame.x - room_left(y_axis) + kFontSize / 2, frame.middle().y);
   cairo_rotate(cr, -std::numbers::pi / 2);

@@ -16,7 +16,7 @@ namespace talus::plot {
 namespace {
 
 // Sizes in px.
-constexpr double kMargin = 12, kTitleRow = 28, kTitleSize = 15, kGap = 10, kRow = 19, kPad = 10;
+constexpr double kBarGap = 10, kRow = 19;
 constexpr double kLargestWidth = 860, kLargestHeight = 780;  // of the frame
 constexpr double kBarWidth = 260, kBarHeight = 14;
 constexpr double kThinOutline = 7;  // blocks smaller than this have no outline
@@ -218,7 +218,7 @@ Sheet make_sheet(cairo_t* cr, const Box& box, const Scenery& scenery) {
   s.y = make_axis(cr, v.y_range(), v.frame.h, false);
   v.frame.x = std::ceil(kMargin + room_left(s.y)), v.frame.y = kMargin + kTitleRow;
   s.width = std::ceil(v.frame.right() + std::max(kMargin, s.x.widest / 2 + 4));
-  s.height = std::ceil(v.frame.bottom() + room_below() + kGap + foot_rows(scenery) * kRow + kMargin);
+  s.height = std::ceil(v.frame.bottom() + room_below() + kBarGap + foot_rows(scenery) * kRow + kMargin);
   return s;
 }
 
@@ -290,7 +290,7 @@ std::string with_unit(double value, const std::string& unit) {
 
 void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
   const double x = sheet.view.frame.x, sample = 37;
-  double y = sheet.view.frame.bottom() + room_below() + kGap + kRow / 2;
+  double y = sheet.view.frame.bottom() + room_below() + kBarGap + kRow / 2;
   set_font(cr, kFontSize);
   const auto text = [&](const std::string& words, double at, double anchor = 0) {
     set_color(cr, kText);

@@ -23,12 +23,11 @@ namespace talus::plot {
 namespace {
 
 // Sizes in px.
-constexpr double kTitleSize = 15, kTitleRow = 28, kMargin = 12, kGap = 8;
-constexpr double kLargestWidth = 1100, kLargestHeight = 1200;  // of the frame
-constexpr double kLeastFrame = 64;                             // along either axis
-constexpr double kLeastSheet = 480;                            // width
-constexpr double kPad = 10;                                    // from the model to the frame
-constexpr double kRoomForSymbols = 34;                         // the same where something acts
+constexpr double kGap = 8;
+constexpr double kWidestFrame = 1100, kHighestFrame = 1200;  // of the frame
+constexpr double kLeastFrame = 64;                           // along either axis
+constexpr double kLeastSheet = 480;                          // width
+constexpr double kRoomForSymbols = 34;                       // the same where something acts
 
 // Everything the sheet shows and where; both files are drawn from it.
 struct Picture {
@@ -65,7 +64,7 @@ View make_view(const Model& model, const Cut& cut, const Layout& layout) {
   const double pad = something_acts ? kRoomForSymbols : kPad;
   View view;
   view.middle = {x.lo + x.length() / 2, y.lo + y.length() / 2};
-  view.scale = std::min((kLargestWidth - 2 * pad) / x.length(), (kLargestHeight - 2 * pad) / y.length());
+  view.scale = std::min((kWidestFrame - 2 * pad) / x.length(), (kHighestFrame - 2 * pad) / y.length());
   view.frame.w = std::max(kLeastFrame, std::ceil(x.length() * view.scale + 2 * pad));
   view.frame.h = std::max(kLeastFrame, std::ceil(y.length() * view.scale + 2 * pad));
   return view;

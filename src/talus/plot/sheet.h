@@ -15,6 +15,8 @@
 namespace talus::plot {
 
 constexpr double kFontSize = 13;  // [px] of all texts but title and monitor names
+constexpr double kTitleSize = 15, kTitleRow = 28, kMargin = 12;  // [px]
+constexpr double kPad = 10;                                      // [px] from the model to the frame
 
 struct Color {
   double r = 0, g = 0, b = 0;

@@ -13,7 +13,7 @@ namespace talus::record {
 namespace {
 
 constexpr size_t kLabelWidth = 18;
-constexpr size_t kHeaderLines = 17;
+constexpr size_t kKnetHeader = 17;
 
 struct Entry {
   size_t line = 0;  // from 1; 0: absent
@@ -22,7 +22,7 @@ struct Entry {
 
 // The header line whose label begins with `label` (labels are spelled in more than one way behind that).
 Entry find_entry(const Lines& lines, std::string_view label) {
-  for (size_t n = 1; n <= std::min(lines.count(), kHeaderLines); ++n) {
+  for (size_t n = 1; n <= std::min(lines.count(), kKnetHeader); ++n) {
     const std::string& line = lines.line[n - 1];
     if (lower_case(line).rfind(label, 0) != 0) continue;
     return {
@@ -34,7 +34,7 @@ Entry find_entry(const Lines& lines, std::string_view label) {
 Entry need_entry(const Lines& lines, std::string_view label) {
   const Entry e = find_entry(lines, label);
   if (e.line == 0)
-    fail(lines, std::min(lines.count(), kHeaderLines), fmt::format("the header has no line \"{}\"", label),
+    fail(lines, std::min(lines.count(), kKnetHeader), fmt::format("the header has no line \"{}\"", label),
          "a K-NET file has 17 header lines, from Origin Time to Memo.; fetch it again");
   return e;
 }

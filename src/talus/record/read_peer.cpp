@@ -13,7 +13,7 @@ namespace talus::record {
 
 namespace {
 
-constexpr size_t kHeaderLines = 10;
+constexpr size_t kPeerHeader = 10;
 
 struct Counts {
   size_t line = 0;  // that holds them, from 1
@@ -28,7 +28,7 @@ Counts find_counts(const Lines& lines) {
       std::regex::icase);
   static const std::regex kOld(R"(^\s*(\d+)[\s,]+([-+]?[0-9.]+(e[-+]?\d+)?)[\s,]+npts\s*,?\s*dt.*$)",
                                std::regex::icase);
-  for (size_t n = 1; n <= std::min(lines.count(), kHeaderLines); ++n) {
+  for (size_t n = 1; n <= std::min(lines.count(), kPeerHeader); ++n) {
     const std::string& line = lines.line[n - 1];
     if (lower_case(line).find("npts") == std::string::npos) continue;
     std::smatch match;

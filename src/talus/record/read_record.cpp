@@ -14,7 +14,7 @@ namespace talus::record {
 
 namespace {
 
-constexpr size_t kHeaderLines = 20;                       // no format has a longer header
+constexpr size_t kLongestHeader = 20;                     // no format has a longer header
 constexpr double kShortestStep = 1e-5, kLongestStep = 1;  // [s] beyond, a unit was mistaken
 
 bool holds(const std::string& line, std::string_view word) {
@@ -29,7 +29,7 @@ std::string_view name_of(Format format) {
 }
 
 Format recognised(const Lines& lines) {
-  const size_t n = std::min(lines.count(), kHeaderLines);
+  const size_t n = std::min(lines.count(), kLongestHeader);
   const auto any = [&](std::string_view word) {
     return std::any_of(lines.line.begin(), lines.line.begin() + static_cast<std::ptrdiff_t>(n),
                        [&](const std::string& l) { return holds(l, word); });

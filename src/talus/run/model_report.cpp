@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "talus/base/angle.h"
 #include "talus/model/joint_law.h"
 #include "talus/output/text_table.h"
 
@@ -14,8 +15,6 @@ namespace talus {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 const char* kind_name(BlockKind kind) {
   switch (kind) {

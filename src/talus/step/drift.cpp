@@ -4,14 +4,12 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/step/chunks.h"
 #include "talus/step/step.h"
 
 namespace talus {
 
 namespace {
-
-// Blocks to a chunk.
-constexpr size_t kBlocks = 512;
 
 // Moves block k; false when the result is no block any more.
 bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {

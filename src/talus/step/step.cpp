@@ -8,14 +8,11 @@
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/contact/joint_state.h"
+#include "talus/step/chunks.h"
 
 namespace talus {
 
 namespace {
-
-// Blocks and rows to a chunk. Sums are taken chunk by chunk: these numbers are part of the result's last
-// bits.
-constexpr size_t kBlocks = 512, kRows = 1024;
 
 // Newton is asked to mend a failed step of Gauss-Seidel up to this many points: beyond, its factors would
 // fill the memory.

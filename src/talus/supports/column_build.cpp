@@ -5,6 +5,7 @@
 
 #include "talus/supports/free_field.h"
 #include "talus/supports/medium.h"
+#include "talus/supports/ties.h"
 
 namespace talus {
 
@@ -13,9 +14,6 @@ namespace {
 // Nodes nearer to the one below than this share of the median edge are left out, unless the rock changes
 // there: the column must not ask for shorter steps than the blocks.
 constexpr double kShortElement = 0.3;
-
-// Heights within this share of the side are the same.
-constexpr double kHeightShare = 1e-6;
 
 class ColumnMaker {
  public:

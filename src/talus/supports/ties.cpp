@@ -10,9 +10,6 @@ namespace talus {
 
 namespace {
 
-// Heights within this share of the side's height are the same.
-constexpr double kHeightShare = 1e-6;
-
 class SideTier {
  public:
   SideTier(const Model& model, const Layout& layout, const BlockSet& blocks, int boundary, Findings& findings)

@@ -12,6 +12,9 @@
 
 namespace talus {
 
+/// Heights within this share of a side's height are the same.
+inline constexpr double kHeightShare = 1e-6;
+
 /// Material points of the two sides that move alike.
 struct TiePoint {
   int boundary = -1;  // of the model

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+namespace test_check_frame {
+
 using namespace talus;
 using namespace talus::audit;
 
@@ -257,3 +259,5 @@ TEST_CASE("audit: findings do not depend on threads, nor on where the model lies
     for (Vec2& p : b.polygon) p += Vec2{1048576, -1048576};
   CHECK(c.look().findings[0].share == doctest::Approx(one.findings[0].share).epsilon(1e-6));
 }
+
+}  // namespace test_check_frame

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace test_watch {
+
 using namespace talus;
 using namespace talus::audit;
 
@@ -96,3 +98,5 @@ TEST_CASE("audit watch: a block that goes through another within a step") {
   along.step({0.9, 0}, {});
   CHECK(along.count(Defect::kCrossed) == 0);
 }
+
+}  // namespace test_watch

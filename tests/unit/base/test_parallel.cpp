@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_parallel {
+
 using namespace talus;
 
 namespace {
@@ -125,3 +127,5 @@ TEST_CASE("copies share the team, one call after the other") {
     });
   CHECK(done == 5000);
 }
+
+}  // namespace test_parallel

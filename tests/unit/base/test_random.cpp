@@ -6,6 +6,8 @@
 #include <functional>
 #include <vector>
 
+namespace test_random {
+
 using namespace talus;
 
 namespace {
@@ -146,3 +148,5 @@ TEST_CASE("random: the first numbers of the streams of neighbouring lines are ev
   check_unrelated(first, second);
   check_unrelated(first, std::vector<double>(first.begin() + 1, first.end()));
 }
+
+}  // namespace test_random

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+namespace test_text {
+
 using namespace talus;
 
 TEST_CASE("closest_name finds the name with the fewest edits") {
@@ -72,3 +74,5 @@ TEST_CASE("text_hash is FNV-1a with 64 bits") {
   CHECK(text_hash("\xff") == "af64724c8602eb6e");  // bytes above 127 count without sign
   CHECK(text_hash(std::string("a\0b", 3)) != text_hash("a"));
 }
+
+}  // namespace test_text

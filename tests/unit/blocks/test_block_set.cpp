@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+namespace test_block_set {
+
 using namespace talus;
 
 namespace {
@@ -232,3 +234,5 @@ TEST_CASE("the moment clamp leaves blocks that fit alone, and a second call chan
   CHECK(blocks.clamped == 1);
   CHECK(blocks.inertia[1].yy == once.yy);
 }
+
+}  // namespace test_block_set

@@ -7,6 +7,8 @@
 #include "talus/blocks/in_situ.h"
 #include "talus/step/change.h"
 
+namespace test_in_situ {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -224,3 +226,5 @@ TEST_CASE("jointed ground laid with its stress is at rest: nothing presses at th
   // the stress of the ground on such a corner would make 5 %
   check_below("in_situ largest force at corners / on faces", at_corners / on_faces, 1e-4, 1e-5);
 }
+
+}  // namespace test_in_situ

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_state {
+
 using namespace talus;
 
 namespace {
@@ -155,3 +157,5 @@ TEST_CASE("initial_state starts at rest position with the velocities of blocks t
   CHECK(state.rate[2].a == Vec2{0, 0});
   CHECK(size_of(state.rate[2].G) == 0);
 }
+
+}  // namespace test_state

@@ -9,6 +9,8 @@
 
 #include "talus/step/scene.h"
 
+namespace test_bonds {
+
 using namespace talus;
 
 namespace {
@@ -360,3 +362,5 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   state.displacement[1].x -= 0.1 * elastic;
   CHECK(left_over(0.9) == doctest::Approx(0).scale(off / dt).epsilon(1e-12));
 }
+
+}  // namespace test_bonds

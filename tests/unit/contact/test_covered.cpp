@@ -8,6 +8,8 @@
 #include "support/block_scene.h"
 #include "talus/contact/pairs.h"
 
+namespace test_covered {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -142,3 +144,5 @@ TEST_CASE("an overlap that a hard point was born with is kept for now") {
   REQUIRE(state.contacts.size() == 2);
   for (const Contact& c : state.contacts) CHECK(c.allowed == doctest::Approx(2e-5).epsilon(1e-9));
 }
+
+}  // namespace test_covered

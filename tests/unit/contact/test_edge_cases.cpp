@@ -3,6 +3,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_edge_cases {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -136,3 +138,5 @@ TEST_CASE("edge case: no block, or an edge of length zero, is refused") {
   CHECK(refusal(head() + block("b", "[[0,0],[1,0],[1,0],[0,1]]") + stage())
             .find("has an edge of length zero") != std::string::npos);
 }
+
+}  // namespace test_edge_cases

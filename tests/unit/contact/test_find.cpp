@@ -13,6 +13,8 @@
 #include "talus/contact/contact_rows.h"
 #include "talus/step/scene.h"
 
+namespace test_find {
+
 using namespace talus;
 
 namespace {
@@ -477,3 +479,5 @@ TEST_CASE("two blocks that a gap keeps apart at a crossing of joints do not touc
   CHECK(apart > 1000);
   CHECK(inside > 100);
 }
+
+}  // namespace test_find

@@ -8,6 +8,8 @@
 #include "talus/contact/contact_rows.h"
 #include "talus/step/scene.h"
 
+namespace test_flat_corners {
+
 using namespace talus;
 
 namespace {
@@ -105,3 +107,5 @@ TEST_CASE("a corner that turns by more than the limit is a corner") {
   for (const ContactPoint& p : touch(s, 0, 1)) peak = peak || (p.key.block_a == 0 && p.key.vertex == 3);
   CHECK(peak);
 }
+
+}  // namespace test_flat_corners

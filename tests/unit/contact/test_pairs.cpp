@@ -13,6 +13,8 @@
 #include "support/block_scene.h"
 #include "talus/step/step.h"
 
+namespace test_pairs {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -407,3 +409,5 @@ TEST_CASE("the list holds all pairs that are closer than the margin, however blo
   CHECK(rebuilds > 2);
   CHECK(rebuilds < 60);
 }
+
+}  // namespace test_pairs

@@ -10,6 +10,8 @@
 #include "talus/cut/layout.h"
 #include "talus/geometry/shapes.h"
 
+namespace test_blocks_file {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -192,3 +194,5 @@ TEST_CASE("blocks file: one that does not exist is an error that names it") {
   CHECK(findings.error_count() == 1);
   CHECK(has(findings.render(), "no_such_file.blocks"));
 }
+
+}  // namespace test_blocks_file

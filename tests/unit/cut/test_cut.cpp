@@ -10,6 +10,8 @@
 #include "talus/base/random.h"
 #include "talus/geometry/shapes.h"
 
+namespace test_cut {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -426,3 +428,5 @@ height = "0.5 m"
   CHECK(cut.taken_out > 0);
   CHECK(cut.slivers.merged == 0);
 }
+
+}  // namespace test_cut

@@ -9,6 +9,8 @@
 #include "talus/cut/layout.h"
 #include "talus/cut/slivers.h"
 
+namespace test_cut_properties {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -349,3 +351,5 @@ TEST_CASE("blocks of any network are sound polygons without overlap in the layou
   });
   CHECK(pairs > kNetworks);
 }
+
+}  // namespace test_cut_properties

@@ -6,6 +6,8 @@
 
 #include "support/cut_case.h"
 
+namespace test_cut_traces {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -80,3 +82,5 @@ TEST_CASE("traces: wrong lists are told") {
       kRock + "lines = [[[0, 1], [9, 1]]]\n[[fault]]\nname = \"survey\"\npoints = [[0, 0], [1, 1]]\n");
   CHECK(twice.find("is called \"survey\"") != std::string::npos);
 }
+
+}  // namespace test_cut_traces

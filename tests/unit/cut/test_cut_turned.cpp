@@ -5,6 +5,8 @@
 
 #include "support/random_network.h"
 
+namespace test_cut_turned {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -119,3 +121,5 @@ TEST_CASE("a clear network gives the same blocks when it is turned and shifted")
   CHECK(blocks > static_cast<size_t>(10 * compared));
   MESSAGE(compared, " networks with ", blocks, " blocks");
 }
+
+}  // namespace test_cut_turned

@@ -9,6 +9,8 @@
 #include "talus/cut/layout.h"
 #include "talus/model/read_model.h"
 
+namespace test_expected {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -106,3 +108,5 @@ TEST_CASE("expected blocks: what does not fit the memory is told before it is dr
                 20e9)
             .find("tessellation.v: makes most of about") != std::string::npos);
 }
+
+}  // namespace test_expected

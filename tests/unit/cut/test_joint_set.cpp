@@ -7,6 +7,8 @@
 
 #include "support/cut_case.h"
 
+namespace test_joint_set {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -303,3 +305,5 @@ TEST_CASE("what one set draws depends on its name and the seed, not on the other
   model.cut.seed = 2;
   CHECK(lines_called("a") != alone);
 }
+
+}  // namespace test_joint_set

@@ -10,6 +10,8 @@
 #include "support/layout_case.h"
 #include "talus/cut/selection.h"
 
+namespace test_layout {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -225,3 +227,5 @@ TEST_CASE("what cannot be laid out is reported by name") {
   model.monitors[0].point = {2, 0.5};
   layout_of(model);
 }
+
+}  // namespace test_layout

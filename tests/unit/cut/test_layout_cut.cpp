@@ -11,6 +11,8 @@
 #include "talus/cut/selection.h"
 #include "talus/geometry/shapes.h"
 
+namespace test_layout_cut {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -223,3 +225,5 @@ TEST_CASE("layout of a cut: a block two cells wide does not cross itself either,
   REQUIRE(is_simple(CellCut(cut).ring(cut.blocks[0])));
   CHECK(polygon_defect(shape_of(cut)).find("itself") == std::string::npos);
 }
+
+}  // namespace test_layout_cut

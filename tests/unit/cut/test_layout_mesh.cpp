@@ -12,6 +12,8 @@
 #include "talus/cut/selection.h"
 #include "talus/model/read_model.h"
 
+namespace test_layout_mesh {
+
 using namespace talus;
 
 namespace {
@@ -174,3 +176,5 @@ TEST_CASE("mesh: wrong ones are told") {
   told(kModel + "[[block]]\nname = \"b\"\nmaterial = \"rock\"\npolygon = [[0, 0], [6, 0], [6, 1]]\n",
        "overlaps");
 }
+
+}  // namespace test_layout_mesh

@@ -5,6 +5,8 @@
 #include "support/cut_case.h"
 #include "talus/geometry/shapes.h"
 
+namespace test_slivers {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -298,3 +300,5 @@ TEST_CASE("needles: cells of a glued tessellation are judged among their own") {
   model.tessellations[0].joint = 1;
   CHECK(cut_of(model).slivers.needles == 0);
 }
+
+}  // namespace test_slivers

@@ -11,6 +11,8 @@
 #include "support/cut_case.h"
 #include "talus/cut/layout.h"
 
+namespace test_traces {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -222,3 +224,5 @@ TEST_CASE("a joint set of one region leaves the others whole, also where they ov
   CHECK(traces.joint_sets[0].traces == 10);
   CHECK(traces.joint_sets[0].length == doctest::Approx(4 * 10 + 6 * 5).epsilon(1e-12));
 }
+
+}  // namespace test_traces

@@ -7,6 +7,8 @@
 
 #include "talus/base/random.h"
 
+namespace test_arrangement {
+
 using namespace talus;
 
 namespace {
@@ -190,3 +192,5 @@ TEST_CASE("interior_point does not lie on a corner that reaches up to the height
   check_inside({{-6, 0}, {-5, 0}, {0, 3}, {5, 0}, {6, 0}, {6, 5}, {-6, 5}});
   check_inside({{-6, 5}, {-6, 0}, {6, 0}, {6, 5}, {5, 5}, {0, 2}, {-5, 5}});  // the same from above
 }
+
+}  // namespace test_arrangement

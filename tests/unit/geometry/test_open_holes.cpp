@@ -10,6 +10,8 @@
 #include "talus/geometry/arrangement.h"
 #include "talus/geometry/polygon_check.h"
 
+namespace test_open_holes {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -191,3 +193,5 @@ TEST_CASE("cuts that open five hundred holes in one face") {
   CHECK(faces(rings, cuts).size() == 2 * (rings.size() - 1) + 1);
   CHECK(length_of(cuts) <= 1.3 * 2 * tree_length(rings));
 }
+
+}  // namespace test_open_holes

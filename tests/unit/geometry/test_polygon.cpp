@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_polygon {
+
 using namespace talus;
 
 namespace {
@@ -149,3 +151,5 @@ TEST_CASE("close_pairs finds neighbours that share an edge or a corner only") {
   CHECK(close_pairs({{{0, 0}, {1, 1}}}, 1).empty());
   CHECK(close_pairs({{{0, 0}, {0, 0}}, {{0, 0}, {0, 0}}}, 0).size() == 1);
 }
+
+}  // namespace test_polygon

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+namespace test_polygon_check {
+
 using namespace talus;
 
 namespace {
@@ -98,3 +100,5 @@ TEST_CASE("overlap area and a point inside") {
     CHECK(polygon_overlap(l, moved(kSquare, {1, 1})).area == 0);
   }
 }
+
+}  // namespace test_polygon_check

@@ -7,6 +7,8 @@
 
 #include "talus/geometry/polygon_check.h"
 
+namespace test_shapes {
+
 using namespace talus;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("a horseshoe as high as half its width is the half circle alone") {
   CHECK(p.back() == Vec2{-2, 1});
   CHECK(std::abs(signed_area(p) - 2 * kPi) < kRound);
 }
+
+}  // namespace test_shapes

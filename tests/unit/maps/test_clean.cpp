@@ -8,6 +8,8 @@
 #include "talus/base/random.h"
 #include "talus/maps/clean.h"
 
+namespace test_clean {
+
 using namespace talus;
 using namespace talus::maps;
 
@@ -170,3 +172,5 @@ TEST_CASE("clean: a lattice with defects put in by hand is mended as often as it
   // a second pass finds nothing
   CHECK(clean_lines(lines, {0.05, 0.02, 1e-6}).empty());
 }
+
+}  // namespace test_clean

@@ -6,6 +6,8 @@
 
 #include "talus/maps/dxf_scan.h"
 
+namespace test_dxf_scan {
+
 using namespace talus::maps;
 
 namespace {
@@ -54,3 +56,5 @@ TEST_CASE("dxf scan: binary files, drawings of another format, pairs out of step
   CHECK(scan_dxf("  0\nSECTION\nHEADER\n  9\n").defect.find("line 3: expected a group code") == 0);
   CHECK(scan_dxf(kWhole + "  0\nLINE\n").defect.find("goes on after its EOF") != std::string::npos);
 }
+
+}  // namespace test_dxf_scan

@@ -10,6 +10,8 @@
 #include "talus/model/read_model.h"
 #include "talus/model/toml_source.h"
 
+namespace test_sections {
+
 using namespace talus;
 using namespace talus::maps;
 
@@ -243,3 +245,5 @@ TEST_CASE("import: guesses from names and shapes") {
   CHECK(guessed_use("cavern", {.areas = true}) == MapUse::kOpening);
   CHECK(guessed_use("Stones", {.areas = true}) == MapUse::kStone);
 }
+
+}  // namespace test_sections

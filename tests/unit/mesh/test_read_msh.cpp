@@ -7,6 +7,8 @@
 #include "talus/base/error.h"
 #include "talus/mesh/read_msh.h"
 
+namespace test_read_msh {
+
 using namespace talus;
 
 namespace {
@@ -161,3 +163,5 @@ TEST_CASE("msh: wrong files are told with file and line") {
   CHECK(defect(replaced(k41, "1 0 0 0 2 2 0 1 1 3", "1 0 0 0 2 2 0 2 1 2 3")).find("2 physical groups") !=
         std::string::npos);
 }
+
+}  // namespace test_read_msh

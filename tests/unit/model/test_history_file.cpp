@@ -10,6 +10,8 @@
 #include "support/record_text.h"
 #include "talus/model/read_model.h"
 
+namespace test_history_file {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -159,3 +161,5 @@ TEST_CASE("history file: each kind of wrong input has its message") {
     CHECK(c.message.find(w.part) != std::string::npos);
   }
 }
+
+}  // namespace test_history_file

@@ -7,6 +7,8 @@
 
 #include "talus/model/joint_law.h"
 
+namespace test_joint_law {
+
 using namespace talus;
 
 namespace {
@@ -63,3 +65,5 @@ TEST_CASE("joint law: weakened by any factor a sound joint stays sound") {
   j.cohesion = j.residual_cohesion = 1e5, j.tensile_strength = j.residual_tensile_strength = 3e4;
   for (double factor = 0.5; factor < 4; factor += 0.07) CHECK(JointLaw::defects(reduced(j, factor)).empty());
 }
+
+}  // namespace test_joint_law

@@ -10,6 +10,8 @@
 #include "talus/model/read_model.h"
 #include "talus/model/schema.h"
 
+namespace test_model_file {
+
 using namespace talus;
 
 TEST_CASE("units: numbers with units become SI") {
@@ -99,3 +101,5 @@ TEST_CASE("every key of the schema is used by an example or a test model of the 
     }
   }
 }
+
+}  // namespace test_model_file

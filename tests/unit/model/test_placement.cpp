@@ -8,6 +8,8 @@
 #include "talus/cut/layout.h"
 #include "talus/model/read_model.h"
 
+namespace test_placement {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -102,3 +104,5 @@ TEST_CASE("what is not turned keeps its bits; a point to turn about alone is ref
   CHECK(told(kHead + block + "rotate = 30\n").find("an angle needs its unit") != std::string::npos);
   CHECK(told(kHead + block + "move = 3\n").find("block.b.move") != std::string::npos);
 }
+
+}  // namespace test_placement

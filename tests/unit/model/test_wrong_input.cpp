@@ -7,6 +7,8 @@
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
+namespace test_wrong_input {
+
 using namespace talus;
 
 namespace {
@@ -262,3 +264,5 @@ TEST_CASE(
         std::string::npos);
   CHECK(message.find("give a time_step") != std::string::npos);
 }
+
+}  // namespace test_wrong_input

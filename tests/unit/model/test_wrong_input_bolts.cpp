@@ -5,6 +5,8 @@
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
+namespace test_wrong_input_bolts {
+
 using namespace talus;
 
 namespace {
@@ -209,3 +211,5 @@ TEST_CASE(
     CHECK(nothing.find("left out") == std::string::npos);
   }
 }
+
+}  // namespace test_wrong_input_bolts

@@ -6,6 +6,8 @@
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
+namespace test_wrong_input_boundary {
+
 using namespace talus;
 
 namespace {
@@ -246,3 +248,5 @@ TEST_CASE("use = false leaves a boundary out, an override brings it back; its ke
       {"no truth", boundary(kBase + "kind = \"viscous\"\nuse = 3\n"), {"boundary.b.use:", "true or false"}},
   });
 }
+
+}  // namespace test_wrong_input_boundary

@@ -8,6 +8,8 @@
 
 #include "support/told.h"
 
+namespace test_wrong_input_cut {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -459,3 +461,5 @@ TEST_CASE("wrong cut: a fault outside every region is told") {
   54:1: warning: fault.shear
 )~");
 }
+
+}  // namespace test_wrong_input_cut

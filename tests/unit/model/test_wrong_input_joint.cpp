@@ -10,6 +10,8 @@
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
+namespace test_wrong_input_joint {
+
 using namespace talus;
 
 namespace {
@@ -124,3 +126,5 @@ TEST_CASE("wrong input: a change that leaves a joint which could not be one from
     }
   }
 }
+
+}  // namespace test_wrong_input_joint

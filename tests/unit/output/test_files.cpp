@@ -16,6 +16,8 @@
 
 #include "talus/base/error.h"
 
+namespace test_files {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,3 +241,5 @@ TEST_CASE("open_result_folder") {
     CHECK(content(base.path / "file") == "text");
   }
 }
+
+}  // namespace test_files

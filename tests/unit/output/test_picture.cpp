@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_picture {
+
 using namespace talus;
 
 TEST_CASE("the picture holds every block in true proportion, with names, time and escaped title") {
@@ -28,3 +30,5 @@ TEST_CASE("the picture holds every block in true proportion, with names, time an
   CHECK(svg.find("t = 0.25 s") != std::string::npos);
   CHECK(svg.find(">0.5 m</text>") != std::string::npos);
 }
+
+}  // namespace test_picture

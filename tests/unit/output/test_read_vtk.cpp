@@ -10,6 +10,8 @@
 #include "talus/output/vtk.h"
 #include "talus/output/vtk_arrays.h"
 
+namespace test_read_vtk {
+
 using namespace talus;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("output: tables with names that hold commas and quotes come back") {
   CHECK_THROWS_WITH_AS(parse_text_table("t.csv", "a,b\n\"1,2\n"), doctest::Contains("no end"), FileError);
   CHECK_THROWS_AS(parse_text_table("t.csv", ""), FileError);
 }
+
+}  // namespace test_read_vtk

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_vtk {
+
 using namespace talus;
 
 namespace {
@@ -191,3 +193,5 @@ TEST_CASE("the collection lists every frame written so far") {
   std::error_code ignored;
   fs::remove_all(folder, ignored);
 }
+
+}  // namespace test_vtk

@@ -8,6 +8,8 @@
 
 #include "talus/model/read_model.h"
 
+namespace test_conditions {
+
 using namespace talus;
 using namespace talus::plot;
 
@@ -175,3 +177,5 @@ convergence = [[-2, 0], [2, 0]]
   CHECK(bolts.marks[0].length == doctest::Approx(300));
   CHECK(s.labelled("measured length: width").marks.size() == 1);
 }
+
+}  // namespace test_conditions

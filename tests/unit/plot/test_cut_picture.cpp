@@ -15,6 +15,8 @@
 #include "talus/model/read_model.h"
 #include "talus/plot/cut_picture.h"
 
+namespace test_cut_picture {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -266,3 +268,5 @@ TEST_CASE("write_cut_picture throws when a file cannot be written") {
                        std::runtime_error);
   CHECK(fs::is_empty(folder.path));
 }
+
+}  // namespace test_cut_picture

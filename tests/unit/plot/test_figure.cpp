@@ -15,6 +15,8 @@
 #include "talus/plot/figure.h"
 #include "talus/plot/scale.h"
 
+namespace test_figure {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -255,3 +257,5 @@ TEST_CASE("reduce_by_column keeps the way of a curve that runs back") {
   CHECK(y == std::vector<double>{0, 1, 2, 3, 4});
   CHECK(reduce_by_column({0, 1, 2}, {0, 1, 2}, 1, 1, 10).size() == 1);  // no columns: still ends
 }
+
+}  // namespace test_figure

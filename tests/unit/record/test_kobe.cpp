@@ -15,6 +15,8 @@
 #include "talus/record/read_record.h"
 #include "talus/record/response_spectrum.h"
 
+namespace test_kobe {
+
 using namespace talus::record;
 using namespace talus::test;
 
@@ -121,3 +123,5 @@ TEST_CASE("kobe: the motion against the one of the reference program, sample by 
     check_below(fmt::format("kobe motion: largest difference of {}", column), worst, tolerance, stretch);
   }
 }
+
+}  // namespace test_kobe

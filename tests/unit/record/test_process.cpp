@@ -13,6 +13,8 @@
 #include "talus/base/random.h"
 #include "talus/record/fourier.h"
 
+namespace test_process {
+
 using namespace talus;
 using namespace talus::record;
 using namespace talus::test;
@@ -236,3 +238,5 @@ TEST_CASE("process: options that do not fit the record are refused") {
   CHECK(message([](Processing& h) { h.duration = 0.1, h.end_taper = 0; }) ==
         "r: error: the window of 0.1 s has fewer than ten steps\n      = widen it");
 }
+
+}  // namespace test_process

@@ -9,6 +9,8 @@
 #include "talus/record/motion_file.h"
 #include "talus/record/synthetic.h"
 
+namespace test_read_record {
+
 using namespace talus::record;
 using namespace talus::test;
 
@@ -183,3 +185,5 @@ TEST_CASE("record: acceleration from velocity and displacement by differences") 
   r.quantity = Quantity::kAcceleration;
   CHECK(acceleration_of(r) == r.value);
 }
+
+}  // namespace test_read_record

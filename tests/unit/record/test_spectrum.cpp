@@ -10,6 +10,8 @@
 #include "talus/record/measures.h"
 #include "talus/record/response_spectrum.h"
 
+namespace test_spectrum {
+
 using namespace talus::record;
 using namespace talus::test;
 
@@ -156,3 +158,5 @@ TEST_CASE("measures: the table has a line for each") {
                            "v at the end", "d at the end", "99.9 %"})
     CHECK(table.find(word) != std::string::npos);
 }
+
+}  // namespace test_spectrum

@@ -15,6 +15,8 @@
 #include "talus/record/response_spectrum.h"
 #include "talus/record/synthetic.h"
 
+namespace test_synthetic {
+
 using namespace talus;
 using namespace talus::record;
 using namespace talus::test;
@@ -178,3 +180,5 @@ TEST_CASE("synthetic: input out of range is refused") {
          }),
          "target and band of the motion share fewer than three");
 }
+
+}  // namespace test_synthetic

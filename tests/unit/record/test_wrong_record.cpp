@@ -6,6 +6,8 @@
 #include "talus/base/error.h"
 #include "talus/record/read_record.h"
 
+namespace test_wrong_record {
+
 using namespace talus;
 using namespace talus::record;
 using namespace talus::test;
@@ -274,3 +276,5 @@ TEST_CASE("wrong record: a file that is not there") {
           "folder that talus runs in");
   }
 }
+
+}  // namespace test_wrong_record

@@ -14,6 +14,8 @@
 #include "talus/output/files.h"
 #include "talus/output/vtk_arrays.h"
 
+namespace test_frames {
+
 using namespace talus;
 using namespace talus::report;
 
@@ -106,3 +108,5 @@ TEST_CASE("report: frames that do not fit are refused") {
                        doctest::Contains("other corners"), FileError);
   CHECK_THROWS_AS(reader.read("/nowhere/frame.vtu"), FileError);
 }
+
+}  // namespace test_frames

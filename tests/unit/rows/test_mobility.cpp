@@ -13,6 +13,8 @@
 
 #include "talus/rows/rows.h"
 
+namespace test_mobility {
+
 using namespace talus;
 
 namespace {
@@ -171,3 +173,5 @@ TEST_CASE("influence is the velocity that an impulse makes, there and back the s
       CHECK(dot(p, influence(m, from, from) * p) >= m.mass * dot(p, p) * (1 - kRound));
     }
 }
+
+}  // namespace test_mobility

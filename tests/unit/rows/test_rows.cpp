@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+namespace test_rows {
+
 using namespace talus;
 
 namespace {
@@ -218,3 +220,5 @@ TEST_CASE("families: one line of the table each, in their order") {
     CHECK(entry(kAllFamilies[i]).name == std::string(kFamilies[i].name));
   }
 }
+
+}  // namespace test_rows

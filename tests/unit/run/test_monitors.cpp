@@ -11,6 +11,8 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 
+namespace test_monitors {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -168,3 +170,5 @@ TEST_CASE("wrong monitors are found before the first step") {
   told("convergence = [[0.5, 0.5], [0.5, 0.5]]\n", {"two different points"});
   told("convergence = [[0.5, 0.5], [2, 0.5]]\n", {"(2, 0.5) lies outside every block"});
 }
+
+}  // namespace test_monitors

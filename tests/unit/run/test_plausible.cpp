@@ -6,6 +6,8 @@
 
 #include "support/told.h"
 
+namespace test_plausible {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -229,3 +231,5 @@ TEST_CASE("unusual and right: no warning") {
     CHECK(told(replaced(kShakenBlock, c.from, c.to)) == "");
   }
 }
+
+}  // namespace test_plausible

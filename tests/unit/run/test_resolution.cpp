@@ -10,6 +10,8 @@
 #include "talus/record/read_record.h"
 #include "talus/run/resolution.h"
 
+namespace test_resolution {
+
 using namespace talus;
 
 namespace {
@@ -210,3 +212,5 @@ TEST_CASE("resolution: every way to shake or push is seen, once per history; rig
   rigid += "time_step = \"1 ms\"\n";
   CHECK(check_of(rigid).list.empty());
 }
+
+}  // namespace test_resolution

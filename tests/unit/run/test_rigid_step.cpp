@@ -2,6 +2,8 @@
 
 #include "support/run_case.h"
 
+namespace test_rigid_step {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -45,3 +47,5 @@ TEST_CASE("auto step of rigid blocks: a tenth of the thickness at the end of a f
   // or as fast as it gets in the time
   CHECK(step_of(1e4, "", 5) == doctest::Approx(0.1 * kThickness / 50).epsilon(1e-3));
 }
+
+}  // namespace test_rigid_step

@@ -9,6 +9,8 @@
 #include "talus/base/text_file.h"
 #include "talus/run/plan.h"
 
+namespace test_run {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -285,3 +287,5 @@ TEST_CASE("joints.csv, the summary and the frames tell slip, opening and state o
     CHECK(frame.find(name) != std::string::npos);
   std::filesystem::remove_all(folder);
 }
+
+}  // namespace test_run

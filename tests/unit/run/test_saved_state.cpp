@@ -11,6 +11,8 @@
 
 #include "talus/run/saved_state.h"
 
+namespace test_saved_state {
+
 using namespace talus;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("saved state: limits without end and anchors of sliding contacts pass 
   CHECK(back.bolts[0].crossings.empty());
   CHECK(back.bolts[1].crossings.size() == s.bolts[1].crossings.size());
 }
+
+}  // namespace test_saved_state

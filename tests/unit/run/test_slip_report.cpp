@@ -10,6 +10,8 @@
 #include "talus/run/progress.h"
 #include "talus/talus.h"
 
+namespace test_slip_report {
+
 using namespace talus;
 
 namespace {
@@ -163,3 +165,5 @@ TEST_CASE("slips.csv: joints that have slipped, greatest residual slip first; th
   CHECK(closing.find("slips.csv") != std::string::npos);
   std::filesystem::remove_all(folder);
 }
+
+}  // namespace test_slip_report

@@ -7,6 +7,8 @@
 #include "support/tolerance.h"
 #include "talus/base/error.h"
 
+namespace test_stages {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -401,3 +403,5 @@ TEST_CASE("wrong stages are found before the first step") {
     }
   }
 }
+
+}  // namespace test_stages

@@ -6,6 +6,8 @@
 
 #include "support/told.h"
 
+namespace test_trial {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -62,3 +64,5 @@ time_step = "1 ms"
   CHECK(cost[0].seconds > 0);
   CHECK(cost[0].at_least);
 }
+
+}  // namespace test_trial

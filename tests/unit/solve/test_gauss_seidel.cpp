@@ -15,6 +15,8 @@
 
 #include "talus/solve/newton.h"
 
+namespace test_gauss_seidel {
+
 using namespace talus;
 
 namespace {
@@ -541,3 +543,5 @@ TEST_CASE("a tower at rest carries its weight") {
     CHECK(sum == doctest::Approx(square * (kCount - 1 - i + 5)).epsilon(kCount * kTolerance / 0.01));
   }
 }
+
+}  // namespace test_gauss_seidel

@@ -8,6 +8,8 @@
 #include "talus/solve/contact_problem.h"
 #include "talus/solve/newton.h"
 
+namespace test_solve {
+
 using namespace talus;
 
 namespace {
@@ -212,3 +214,5 @@ TEST_CASE("contact error: zero at a solution, the gap violated in metres otherwi
   rate[1].a = {std::nan(""), 0};
   CHECK(std::isnan(contact_error(mobilities(blocks, 1), set, rate, 0.01).worst));
 }
+
+}  // namespace test_solve

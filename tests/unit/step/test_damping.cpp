@@ -10,7 +10,10 @@
 #include "support/block_scene.h"
 #include "talus/step/step.h"
 
-namespace talus {
+namespace test_damping {
+
+using namespace talus;
+
 namespace {
 
 struct Breath {
@@ -106,4 +109,5 @@ TEST_CASE("the stable limit with stiffness-proportional damping is sharp") {
 }
 
 }  // namespace
-}  // namespace talus
+
+}  // namespace test_damping

@@ -12,6 +12,8 @@
 
 #include "support/block_scene.h"
 
+namespace test_step {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -258,3 +260,5 @@ TEST_CASE("rigid blocks and blocks in free fall are not touched by implicit elas
     CHECK(x.rate[0].G.yx == y.rate[0].G.yx);
   }
 }
+
+}  // namespace test_step

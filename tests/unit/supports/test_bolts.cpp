@@ -15,6 +15,8 @@
 #include "talus/supports/bar.h"
 #include "talus/supports/bolt_path.h"
 
+namespace test_bolts {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -223,3 +225,5 @@ TEST_CASE("statics of a bar across three joints, drawn to and fro at random, is 
   check_below("bar at random: force out of balance / largest", worst, 1e-6, 1e-7);
   CHECK(ruptured <= 3);
 }
+
+}  // namespace test_bolts

@@ -6,6 +6,8 @@
 #include "talus/run/joint_report.h"
 #include "talus/supports/boundaries.h"
 
+namespace test_free_field {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -220,3 +222,5 @@ TEST_CASE("a static stage after a dynamic one puts the free field to rest and ke
   enter_stage(scene.boundaries, false, false, s);  // dynamic after dynamic: kept
   CHECK(s.boundary_static[0][1] == 7);
 }
+
+}  // namespace test_free_field

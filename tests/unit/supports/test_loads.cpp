@@ -3,6 +3,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
+namespace test_loads {
+
 using namespace talus;
 using namespace talus::test;
 
@@ -153,3 +155,5 @@ TEST_CASE("work of loads: a free block under a pressure") {
               45e3 * 45e3 / 12e3 * 1e-6 / 2 * (1 - 0.05 * 0.05), 1e-9, 1e-12);
   check_below("work of a pressure: energy left over / largest term", r.run.closure(), 1e-9, 1e-12);
 }
+
+}  // namespace test_loads

@@ -1,0 +1,12 @@
+#pragma once
+// How a step is dealt out to threads. Not for use outside step/.
+
+#include <cstddef>
+
+namespace talus {
+
+/// Blocks and rows to a chunk. Sums are taken chunk by chunk: these numbers are part of the result's last
+/// bits.
+inline constexpr size_t kBlocks = 512, kRows = 1024;
+
+}  // namespace talus

@@ -103,16 +103,19 @@ int run(const ModelArguments& args, const RunArguments& how) {
 
 int replay(const std::string& file, const std::string& method, double tolerance) {
   talus::SolverInput options;
-  options.method = method == "newton" ? talus::SolverKind::kNewton : talus::SolverKind::kGaussSeidel;
+  options.method = talus::solver_called(method);
+  options.second_solver = options.method == talus::SolverKind::kAuto;  // one that is named is seen alone
   const talus::Replay r = talus::replay_problem(file, options, tolerance);
   fmt::print("{}: {} points on {} blocks, {} islands (largest {})\n", file, r.points, r.blocks,
-             r.solve.islands, r.solve.largest_island);
-  fmt::print("  {:<14} {} iterations, contact error {:.3e} m\n", method, r.solve.iterations, r.error.worst);
+             r.solved.report.islands, r.solved.report.largest_island);
+  fmt::print("  {:<14} {} iterations, contact error {:.3e} m{}\n", talus::name_of(r.solved.method),
+             r.solved.report.iterations, r.solved.error.worst,
+             r.solved.second_solver ? "; the first solver failed" : "");
   double normal = 0, shear = 0;
   for (const talus::Impulse& p : r.rows.impulse) normal += p[0], shear += std::abs(p[1]);
   fmt::print("  impulses       normal {:.12g} N s in all, tangential {:.12g} N s in magnitude\n", normal,
              shear);
-  return r.error.worst <= tolerance ? talus::kExitOk : talus::kExitNumerical;
+  return r.solved.error.worst <= tolerance ? talus::kExitOk : talus::kExitNumerical;
 }
 
 int run_command(int argc, char** argv) {
@@ -210,11 +213,11 @@ int run_command(int argc, char** argv) {
 
   std::string problem, method = "newton";
   double tolerance = 1e-9;
-  CLI::App* replay_verb =
-      app.add_subcommand("replay", "solve the contact equations of one step again, with either solver");
+  CLI::App* replay_verb = app.add_subcommand(
+      "replay", "solve the contact equations of one step again, with any solver, or as a run would");
   replay_verb->add_option("FILE", problem, "step_N.json from a result folder")->required();
   replay_verb->add_option("--method", method, "solver")
-      ->check(CLI::IsMember({"newton", "gauss_seidel"}))
+      ->check(CLI::IsMember(std::vector<std::string>(talus::kSolverName.begin(), talus::kSolverName.end())))
       ->capture_default_str();
   replay_verb->add_option("--tolerance", tolerance, "largest contact error [m]")->capture_default_str();
   replay_verb->footer(

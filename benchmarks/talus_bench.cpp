@@ -48,8 +48,7 @@ int run(int argc, char** argv) {
                  engine.work().profile.seconds[i], 100 * engine.work().profile.seconds[i] / all);
   std::fprintf(stderr, "sweeps %d, searched %d, contacts %d, colours %d, error %.3g m at %s\n",
                engine.report().solve.iterations, engine.report().searched, engine.report().contacts,
-               engine.work().gauss_seidel.colours(), engine.report().error.worst,
-               engine.report().worst.c_str());
+               engine.report().solve.colours, engine.report().error.worst, engine.report().worst.c_str());
   return 0;
 }
 

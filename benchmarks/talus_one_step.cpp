@@ -6,6 +6,7 @@
 
 #include "command_line.h"
 #include "one_step_problem.h"
+#include "talus/solve/gauss_seidel.h"
 #include "talus_engine.h"
 
 namespace talus::bench {
@@ -55,7 +56,9 @@ Answer solve(const Solvable& start, double dt, int sweeps, const Workers& worker
   SolverInput options;
   options.max_sweeps = sweeps;
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  workers.together([&] { GaussSeidel().solve(s.mobility, options, 0, dt, workers, s.rows, s.rate); });
+  workers.together([&] {
+    GaussSeidel().solve({start.mobility, start.rate, dt, {}, s.rows, s.rate}, 0, options, workers);
+  });
   Answer answer{{}, wall_seconds() - wall, cpu_seconds() - cpu};
   for (const Impulse& p : s.rows.impulse) answer.impulse.push_back({p[0], -p[1]});
   return answer;

@@ -14,6 +14,7 @@
 #include "talus/model/findings.h"
 #include "talus/model/mesh_input.h"
 #include "talus/model/placement.h"
+#include "talus/model/solver_kind.h"
 
 namespace talus {
 
@@ -181,8 +182,6 @@ struct LoadInput : Selection, Staged {
 };
 
 enum class JacobianKind { kAnalytic, kDifference };
-
-enum class SolverKind { kAuto, kNewton, kGaussSeidel };
 
 struct SolverInput {
   SolverKind method = SolverKind::kAuto;

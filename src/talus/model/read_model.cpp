@@ -347,10 +347,7 @@ class ModelReader : private SectionReader {
     const Fields f = read_table("solver");
     model_.solver.jacobian =
         f.get<std::string>("jacobian") == "difference" ? JacobianKind::kDifference : JacobianKind::kAnalytic;
-    const auto method = f.get<std::string>("method");
-    model_.solver.method = method == "gauss_seidel" ? SolverKind::kGaussSeidel
-                           : method == "newton"     ? SolverKind::kNewton
-                                                    : SolverKind::kAuto;
+    model_.solver.method = solver_called(f.get<std::string>("method"));
     model_.solver.second_solver = f.get("second_solver", true);
     model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
     if (model_.solver.method == SolverKind::kGaussSeidel && model_.contact.law == ContactLaw::kSmoothed)

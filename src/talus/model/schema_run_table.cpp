@@ -1,6 +1,7 @@
 // What a run does: solver, monitors, output.
 
 #include "talus/model/schema_tables.h"
+#include "talus/model/solver_kind.h"
 
 namespace talus {
 
@@ -12,7 +13,7 @@ std::vector<SectionSpec> run_sections() {
        {{.name = "method",
          .type = K::kChoice,
          .default_text = "\"auto\"",
-         .choices = {"auto", "newton", "gauss_seidel"},
+         .choices = {kSolverName.begin(), kSolverName.end()},
          .doc = "`newton`: semismooth, per island of touching blocks. `gauss_seidel`: projected, point by "
                 "point, by all threads. `auto`: what is faster for the number of contact points "
                 "(docs/performance.md has the table)."},

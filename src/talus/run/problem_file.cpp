@@ -108,6 +108,9 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     for (const ordered_json& p : j.at("points"))
       replay.rows.add(read_point(p), {p.at("guess").at(0), p.at("guess").at(1)});
     const auto points = static_cast<int>(replay.rows.points.size());
+    size_t hard_ties = 0;  // as the step counts them
+    for (const PointRows& p : replay.rows.points)
+      hard_ties += std::isinf(p.lower) && p.block_b >= 0 && p.row[0].compliance == 0;
     for (const PointRows& p : replay.rows.points)
       if (p.block_a < 0 || p.block_a >= blocks || p.block_b >= blocks || p.partner >= points)
         throw std::runtime_error("a point names a block or partner that is not there");
@@ -118,14 +121,15 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     }
     const double dt = j.at("dt [s]");
     replay.points = points, replay.blocks = blocks;
-    if (options.method == SolverKind::kNewton) {
-      replay.solve = solve_newton(mobility, rate, options, 0.1 * tolerance / dt, replay.rows);
-      apply_impulses(mobility, replay.rows, rate);
-    } else {
-      replay.solve =
-          GaussSeidel().solve(mobility, options, 0.1 * tolerance, dt, Workers(), replay.rows, rate);
-    }
-    replay.error = contact_error(mobility, replay.rows, rate, dt);
+    Model model;
+    model.solver = options;
+    std::vector<BlockRate> after = rate;
+    std::vector<Impulse> guess;
+    SolverSet solvers;
+    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after};
+    const auto judge = [&] { return contact_error(mobility, replay.rows, after, dt); };
+    replay.solved =
+        solve_step(model, hard_ties, tolerance, 1, false, judge, Workers(), solvers, problem, guess);
   } catch (const std::exception& e) {
     throw FileError(
         fmt::format("{}: is no step written by talus run --dump-step: {}", file.string(), e.what()));

@@ -14,13 +14,13 @@ std::string problem_text(const Instant& instant);
 
 struct Replay {
   int points = 0, blocks = 0;
-  SolveReport solve;
-  ContactError error;
+  Solved solved;
   RowSet rows;  // with the solution
 };
 
 /// Solves a problem written by problem_text(). Throws FileError naming file and cause.
-/// @param options    method, Jacobian, most iterations and sweeps
+/// @param options    method (kAuto: as a run would choose), second solver, Jacobian, most iterations and
+/// sweeps
 /// @param tolerance  largest contact error [m]
 Replay replay_problem(const std::filesystem::path& file, const SolverInput& options, double tolerance);
 

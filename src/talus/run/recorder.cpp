@@ -19,8 +19,6 @@ namespace talus {
 
 namespace {
 
-constexpr const char* kMethod[] = {"auto", "newton", "gauss_seidel"};  // as SolverKind
-
 // Whether an instant reaches the next multiple of the interval, which then moves on. Interval 0: always.
 bool is_due(double time, double dt, double interval, double& next) {
   if (interval <= 0) return true;
@@ -483,21 +481,21 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
     if (s.kind == StageKind::kStatic) stage["at_rest"] = s.at_rest;
     j["stages"].push_back(stage);
   }
-  j["solver"] = {
-      {"method", kMethod[static_cast<int>(scene.model.solver.method)]},
-      {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
-      {"contact_solves", r.steps},
-      {"failed_steps", r.failed_steps},
-      {"second_solver_steps", r.second_solver_steps},
-      {"newton_steps", r.newton_steps},
-      {"gauss_seidel_steps", r.gauss_seidel_steps},
-      {"drift_deepest [m]", r.deepest_drift},
-      {"iterations_mean",
-       r.steps > 0 ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0},
-      {"iterations_most", r.most_iterations},
-      {"contact_error_worst [m]", r.worst_error},
-      {"contact_error_time [s]", r.worst_error_time},
-      {"contact_error_at", r.worst_error_row}};
+  ordered_json& solver = j["solver"];
+  solver = {{"method", name_of(scene.model.solver.method)},
+            {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
+            {"contact_solves", r.steps},
+            {"failed_steps", r.failed_steps},
+            {"second_solver_steps", r.second_solver_steps}};
+  for (size_t k = 1; k < kSolverName.size(); ++k)
+    solver[fmt::format("{}_steps", kSolverName[k])] = r.steps_by[k];
+  solver["drift_deepest [m]"] = r.deepest_drift;
+  solver["iterations_mean"] =
+      r.steps > 0 ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0;
+  solver["iterations_most"] = r.most_iterations;
+  solver["contact_error_worst [m]"] = r.worst_error;
+  solver["contact_error_time [s]"] = r.worst_error_time;
+  solver["contact_error_at"] = r.worst_error_row;
   const Energy& e = r.energy;
   auto& energy = j["energy [J]"];
   energy = {{"kinetic", e.kinetic},

@@ -192,7 +192,7 @@ class Runner {
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     adapt_state(before, supported, scene_, state_);
     state_.energy_start += ledger_energy(scene_, state_) - energy;
-    if (before.kind != scene_.blocks.kind) work_.gauss_seidel = GaussSeidel();  // laid out for others
+    if (before.kind != scene_.blocks.kind) work_.solvers.forget();
   }
 
   // What the blocks to be taken out push on the others now, found on a copy of the state.
@@ -332,7 +332,7 @@ class Runner {
       result_.worst_error_row = r.worst;
     }
     result_.second_solver_steps += r.second_solver;
-    ++(r.method == SolverKind::kNewton ? result_.newton_steps : result_.gauss_seidel_steps);
+    ++result_.steps_by[static_cast<size_t>(r.method)];
     result_.deepest_drift = std::max(result_.deepest_drift, r.drift);
     result_.energy = r.energy;
     result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));

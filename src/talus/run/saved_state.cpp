@@ -115,7 +115,8 @@ void exchange_standing(Exchange& x, Standing& standing) {
   for (size_t i = 0; i < r.stages.size(); ++i) x(fmt::format("run.stages.name.{}", i), r.stages[i].name);
   x("run.steps", r.steps), x("run.failed_steps", r.failed_steps);
   x("run.second_solver_steps", r.second_solver_steps), x("run.iterations", r.iterations);
-  x("run.newton_steps", r.newton_steps), x("run.gauss_seidel_steps", r.gauss_seidel_steps);
+  for (size_t k = 1; k < kSolverName.size(); ++k)
+    x(fmt::format("run.{}_steps", kSolverName[k]), r.steps_by[k]);
   x("run.most_contacts", r.most_contacts), x("run.most_iterations", r.most_iterations);
   x("run.worst_error", r.worst_error), x("run.worst_error_time", r.worst_error_time);
   x("run.worst_error_row", r.worst_error_row), x("run.deepest_drift", r.deepest_drift);

@@ -424,19 +424,24 @@ void GaussSeidel::extrapolate(const Workers& workers, bool first) {
   });
 }
 
-SolveReport GaussSeidel::solve(const std::vector<Mobility>& mobility, const SolverInput& options,
-                               const Goal& goal, double dt, const Workers& workers, RowSet& set,
-                               std::vector<BlockRate>& rate) {
+SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
+                               const Workers& workers) {
+  const std::vector<Mobility>& mobility = problem.mobility;
+  const double dt = problem.dt;
+  RowSet& set = problem.rows;
+  std::vector<BlockRate>& rate = problem.rate;
+  rate = problem.rate_free;
   SolveReport report;
   report.converged = set.points.empty();
   if (report.converged) return report;
   if (!layout_holds(set, workers)) lay_out(mobility, workers);
+  report.colours = static_cast<int>(colour_.size());
   write_lines(mobility, rate, workers);
   write_records(mobility, set, workers);
   push(workers);
 
   // the change of a sweep tells when it is worth asking the judge, who costs as much as some sweeps
-  int ask_again = 0, last = options.max_sweeps;
+  int ask_again = 0, last = limits.max_sweeps;
   double tolerance = goal.enough;
   bool first = true;
   while (!report.converged && report.iterations < last) {

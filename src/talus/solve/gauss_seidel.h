@@ -5,33 +5,20 @@
 
 #include <array>
 
-#include "talus/model/model.h"
-#include "talus/solve/report.h"
+#include "talus/solve/solver.h"
 #include "talus/solve/wide.h"
 
 namespace talus {
 
 /// Keeps its layout from step to step for as long as the same points join the same blocks.
-class GaussSeidel {
+class GaussSeidel : public Solver {
  public:
-  /// `wanted` [m] is given up, once `enough` is reached, after as many sweeps again.
-  struct Goal {
-    double wanted, enough;
-    Goal(double both) : wanted(both), enough(both) {}
-    Goal(double wanted_, double enough_) : wanted(wanted_), enough(enough_) {}
-  };
-
   /// Which kernels to run; for tests of one against the other.
   explicit GaussSeidel(const wide::Kernels& kernels = wide::best_kernels()) : kernels_(&kernels) {}
 
-  /// Solves for the impulses of `set` (first guess in, solution out).
-  /// @param rate       in: v*, rates without the rows; out: rates with them
-  /// @param goal       contact errors at which to stop [m]; at most options.max_sweeps sweeps
-  /// @param dt         over which the velocities act [s]
-  SolveReport solve(const std::vector<Mobility>& mobility, const SolverInput& options, const Goal& goal,
-                    double dt, const Workers& workers, RowSet& set, std::vector<BlockRate>& rate);
-
-  int colours() const { return static_cast<int>(colour_.size()); }
+  /// At most limits.max_sweeps sweeps.
+  SolveReport solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
+                    const Workers& workers) override;
 
  private:
   struct Point {

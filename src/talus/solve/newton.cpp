@@ -1,12 +1,13 @@
 #include "talus/solve/newton.h"
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <deque>
 #include <numeric>
 
 #include "talus/solve/contact_problem.h"
+#include "talus/solve/symmetric_factor.h"
 
 namespace talus {
 
@@ -39,7 +40,7 @@ Eigen::VectorXd refined(const Factor& factor, const Matrix& a, const Eigen::Vect
 // held.
 class Direction {
  public:
-  explicit Direction(const ContactProblem& problem) : problem_(problem) {}
+  Direction(const ContactProblem& problem, SymmetricFactor& factor) : problem_(problem), factor_(factor) {}
 
   bool solve(const std::vector<RowState>& states, const Eigen::VectorXd& p, const Eigen::VectorXd& h,
              Eigen::VectorXd& d) const {
@@ -65,29 +66,30 @@ class Direction {
     }
     if (n_free == 0) return true;
 
-    std::vector<Eigen::Triplet<double>> entries, added;
     Eigen::VectorXd rhs(n_free);
+    free_rows_.resize(n_free, n_free);
+    free_rows_.reserve(w.nonZeros());
     for (int r = 0; r < problem_.size(); ++r) {
       const int row = free_index[static_cast<size_t>(r)];
       if (row < 0) continue;
       rhs[row] = -h[r];
+      free_rows_.startVec(row);
       for (SparseMatrix::InnerIterator it(w, r); it; ++it) {
         const int column = free_index[static_cast<size_t>(it.col())];
         if (column >= 0)
-          entries.emplace_back(row, column, it.value());
+          free_rows_.insertBack(row, column) = it.value();
         else
           rhs[row] -= it.value() * d[it.col()];
       }
-      added.emplace_back(row, row, kRegularisation * problem_.diagonal[r]);
     }
-    Eigen::SparseMatrix<double> a(n_free, n_free);
-    a.setFromTriplets(entries.begin(), entries.end());
-    entries.insert(entries.end(), added.begin(), added.end());
-    Eigen::SparseMatrix<double> held(n_free, n_free);
-    held.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(held);
-    if (factor.info() != Eigen::Success) return false;
-    const Eigen::VectorXd x = refined(factor, a, rhs);
+    free_rows_.finalize();
+    const ColumnMatrix a = free_rows_;
+    ColumnMatrix held = a;
+    for (int r = 0; r < problem_.size(); ++r)
+      if (const int row = free_index[static_cast<size_t>(r)]; row >= 0)
+        held.coeffRef(row, row) += kRegularisation * problem_.diagonal[r];
+    if (!factor_.factorize(held)) return false;
+    const Eigen::VectorXd x = refined(factor_, a, rhs);
     if (!x.allFinite()) return false;
     for (int r = 0; r < problem_.size(); ++r) {
       const int row = free_index[static_cast<size_t>(r)];
@@ -121,6 +123,8 @@ class Direction {
   }
 
   const ContactProblem& problem_;
+  SymmetricFactor& factor_;
+  mutable SparseMatrix free_rows_;  // of W
 };
 
 bool direction_by_differences(const ContactProblem& problem, const Eigen::VectorXd& p,
@@ -147,8 +151,8 @@ void settle_on_bounds(const ContactProblem& problem, Eigen::VectorXd& p) {
 
 // One island; returns the iterations used, negative when the residual stayed above the tolerance.
 int solve_island(const ContactProblem& problem, const SolverInput& options, double tolerance,
-                 Eigen::VectorXd& p) {
-  const Direction direction(problem);
+                 SymmetricFactor& factor, Eigen::VectorXd& p) {
+  const Direction direction(problem, factor);
   Eigen::VectorXd h = residual(problem, p), d;
   Eigen::VectorXd best = p;
   double best_left = h.lpNorm<Eigen::Infinity>();
@@ -220,11 +224,16 @@ std::vector<std::vector<int>> find_islands(const std::vector<Mobility>& mobility
   return islands;
 }
 
-SolveReport solve_newton(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
-                         const SolverInput& options, double tolerance, RowSet& set,
-                         const Smoothing& smoothing) {
+namespace {
+
+// `factors`: of the islands in their order.
+SolveReport solve_islands(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
+                          const SolverInput& options, double tolerance, const Smoothing& smoothing,
+                          std::deque<SymmetricFactor>& factors, RowSet& set) {
   SolveReport report;
   for (const std::vector<int>& points : find_islands(mobility, set)) {
+    if (factors.size() <= static_cast<size_t>(report.islands)) factors.emplace_back();
+    SymmetricFactor& factor = factors[static_cast<size_t>(report.islands)];
     ContactProblem problem = build_problem(mobility, set, points, rate);
     problem.smoothing = smoothing;
     Eigen::VectorXd p(problem.size());
@@ -232,7 +241,7 @@ SolveReport solve_newton(const std::vector<Mobility>& mobility, const std::vecto
       const Impulse& guess = set.impulse[static_cast<size_t>(points[i])];
       p[static_cast<Eigen::Index>(2 * i)] = guess[0], p[static_cast<Eigen::Index>(2 * i) + 1] = guess[1];
     }
-    const int iterations = solve_island(problem, options, tolerance, p);
+    const int iterations = solve_island(problem, options, tolerance, factor, p);
     if (iterations >= 0 && !smoothing.on) settle_on_bounds(problem, p);
     if (iterations < 0) report.converged = false;
     for (size_t i = 0; i < points.size(); ++i) {
@@ -243,6 +252,32 @@ SolveReport solve_newton(const std::vector<Mobility>& mobility, const std::vecto
     report.largest_island = std::max(report.largest_island, static_cast<int>(points.size()));
     ++report.islands;
   }
+  return report;
+}
+
+}  // namespace
+
+SolveReport solve_newton(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
+                         const SolverInput& options, double tolerance, RowSet& set,
+                         const Smoothing& smoothing) {
+  std::deque<SymmetricFactor> factors;
+  return solve_islands(mobility, rate, options, tolerance, smoothing, factors, set);
+}
+
+struct Newton::Kept {
+  std::deque<SymmetricFactor> factors;
+};
+
+Newton::Newton() : kept_(std::make_unique<Kept>()) {}
+Newton::~Newton() = default;
+
+SolveReport Newton::solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
+                          const Workers&) {
+  const SolveReport report =
+      solve_islands(problem.mobility, problem.rate_free, limits, goal.wanted / problem.dt, problem.smoothing,
+                    kept_->factors, problem.rows);
+  problem.rate = problem.rate_free;
+  apply_impulses(problem.mobility, problem.rows, problem.rate);
   return report;
 }
 

@@ -4,11 +4,9 @@
 
 #include <vector>
 
-#include "talus/model/model.h"
-#include "talus/rows/mobility.h"
-#include "talus/rows/rows.h"
-#include "talus/solve/report.h"
-#include "talus/solve/smoothing.h"
+#include <memory>
+
+#include "talus/solve/solver.h"
 
 namespace talus {
 
@@ -16,7 +14,20 @@ namespace talus {
 /// their first point.
 std::vector<std::vector<int>> find_islands(const std::vector<Mobility>& mobility, const RowSet& set);
 
-/// Solves for the impulses of `set` (first guess in, solution out).
+/// Keeps orderings of its factors from step to step, for islands whose pattern stays.
+class Newton : public Solver {
+ public:
+  Newton();
+  ~Newton() override;
+  SolveReport solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
+                    const Workers& workers) override;
+
+ private:
+  struct Kept;
+  std::unique_ptr<Kept> kept_;
+};
+
+/// The same of bare rows: solves for the impulses of `set` (first guess in, solution out), which do not act.
 /// @param rate       v*, rates without the rows
 /// @param tolerance  residual at which to stop [m/s]
 /// @param smoothing  of the law, off by default

@@ -8,6 +8,7 @@ namespace talus {
 struct SolveReport {
   int iterations = 0;    // Newton: most over all islands; Gauss-Seidel: sweeps
   int second_phase = 0;  // of them, accelerated ones
+  int colours = 0;       // of Gauss-Seidel's couples
   int islands = 0;
   int largest_island = 0;  // points
   bool converged = true;   // by the solver's own residual; the judge is contact_error()

@@ -14,13 +14,6 @@ namespace talus {
 
 namespace {
 
-// Newton is asked to mend a failed step of Gauss-Seidel up to this many points: beyond, its factors would
-// fill the memory.
-constexpr size_t kMostNewtonPoints = 8000;
-
-// Sweeps after which a step that Newton can solve is given to it.
-constexpr int kSweepsBeforeNewton = 500;
-
 // Travel of a block in one step, as share of its radius, at which a run ends: contacts could not be followed.
 constexpr double kMostTravel = 10;
 
@@ -106,14 +99,6 @@ std::array<Cause, 2> causes_of(Family family, const PointRows& p, const Impulse&
   return {p.row[0].compliance > 0 ? Cause::kJoints : Cause::kContactClosing,
           slides(p, impulse) ? Cause::kFriction : Cause::kJoints};
 }
-
-// What one solver made of a step.
-struct Attempt {
-  std::vector<Impulse> impulse;
-  std::vector<BlockRate> rate;
-  RowSums rows;
-  StepReport report;
-};
 
 class Kick {
  public:
@@ -289,41 +274,21 @@ class Kick {
     report_.contacts = static_cast<int>(state_.contacts.size());
   }
 
-  // The chosen solver; where its result misses the tolerance, the other; then Gauss-Seidel from the best so
-  // far for as many sweeps as the model allows. The best stays.
   void solve() {
-    const SolverInput& options = scene_.model.solver;
-    const SolverKind first = chosen_solver(scene_.model, work_.rows.points.size(), hard_ties());
-    const bool newton_can = work_.rows.points.size() <= kMostNewtonPoints;
-    const bool again = options.second_solver && scene_.model.contact.law == ContactLaw::kExact &&
-                       (first == SolverKind::kNewton || newton_can);
-    work_.guess.clear();
-    if (again || settings_.keep_guess) work_.guess = work_.rows.impulse;
-    const int few = again ? std::min(options.max_sweeps, kSweepsBeforeNewton) : options.max_sweeps;
-    solve_by(first, few);
-    if (!report_.failed || !again) return;
-
-    Attempt best{work_.rows.impulse, state_.rate, rows_, report_};
-    const auto attempt = [&](SolverKind kind, int sweeps) {
-      solve_by(kind, sweeps);
-      if (std::isnan(best.report.error.worst) || report_.error.worst <= best.report.error.worst)
-        best = {work_.rows.impulse, state_.rate, rows_, report_};
-    };
-    // Newton's failures are far off; sweeps that did not end are a good beginning unless they blew up
-    const auto start_from = [&](bool guess) {
-      work_.rows.impulse = guess || std::isnan(best.report.error.worst) ? work_.guess : best.impulse;
-    };
-    start_from(first == SolverKind::kNewton);
-    attempt(first == SolverKind::kNewton ? SolverKind::kGaussSeidel : SolverKind::kNewton, few);
-    if (best.report.failed && few < options.max_sweeps) {
-      start_from(false);
-      attempt(SolverKind::kGaussSeidel, options.max_sweeps);
-    }
-    work_.rows.impulse = std::move(best.impulse);
-    state_.rate = std::move(best.rate);
-    rows_ = std::move(best.rows);
-    report_ = best.report;
-    report_.second_solver = true;
+    const StepProblem problem{work_.mobility, work_.rate_free, clock_.dt,
+                              smoothing(),    work_.rows,      state_.rate};
+    const Solved solved = solve_step(
+        scene_.model, hard_ties(), settings_.tolerance, settings_.sharper, settings_.keep_guess,
+        [this] {
+          judge();
+          return rows_.error;
+        },
+        work_.workers, work_.solvers, problem, work_.guess);
+    report_.method = solved.method, report_.solve = solved.report;
+    report_.error = solved.error, report_.failed = solved.failed;
+    report_.second_solver = solved.second_solver;
+    if (report_.error.point >= 0)
+      report_.worst = row_name(scene_, state_, work_, static_cast<size_t>(report_.error.point));
   }
 
   // Points of faces that are tied without any give.
@@ -332,25 +297,6 @@ class Kick {
     const RowRange faces = work_.rows.range(Family::kFace);
     for (size_t r = faces.begin; r < faces.end; ++r) count += work_.rows.points[r].row[0].compliance == 0;
     return count;
-  }
-
-  void solve_by(SolverKind kind, int sweeps) {
-    SolverInput options = scene_.model.solver;
-    options.max_sweeps = sweeps;
-    // solvers stop earlier than the judge, who measures what is left after the result has been applied:
-    // errors left in redundant ties add up from step to step, until no motion satisfies them all
-    const double stop = 0.1 * settings_.tolerance, wanted = settings_.sharper * stop;
-    state_.rate = work_.rate_free;
-    report_.method = kind;
-    if (kind == SolverKind::kNewton) {
-      report_.solve =
-          solve_newton(work_.mobility, state_.rate, options, wanted / clock_.dt, work_.rows, smoothing());
-      apply_impulses(work_.mobility, work_.rows, state_.rate);
-    } else {
-      report_.solve = work_.gauss_seidel.solve(work_.mobility, options, {wanted, stop}, clock_.dt,
-                                               work_.workers, work_.rows, state_.rate);
-    }
-    judge();
   }
 
   Smoothing smoothing() const {
@@ -365,12 +311,6 @@ class Kick {
                                               [this](size_t begin, size_t end, RowSums& s) {
                                                 for (size_t r = begin; r < end; ++r) tally_row(r, s);
                                               });
-    report_.error = rows_.error;
-    // the smoothed law misses the exact one by design: there the solver's own residual is the judge
-    const bool smoothed = scene_.model.contact.law == ContactLaw::kSmoothed;
-    report_.failed = smoothed ? !report_.solve.converged : !(report_.error.worst <= settings_.tolerance);
-    if (report_.error.point >= 0)
-      report_.worst = row_name(scene_, state_, work_, static_cast<size_t>(report_.error.point));
   }
 
   void tally_rows() {

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "talus/contact/contact_rows.h"
-#include "talus/solve/choose.h"
-#include "talus/solve/gauss_seidel.h"
-#include "talus/solve/newton.h"
+#include "talus/solve/solvers.h"
 #include "talus/step/energy.h"
 #include "talus/step/scene.h"
 
@@ -66,7 +64,7 @@ struct Profile {
 struct StepWork {
   Workers workers;
   Profile profile;
-  GaussSeidel gauss_seidel;
+  SolverSet solvers;
   StepClock clock;                   // of this step
   std::vector<JointLaw> laws;        // of the model's joints, in this stage
   std::vector<Mobility> mobility;    // of this step

@@ -1,0 +1,26 @@
+#pragma once
+// The solvers there are, by the names that models, summaries and the command give them. What each can is in
+// solve/solvers.cpp.
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace talus {
+
+/// kAuto: what is faster for a step.
+enum class SolverKind { kAuto, kNewton, kGaussSeidel };
+
+inline constexpr std::array<std::string_view, 3> kSolverName{"auto", "newton", "gauss_seidel"};
+static_assert(kSolverName.size() == static_cast<size_t>(SolverKind::kGaussSeidel) + 1);
+
+inline constexpr std::string_view name_of(SolverKind kind) { return kSolverName[static_cast<size_t>(kind)]; }
+
+/// The solver called `name`; kAuto when there is none.
+inline constexpr SolverKind solver_called(std::string_view name) {
+  for (size_t i = 0; i < kSolverName.size(); ++i)
+    if (kSolverName[i] == name) return static_cast<SolverKind>(i);
+  return SolverKind::kAuto;
+}
+
+}  // namespace talus

@@ -1,0 +1,49 @@
+#pragma once
+// What every solver of the contact equations is asked, and owes. Theory: docs/theory.md section 5.
+
+#include <vector>
+
+#include "talus/base/parallel.h"
+#include "talus/model/model.h"
+#include "talus/rows/mobility.h"
+#include "talus/rows/rows.h"
+#include "talus/solve/report.h"
+#include "talus/solve/smoothing.h"
+
+namespace talus {
+
+/// The rows of one step.
+struct StepProblem {
+  const std::vector<Mobility>& mobility;
+  const std::vector<BlockRate>& rate_free;  // v*, without the rows
+  double dt = 0;                            // over which the velocities act [s]
+  Smoothing smoothing;                      // of the law; off: the exact one
+  RowSet& rows;                             // in: first guess; out: impulses
+  std::vector<BlockRate>& rate;             // out: with these impulses
+};
+
+/// Contact errors at which to stop [m]: `wanted`, which is given up, once `enough` is reached, after as many
+/// sweeps again.
+struct SolverGoal {
+  double wanted = 0, enough = 0;
+  SolverGoal(double both) : wanted(both), enough(both) {}
+  SolverGoal(double wanted_, double enough_) : wanted(wanted_), enough(enough_) {}
+};
+
+class Solver {
+ public:
+  Solver() = default;
+  Solver(const Solver&) = default;
+  Solver(Solver&&) = default;
+  Solver& operator=(const Solver&) = default;
+  Solver& operator=(Solver&&) = default;
+  virtual ~Solver() = default;
+
+  /// Solves for the impulses and lets them act: same bits for any number of threads, whatever was solved
+  /// before.
+  /// @param limits  most iterations and sweeps, kind of the Jacobian
+  virtual SolveReport solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
+                            const Workers& workers) = 0;
+};
+
+}  // namespace talus

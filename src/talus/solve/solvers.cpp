@@ -1,0 +1,126 @@
+#include "talus/solve/solvers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "talus/solve/gauss_seidel.h"
+#include "talus/solve/newton.h"
+
+namespace talus {
+
+namespace {
+
+template <class T>
+std::unique_ptr<Solver> make() {
+  return std::make_unique<T>();
+}
+
+// Newton is asked to mend up to so many points: beyond, its factors would fill the memory.
+constexpr size_t kMostNewtonPoints = 8000, kAny = std::numeric_limits<size_t>::max();
+
+// In the order of SolverKind. A new solver is a file of its own, a name in model/solver_kind.h and a line
+// here.
+constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
+                                          .make = make<Newton>,
+                                          .smoothed = true,
+                                          .mended = SolverKind::kGaussSeidel,
+                                          .far_off = true,
+                                          .goes_on = false,
+                                          .most_points = kMostNewtonPoints},
+                              SolverEntry{.kind = SolverKind::kGaussSeidel,
+                                          .make = make<GaussSeidel>,
+                                          .smoothed = false,
+                                          .mended = SolverKind::kNewton,
+                                          .far_off = false,
+                                          .goes_on = true,
+                                          .most_points = kAny}};
+static_assert(kSolvers.size() + 1 == kSolverName.size());
+
+// Up to so many points `auto` takes Newton: it is as fast there and reaches round-off. Where bodies are tied
+// together the equations are nearly linear, and sweeps are slow along them.
+constexpr size_t kNewtonFaster = 12, kNewtonFasterTied = 2000;
+
+// Sweeps after which a step that another solver can mend is given to it.
+constexpr int kSweepsBeforeSecond = 500;
+
+// Solvers stop earlier than the judge, who measures what is left after the result has been applied: errors
+// left in redundant ties add up from step to step, until no motion satisfies them all.
+constexpr double kStop = 0.1;
+
+}  // namespace
+
+const SolverEntry& entry(SolverKind kind) { return kSolvers.at(static_cast<size_t>(kind) - 1); }
+
+Solver& SolverSet::of(SolverKind kind) {
+  std::unique_ptr<Solver>& made = made_[static_cast<size_t>(kind)];
+  if (!made) made = entry(kind).make();
+  return *made;
+}
+
+SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties) {
+  if (model.solver.method != SolverKind::kAuto) return model.solver.method;
+  if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
+    return SolverKind::kNewton;
+  return points <= (2 * hard_ties > points ? kNewtonFasterTied : kNewtonFaster) ? SolverKind::kNewton
+                                                                                : SolverKind::kGaussSeidel;
+}
+
+Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double sharper, bool keep_guess,
+                  const std::function<ContactError()>& judge, const Workers& workers, SolverSet& solvers,
+                  const StepProblem& problem, std::vector<Impulse>& guess) {
+  const SolverInput& options = model.solver;
+  const bool smoothed = model.contact.law == ContactLaw::kSmoothed;
+  const SolverKind first = chosen_solver(model, problem.rows.points.size(), hard_ties),
+                   second = entry(first).mended;
+  const bool again =
+      options.second_solver && !smoothed && problem.rows.points.size() <= entry(second).most_points;
+  guess.clear();
+  if (again || keep_guess) guess = problem.rows.impulse;
+
+  Solved now;
+  const auto judged = [&] {
+    now.error = judge();
+    // the smoothed law misses the exact one by design: there the solver's own residual is the judge
+    now.failed = smoothed ? !now.report.converged : !(now.error.worst <= tolerance);
+  };
+  const auto solve_by = [&](SolverKind kind, int sweeps) {
+    SolverInput limits = options;
+    limits.max_sweeps = sweeps;
+    now.method = kind;
+    now.report =
+        solvers.of(kind).solve(problem, {sharper * kStop * tolerance, kStop * tolerance}, limits, workers);
+    judged();
+  };
+  const int few = again ? std::min(options.max_sweeps, kSweepsBeforeSecond) : options.max_sweeps;
+  solve_by(first, few);
+  if (!now.failed || !again) return now;
+
+  struct Attempt {
+    Solved solved;
+    std::vector<Impulse> impulse;
+    std::vector<BlockRate> rate;
+  };
+  Attempt best{now, problem.rows.impulse, problem.rate};
+  bool best_stands = true;
+  const auto attempt = [&](SolverKind kind, int sweeps, bool from_guess) {
+    problem.rows.impulse = from_guess || std::isnan(best.solved.error.worst) ? guess : best.impulse;
+    solve_by(kind, sweeps);
+    best_stands = std::isnan(best.solved.error.worst) || now.error.worst <= best.solved.error.worst;
+    if (best_stands) best = {now, problem.rows.impulse, problem.rate};
+  };
+  attempt(second, few, entry(first).far_off);
+  if (best.solved.failed && few < options.max_sweeps)
+    for (const SolverEntry& e : kSolvers)
+      if (e.goes_on) attempt(e.kind, options.max_sweeps, false);
+  if (!best_stands) {
+    problem.rows.impulse = std::move(best.impulse);
+    problem.rate = std::move(best.rate);
+    now = best.solved;
+    judged();
+  }
+  now.second_solver = true;
+  return now;
+}
+
+}  // namespace talus

@@ -1,0 +1,61 @@
+#pragma once
+// The table of solvers, which one a step gets, and which are asked when it fails. The measured table behind
+// the choice is in docs/performance.md.
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "talus/solve/contact_error.h"
+#include "talus/solve/solver.h"
+
+namespace talus {
+
+struct SolverEntry {
+  SolverKind kind;
+  std::unique_ptr<Solver> (*make)();
+  bool smoothed;       // solves the smoothed law, too
+  SolverKind mended;   // by which other one its failed steps are tried
+  bool far_off;        // a failure of it is no place to begin from
+  bool goes_on;        // more sweeps lead on from where any solver ended
+  size_t most_points;  // of a step of another solver that it is asked to mend
+};
+
+/// @pre  not kAuto
+const SolverEntry& entry(SolverKind kind);
+
+/// One of each, made when it is first asked for; they keep what they can use again from step to step.
+class SolverSet {
+ public:
+  Solver& of(SolverKind kind);
+  /// Blocks are no longer the same.
+  void forget() { made_ = {}; }
+
+ private:
+  std::array<std::unique_ptr<Solver>, kSolverName.size()> made_;
+};
+
+/// What the model asks for; for `auto`, what is faster for so many points, `hard_ties` of which tie faces
+/// without any give.
+SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties);
+
+struct Solved {
+  SolverKind method = SolverKind::kAuto;  // whose result stands
+  SolveReport report;
+  ContactError error;
+  bool failed = false;         // error above the tolerance
+  bool second_solver = false;  // another solver was asked
+};
+
+/// Solves a step: the chosen solver; where its result misses the tolerance, another; then sweeps from the
+/// best so far for as many as the model allows. The best stays, and is judged last.
+/// @param hard_ties  as above
+/// @param tolerance  largest contact error [m]
+/// @param sharper    share of it to which steps are solved where that takes few sweeps more
+/// @param judge      measures the error of the impulses and rates in `problem`
+/// @param guess      gets the first guess; empty when it is not wanted and no second solver may need it
+Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double sharper, bool keep_guess,
+                  const std::function<ContactError()>& judge, const Workers& workers, SolverSet& solvers,
+                  const StepProblem& problem, std::vector<Impulse>& guess);
+
+}  // namespace talus

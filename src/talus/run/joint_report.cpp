@@ -40,7 +40,7 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   if (out.set.empty()) out.set = set_of(scene, c.key.block_a, c.key.vertex);
   out.length = c.length;
   out.slip = c.slip, out.slip_signed = c.slip_signed;
-  if (c.joint >= 0) out.rise = i.work.laws[static_cast<size_t>(c.joint)].rise(c.slip);
+  if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip);
   out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
   out.state = joint_state(
       c.touched, c.force[0], out.slip, out.opening,

@@ -64,7 +64,7 @@ constexpr double kUnresolved = 0.1;
 // which local damping, which opposes the force of now, still brakes and does not drive. Infinite without such
 // joints.
 double joint_time(const Scene& scene, const BlockSet& b) {
-  const std::vector<JointLaw> laws = joint_laws(scene.model.joints);
+  const std::vector<JointLaw>& laws = scene.laws;
   return share_of_deformable(b, kUnresolved, [&](int i) {
     const auto k = static_cast<size_t>(i);
     const std::vector<int>& joints = scene.layout.blocks[k].edge_joint;
@@ -231,7 +231,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies
   const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {
-    return f.unbreakable || !JointLaw(scene.model.joints[static_cast<size_t>(f.joint)]).is_soft(0);
+    return f.unbreakable || !scene.laws[static_cast<size_t>(f.joint)].is_soft(0);
   });
   const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
                                      2 * static_cast<size_t>(hard)) == SolverKind::kNewton;

@@ -115,6 +115,7 @@ Scene weakened(const PreparedRun& prepared, double factor) {
   for (size_t i = 0; i < scene.model.joints.size(); ++i)
     if (chosen.empty() || std::find(chosen.begin(), chosen.end(), static_cast<int>(i)) != chosen.end())
       scene.model.joints[i] = reduced(scene.model.joints[i], factor);
+  scene.laws = joint_laws(scene.model.joints);
   return scene;
 }
 

@@ -63,6 +63,7 @@ void change_scene(int stage, Scene& scene) {
   bool rebuild = false;
   for (const ChangeInput& change : scene.model.changes)
     if (change.stage == stage) rebuild = apply(change, scene) || rebuild;
+  scene.laws = joint_laws(scene.model.joints);
   const std::vector<char> out = excavated_blocks(scene, stage);
   for (size_t i = 0; i < out.size(); ++i)
     if (out[i]) scene.blocks.kind[i] = BlockKind::kRemoved;

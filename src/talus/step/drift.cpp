@@ -55,7 +55,7 @@ void drift(const Scene& scene, double time_end, StepWork& work, State& state, St
     state.column_displacement[i] += dt * state.column_rate[i];
   state.work += work.work.before;
   state.work += work.work.after;
-  report.broken_faces = update_bonds(blocks, scene.bonds, work.laws, dt, work.workers, state);
+  report.broken_faces = update_bonds(blocks, scene.bonds, scene.laws, dt, work.workers, state);
   state.time = time_end;
   state.history_time = work.clock.history_end();
   state.dt_before = dt;

@@ -27,10 +27,9 @@ bool slides_hard(const Scene& scene) {
   if (layout.blocks.size() < 2 || std::none_of(scene.blocks.kind.begin(), scene.blocks.kind.end(),
                                                [](BlockKind k) { return k == BlockKind::kDeformable; }))
     return false;
-  const std::vector<JointLaw> laws = joint_laws(scene.model.joints);
   const auto hard = [&](int joint) {
     if (joint < 0) return false;
-    const JointLaw& law = laws[static_cast<size_t>(joint)];
+    const JointLaw& law = scene.laws[static_cast<size_t>(joint)];
     return !law.bonded() && !law.is_soft(0) && law.residual().friction > 0;
   };
   if (hard(layout.default_joint)) return true;
@@ -66,6 +65,7 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.model = std::move(model);
   scene.layout = std::move(layout);
   scene.blocks = build_blocks(scene.model, scene.layout);
+  scene.laws = joint_laws(scene.model.joints);
   scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);

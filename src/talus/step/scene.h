@@ -21,6 +21,7 @@ struct Scene {
   Model model;
   Layout layout;
   BlockSet blocks;
+  std::vector<JointLaw> laws;  // of the model's joints, in the stage
   BondSet bonds;
   std::vector<SupportedPoint> supported;
   BoundarySet boundaries;

@@ -66,7 +66,6 @@ struct StepWork {
   Profile profile;
   SolverSet solvers;
   StepClock clock;                   // of this step
-  std::vector<JointLaw> laws;        // of the model's joints, in this stage
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
   std::vector<ContactPlace> places;  // of state.contacts
@@ -76,6 +75,7 @@ struct StepWork {
   KickWork work;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted
+  std::vector<BlockForce> load;         // by loads and kept rock, on each block
   std::vector<BlockForce> forces;       // weight, loads, elasticity and bars inside, on each block
   std::vector<BlockForce> bolt_forces;  // of them, the bars; empty without bolts
   std::vector<BlockForce> local_damping;

@@ -1,0 +1,38 @@
+#pragma once
+// The parts of a kick, in the order of its recipe (step.cpp). Not for use outside step/.
+
+#include "talus/step/scheme.h"
+#include "talus/step/step.h"
+
+namespace talus {
+
+/// Forces of loads, of excavated rock that is not yet gone and of bars inside blocks, and the free field's
+/// kick (theory 4.10 to 4.13, 4.21).
+void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work, State& state);
+
+/// Weight, elastic force and mobility of each block, and its rates at the end of the kick as they would be
+/// without rows (theory 4.2), damping included.
+void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& state);
+
+/// Sums over rows.
+struct RowSums {
+  KickWork work;
+  int closed = 0;
+  double drift = 0;
+  double closed_share = 0;  // the largest, and where
+  int closed_row = -1;
+  ContactError error;
+  std::vector<std::pair<int, BlockForce>> on_still;  // impulses on blocks whose motion is prescribed
+
+  RowSums& operator+=(const RowSums& o);
+};
+
+/// The error of the rows as they are solved (theory 5.3), and in the same look the work they do.
+RowSums judge_rows(const StepWork& work, const State& state);
+
+/// Puts the work of rows and blocks into the ledger (theory 10), and what is left out of balance into the
+/// report; writes state.contact_force.
+void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,
+           StepReport& report);
+
+}  // namespace talus

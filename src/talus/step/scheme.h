@@ -1,0 +1,43 @@
+#pragma once
+// What a step's scheme makes of each block: which elasticity is implicit, what damping takes. Not for use
+// outside step/. Theory: docs/theory.md 4.2, 4.5, 4.9.
+
+#include "talus/step/step.h"
+
+namespace talus {
+
+struct Scheme {
+  const BlockSet& blocks;
+  const StepSettings& settings;
+  const StepClock& clock;
+  const std::vector<ElasticState>& elastic;  // of this instant
+
+  /// Half the share of its momentum that mass-proportional damping takes of a block in the step (4.5).
+  double damping() const { return 0.5 * settings.damping_mass * clock.dt_kick; }
+  /// Factor on the inverse mass that comes of it.
+  double share() const { return 1 / (1 + damping()); }
+  /// Share of a kick that belongs to the step after it: half, unless the step length changes; all of it at
+  /// the start.
+  double late_share() const { return 0.5 * clock.dt / clock.dt_kick; }
+
+  bool implicit(size_t i) const { return settings.implicit && blocks.kind[i] == BlockKind::kDeformable; }
+  /// Stiffness-proportional damping is of the rates before the kick where elasticity is explicit, of their
+  /// mean where it is implicit.
+  bool explicitly_damped(size_t i) const {
+    return settings.damping_stiffness > 0 && !settings.implicit && blocks.kind[i] == BlockKind::kDeformable;
+  }
+
+  /// Block-implicit elasticity (4.9): the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family
+  /// of 4.6; factor on K in the mass of the step [s2].
+  double tangent_time2() const { return clock.dt * clock.dt_kick / clock.position_factor(); }
+  double damping_time2() const { return 0.5 * settings.damping_stiffness * clock.dt_kick; }
+
+  /// V K : G, the elastic tangent in the frame turned with the block.
+  Mat2 tangent_force(size_t i, const Mat2& G) const;
+  /// Impulse of stiffness-proportional damping (4.5).
+  BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const;
+  /// Impulse that gives a block this change of its rates: the effective mass times it.
+  BlockForce impulse_for(size_t i, const BlockRate& change) const;
+};
+
+}  // namespace talus

@@ -44,4 +44,28 @@ inline Scene block_scene(Model model, const std::vector<ScenePart>& parts) {
   return build_scene(std::move(model), std::move(layout));
 }
 
+/// The scene of deformable [[block]]s b0, b1, ... of the model's first material, through the layout and its
+/// checks.
+/// @param findings  gets what is wrong with them; where none is given nothing is looked at (blocks may
+/// overlap)
+inline Scene laid_out_scene(Model model, const std::vector<Polygon>& polygons, Findings* findings = nullptr) {
+  for (const Polygon& polygon : polygons) {
+    BlockInput b;
+    b.name = "b" + std::to_string(model.blocks.size());
+    b.polygon = polygon;
+    b.material = 0;
+    model.blocks.push_back(b);
+  }
+  Findings unseen("case.toml", "");
+  Layout layout = make_layout(model, findings ? *findings : unseen);
+  return build_scene(std::move(model), std::move(layout));
+}
+
+/// A model of one rock alone: 2700 kg/m3, 50 GPa; contacts without joints.
+inline Model plain_rock() {
+  Model model;
+  model.materials = {{"rock", 2700, 50e9, 0.25}};
+  return model;
+}
+
 }  // namespace talus::test

@@ -5,34 +5,15 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 
+#include "support/folder.h"
 #include "talus/base/text_file.h"
 
 namespace talus::test {
-
-/// A folder of its own for each test, removed at its end.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              fmt::format("talus_command_{}_{}", getpid(), count_++)) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  static inline int count_ = 0;
-  std::filesystem::path path_;
-};
 
 struct Outcome {
   int code;          // exit code, 128 + number of the signal that ended it

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "support/box_polygon.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/angle.h"
@@ -31,10 +32,6 @@ inline std::string block(const std::string& name, const Polygon& corners, const 
   for (const Vec2 p : corners) list += (list.empty() ? "" : ", ") + place(p);
   return fmt::format("[[block]]\nname = \"{}\"\npolygon = [{}]\nmaterial = \"m\"\nkind = \"{}\"\n", name,
                      list, kind);
-}
-
-inline Polygon box(double left, double bottom, double right, double top) {
-  return {{left, bottom}, {right, bottom}, {right, top}, {left, top}};
 }
 
 inline std::string constant(const std::string& name, double value) {

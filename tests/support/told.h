@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <vector>
 
 #include "talus/talus.h"
 
@@ -51,7 +52,20 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// All that reading, cutting and checking `text` as model.toml has to say: errors, or else warnings.
+/// Errors of reading, cutting and checking `text` as model.toml; "" when it is taken, with warnings or
+/// without.
+inline std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  Findings findings("model.toml", text);
+  try {
+    prepare_run("model.toml", text, overrides, findings);
+  } catch (const InputError& e) {
+    CHECK(e.code() == kExitInput);
+    return e.what();
+  }
+  return "";
+}
+
+/// All that is said of it: errors, or else warnings.
 inline std::string told(const std::string& text) {
   Findings findings("model.toml", text);
   try {
@@ -60,6 +74,17 @@ inline std::string told(const std::string& text) {
     return e.what();
   }
   return findings.render();
+}
+
+/// Checks that what is told of `text` names a line of it and holds all pieces.
+inline void check_told(const std::string& text, const std::vector<std::string>& pieces) {
+  const std::string said = told(text);
+  INFO(said);
+  CHECK(said.find("model.toml:") != std::string::npos);
+  for (const std::string& piece : pieces) {
+    INFO(piece);
+    CHECK(said.find(piece) != std::string::npos);
+  }
 }
 
 }  // namespace talus::test

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "support/block_scene.h"
+#include "support/box_polygon.h"
 #include "support/run_case.h"
 #include "talus/base/text.h"
 #include "talus/contact/contact_rows.h"
@@ -14,29 +16,20 @@
 namespace test_regressions {
 
 using namespace talus;
+using namespace talus::test;
 namespace fs = std::filesystem;
 
 namespace {
 
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
-
 // Blocks of rock with one joint between all: 0 bonded, 1 breakable, -1 none.
 Scene scene_of(const std::vector<Polygon>& polygons, int joint = -1) {
-  Model model;
-  model.materials.push_back({"rock", 2700, 50e9, 0.25});
+  Model model = plain_rock();
   model.joints = {{"bonded", true, 0, 0, 0}, {"breakable", false, 0, 1e6, 1e6}};
   model.default_joint = joint;
-  for (size_t i = 0; i < polygons.size(); ++i) {
-    BlockInput b;
-    b.name = "b" + std::to_string(i);
-    b.polygon = polygons[i];
-    b.material = 0;
-    model.blocks.push_back(b);
-  }
   Findings findings("m", "");
-  Layout layout = make_layout(model, findings);
+  Scene scene = laid_out_scene(std::move(model), polygons, &findings);
   CHECK(findings.list().empty());
-  return build_scene(std::move(model), std::move(layout));
+  return scene;
 }
 
 fs::path fresh_folder(const char* name) {
@@ -77,9 +70,10 @@ TEST_CASE("regression: blocks of a bonded pair that lie apart, or meet at a corn
   state.displacement[1] = {-0.51, -0.51};
   CHECK_FALSE(find_contacts(apart.blocks, apart.bonds, state, 0.05).empty());
 
-  const Scene corner = scene_of({box(0, 0, 1, 1), box(1, 1, 2, 2)}, 0);
+  const Scene corner = scene_of({box_polygon(0, 0, 1, 1), box_polygon(1, 1, 2, 2)}, 0);
   CHECK_FALSE(is_tied(corner.bonds, start_state(corner), 0, 1));
-  const Scene held = scene_of({box(0, 0, 1, 1), box(1, 1, 2, 2), box(1, 0, 2, 1)}, 0);  // joined by the third
+  const Scene held = scene_of({box_polygon(0, 0, 1, 1), box_polygon(1, 1, 2, 2), box_polygon(1, 0, 2, 1)},
+                              0);  // joined by the third
   CHECK(is_tied(held.bonds, start_state(held), 0, 1));
 }
 
@@ -88,7 +82,7 @@ TEST_CASE("regression: a corner in a notch keeps both sides when it touches them
   for (const double gap : {1e-5, 5e-7, 0.0, -5e-7, -2e-6}) {
     CAPTURE(gap);
     const Scene s = scene_of({l});
-    Scene both = scene_of({l, box(1.1, 1.1, 1.7, 1.7)});
+    Scene both = scene_of({l, box_polygon(1.1, 1.1, 1.7, 1.7)});
     State state = start_state(both);
     state.displacement[1] = {gap - 0.1, gap - 0.1};
     std::vector<ContactPoint> out;
@@ -113,7 +107,8 @@ TEST_CASE("regression: an exact column name goes before longer ones that begin w
 }
 
 TEST_CASE("regression: a bond between two blocks does not depend on a third") {
-  const Polygon a = box(0, 0, 100, 100), b = box(100 + 5e-5, 0, 200, 100), small = box(300, 0, 300.01, 0.01);
+  const Polygon a = box_polygon(0, 0, 100, 100), b = box_polygon(100 + 5e-5, 0, 200, 100),
+                small = box_polygon(300, 0, 300.01, 0.01);
   CHECK(scene_of({a, b}, 1).bonds.faces.size() == 1);
   CHECK(scene_of({a, b, small}, 1).bonds.faces.size() == 1);
 }

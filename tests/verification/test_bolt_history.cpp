@@ -5,6 +5,7 @@
 
 #include "support/drawn_blocks.h"
 #include "support/run_case.h"
+#include "support/told.h"
 #include "support/tolerance.h"
 
 namespace test_bolt_history {
@@ -132,16 +133,6 @@ kind = "dynamic"
 duration = 1e-3
 )",
                      kind, from, to, stage);
-}
-
-std::string refusal(const std::string& text) {
-  Findings findings("case.toml", text);
-  try {
-    prepare_run("case.toml", text, {}, findings);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 }  // namespace

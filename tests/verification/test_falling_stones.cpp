@@ -21,8 +21,9 @@ TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is cove
       "GPa/m\"\n"
       "[contact]\njoint = \"j\"\n[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.5\ntime_step = "
       "\"1 ms\"\n" +
-      block("floor", box(-3, -2, width + 3, 0), "fixed") + block("left", box(-3, 0, -1, 20), "fixed") +
-      block("right", box(width, 0, width + 3, 20), "fixed");
+      block("floor", box_polygon(-3, -2, width + 3, 0), "fixed") +
+      block("left", box_polygon(-3, 0, -1, 20), "fixed") +
+      block("right", box_polygon(width, 0, width + 3, 20), "fixed");
   for (int k = 0; k < kStones; ++k) {
     const Vec2 middle{1.2 * (k % kColumns) + 0.15 + 0.1 * random.uniform(), 1.2 * (k / kColumns) + 0.8};
     const int corners = 4 + static_cast<int>(5 * random.uniform());

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "support/box_polygon.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -32,8 +33,6 @@ struct Frame {
     return out + "]";
   }
 };
-
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 // Deformable and rigid blocks that fall, tilt, slide, and press on an elastic joint: every kind of row.
 // Contacts are statically determinate or compliant, so that single forces are unique.
@@ -72,8 +71,8 @@ joint = "glue"
     out += fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n{}\n", name,
                        f.polygon(p), kind, more);
   };
-  block("floor", box(-3, -1, 9, 0), "fixed");
-  block("left", box(0, 0.001, 1, 1), "deformable");
+  block("floor", box_polygon(-3, -1, 9, 0), "fixed");
+  block("left", box_polygon(0, 0.001, 1, 1), "deformable");
   block("right", {{1, 0.001}, {2.2, 0.001}, {2, 1}, {1, 1}}, "deformable");
   block("rigid", {{0.5, 1.002}, {1.7, 1.002}, {1.6, 1.7}, {0.6, 1.6}}, "rigid", "spin = \"0.3 rad/s\"");
   block("ball", {{4, 0.05}, {4.5, 0.3}, {4.4, 0.8}, {3.8, 0.9}, {3.5, 0.5}}, "rigid",

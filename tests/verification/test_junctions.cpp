@@ -34,9 +34,10 @@ struct OpenJoint {
 CaseResult slide_over(const OpenJoint& c) {
   const double left = -1 - kStart, far = std::max(c.open, 0.0);
   const bool one = c.open < 0;
-  return audited(head(c.stiffness, 0, c.friction) + block("l1", box(-2, -1, one ? 2 : 0, 0), "fixed") +
-                 block("l2", one ? box(2, -1, 3, 0) : box(far, -1, far + 2, 0), "fixed") +
-                 block("a", box(left, 0, -kStart, 0.25), c.kind) + constant("p", kLoad) +
+  return audited(head(c.stiffness, 0, c.friction) +
+                 block("l1", box_polygon(-2, -1, one ? 2 : 0, 0), "fixed") +
+                 block("l2", one ? box_polygon(2, -1, 3, 0) : box_polygon(far, -1, far + 2, 0), "fixed") +
+                 block("a", box_polygon(left, 0, -kStart, 0.25), c.kind) + constant("p", kLoad) +
                  on_edge("press", {left, 0.25}, {-kStart, 0.25}, "pressure = \"p\"") +
                  fmt::format("[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, {0}, {0}]\n", kSpeed) +
                  "[[support]]\nname = \"push\"\nx = { velocity = \"go\" }\ny = \"free\"\n" +
@@ -109,9 +110,10 @@ TEST_CASE("a step of 1 mm or 0.1 mm up stops a block") {
         CAPTURE(height);
         const double push = height < 5e-4 ? 400 : 2000, gap = 2e-4, mass = 2500 * 0.5 * 0.1;
         const std::string text =
-            head(stiffness, 0, 0) + block("l1", box(-2, -1, 0, 0), "fixed") +
-            block("l2", box(0, -1, 2, height), "fixed") + block("a", box(-0.5 - gap, 0, -gap, 0.1), kind) +
-            constant("p", 4e5) + on_edge("press", {-0.5 - gap, 0.1}, {-gap, 0.1}, "pressure = \"p\"") +
+            head(stiffness, 0, 0) + block("l1", box_polygon(-2, -1, 0, 0), "fixed") +
+            block("l2", box_polygon(0, -1, 2, height), "fixed") +
+            block("a", box_polygon(-0.5 - gap, 0, -gap, 0.1), kind) + constant("p", 4e5) +
+            on_edge("press", {-0.5 - gap, 0.1}, {-gap, 0.1}, "pressure = \"p\"") +
             fmt::format("[history.push]\ntime = [0, 0.01, 1]\nvalue = [0, {0}, {0}]\n", push / mass) +
             "[[load]]\nname = \"push\"\nblock = \"a\"\nacceleration_x = \"push\"\n" +
             stage("press", false, 2, 1e-4) + stage("push", true, 0.3, 1e-4, "damping_mass = 200") +
@@ -145,8 +147,8 @@ TEST_CASE("a thin sheet between two blocks bears and slides as any joint does") 
       CAPTURE(stiffness);
       CAPTURE(kind);
       const CaseResult r = audited(
-          head(stiffness, 0, 30) + block("floor", box(-1, -1, 2, 0), "fixed") +
-          block("sheet", box(0, 0, 1, 1e-3), kind) + block("a", box(0, 1e-3, 1, 0.25), kind) +
+          head(stiffness, 0, 30) + block("floor", box_polygon(-1, -1, 2, 0), "fixed") +
+          block("sheet", box_polygon(0, 0, 1, 1e-3), kind) + block("a", box_polygon(0, 1e-3, 1, 0.25), kind) +
           constant("p", p) + on_edge("press", {0, 0.25}, {1, 0.25}, "pressure = \"p\"") +
           "[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, 0.05, 0.05]\n"
           "[[support]]\nname = \"push\"\npoint = [0, 1e-3]\nblock = \"a\"\nx = { velocity = \"go\" }\ny = "
@@ -176,9 +178,9 @@ TEST_CASE("over a step of 1 mm down a block falls by 1 mm, and gains no energy")
       CAPTURE(stiffness);
       CAPTURE(kind);
       const double b = 0.1, drop = 1e-3, start = 5e-3, speed = 1;
-      const std::string text = head(stiffness, kG, 10) + block("l1", box(-1, -1, 0, 0), "fixed") +
-                               block("l2", box(0, -1, 1, -drop), "fixed") +
-                               block("a", box(-start - b, 0, -start, b), kind) +
+      const std::string text = head(stiffness, kG, 10) + block("l1", box_polygon(-1, -1, 0, 0), "fixed") +
+                               block("l2", box_polygon(0, -1, 1, -drop), "fixed") +
+                               block("a", box_polygon(-start - b, 0, -start, b), kind) +
                                fmt::format("velocity = [{}, 0]\n", speed) + stage("slide", true, 0.7, 1e-4) +
                                stage("rest", false, 5, 1e-4) +
                                "[[monitor]]\nname = \"a\"\npoint = " + place({-start - b / 2, b / 2}) + "\n";
@@ -306,12 +308,14 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
   const std::vector<double> all{0, 15, 35};
   const Corner corners[] = {
       {"wall on the floor",
-       block("floor", box(-1, -1, 2, 0), "fixed") + block("wall", box(-1, 0, 0, 2), "fixed"), all},
+       block("floor", box_polygon(-1, -1, 2, 0), "fixed") + block("wall", box_polygon(-1, 0, 0, 2), "fixed"),
+       all},
       {"floor beside the wall",
-       block("floor", box(0, -1, 2, 0), "fixed") + block("wall", box(-1, -1, 0, 2), "fixed"), all},
+       block("floor", box_polygon(0, -1, 2, 0), "fixed") + block("wall", box_polygon(-1, -1, 0, 2), "fixed"),
+       all},
       {"crossing",
-       block("floor", box(0, -1, 2, 0), "fixed") + block("wall", box(-1, 0, 0, 2), "fixed") +
-           block("third", box(-1, -1, 0, 0), "fixed"),
+       block("floor", box_polygon(0, -1, 2, 0), "fixed") + block("wall", box_polygon(-1, 0, 0, 2), "fixed") +
+           block("third", box_polygon(-1, -1, 0, 0), "fixed"),
        all},
       {"mitre",
        block("floor", {{0, 0}, {-1, -1}, {2, -1}, {2, 0}}, "fixed") +
@@ -391,10 +395,11 @@ TEST_CASE("a block whose support is excavated falls freely, slides at its fricti
                            "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"side\"\n"
                            "[[contact_pair]]\nbetween = [\"ul\", \"lr\"]\njoint = \"side\"\n";
         const CaseResult r = audited(
-            head(stiffness, kG, 0, 0) + upright + block("floor", box(-1, -1, 3, 0), "fixed") +
-            block("ll", box(0, 0, 1, 1), kind) + block("lr", box(1, 0, 2, 1), "fixed") +
-            block("ul", box(0, 1, 1, 2), kind) + block("ur", box(1, 1, 2, 2), "fixed") + constant("q", q) +
-            on_edge("left", {0, 0}, {0, 2}, "pressure = \"q\"") + stage("stand", false, 5, 1e-4) +
+            head(stiffness, kG, 0, 0) + upright + block("floor", box_polygon(-1, -1, 3, 0), "fixed") +
+            block("ll", box_polygon(0, 0, 1, 1), kind) + block("lr", box_polygon(1, 0, 2, 1), "fixed") +
+            block("ul", box_polygon(0, 1, 1, 2), kind) + block("ur", box_polygon(1, 1, 2, 2), "fixed") +
+            constant("q", q) + on_edge("left", {0, 0}, {0, 2}, "pressure = \"q\"") +
+            stage("stand", false, 5, 1e-4) +
             stage("fall", true, duration, 1e-4, "excavate = [\"ll\"]\nreset_displacements = true") +
             "[[monitor]]\nname = \"ul\"\npoint = [0.5, 1.5]\n" + between("upper", "ul", "ur") +
             between("lower", "ul", "lr"));
@@ -465,9 +470,9 @@ TEST_CASE("a block whose support is excavated under most of it tilts, or stays w
         const CaseResult r = audited(
             head(stiffness, kG, 0) +
             (glued ? "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"glue\"\n" : "") +
-            block("floor", box(-1, -1, 5, 0), "fixed") + block("ll", box(0, 0, 1, 1), kind) +
-            block("lr", box(1, 0, 4, 1), "fixed") + block("ul", box(0.3, 1, 1.3, 2), kind) +
-            block("ur", box(1.3 + gap, 1, 3.3 + gap, 2), kind) +
+            block("floor", box_polygon(-1, -1, 5, 0), "fixed") + block("ll", box_polygon(0, 0, 1, 1), kind) +
+            block("lr", box_polygon(1, 0, 4, 1), "fixed") + block("ul", box_polygon(0.3, 1, 1.3, 2), kind) +
+            block("ur", box_polygon(1.3 + gap, 1, 3.3 + gap, 2), kind) +
             stage("stand", false, 5, 1e-4, "unbalanced = 1e-3") +
             stage("tilt", true, duration, 1e-4, "excavate = [\"ll\"]\nreset_displacements = true") +
             "[[monitor]]\nname = \"a\"\npoint = [0.3, 1.5]\n[[monitor]]\nname = \"b\"\npoint = [1.3, 1.5]\n" +
@@ -507,8 +512,8 @@ TEST_CASE("a block that comes from an elastic bed onto a hard one is not thrown 
         head(kElastic, 0, 30) +
             "[joint.hard]\nfriction_angle = \"30 deg\"\n[[contact_pair]]\nbetween = "
             "[\"a\", \"l2\"]\njoint = \"hard\"\n" +
-            block("l1", box(-2, -1, 0, 0), "fixed") + block("l2", box(0, -1, 2, 0), "fixed") +
-            block("a", box(left, 0, -kStart, 0.25), kind) + constant("p", kLoad) +
+            block("l1", box_polygon(-2, -1, 0, 0), "fixed") + block("l2", box_polygon(0, -1, 2, 0), "fixed") +
+            block("a", box_polygon(left, 0, -kStart, 0.25), kind) + constant("p", kLoad) +
             on_edge("press", {left, 0.25}, {-kStart, 0.25}, "pressure = \"p\"") +
             fmt::format("[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, {0}, {0}]\n", kSpeed) +
             fmt::format("[[support]]\nname = \"push\"\nx = {{ velocity = \"go\" }}\ny = \"free\"\npoint = "

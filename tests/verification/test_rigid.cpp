@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "support/box_polygon.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -27,8 +28,6 @@ std::string block_text(const std::string& name, const Polygon& p, const std::str
   return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n{}\n", name,
                      polygon_text(p), kind, more);
 }
-
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 // Head of a model: gravity, one material, one joint.
 std::string head(Vec2 gravity, double friction_degrees, double density = 2000, double young = 1e9) {
@@ -70,7 +69,7 @@ TEST_CASE("A3b restitution of a deformable block and of bonded columns on a rigi
         Case{10, "consistent", 0.940}, Case{40, "consistent", 0.976}, Case{1, "lumped", 0.5}}) {
     // blocks of 1 m: transit h/c = 1 / 707.1 s; a tenth of the stable step; left after at most 2 H/c
     const double h = 1 / std::sqrt(1e9 / 2000), critical = h / std::sqrt(c.inertia == "lumped" ? 1.0 : 3.0);
-    std::string text = head({0, 0}, 0) + block_text("floor", box(-2, -1, 3, 0), "fixed");
+    std::string text = head({0, 0}, 0) + block_text("floor", box_polygon(-2, -1, 3, 0), "fixed");
     text += fmt::format(
         "[[grid]]\nname = \"column\"\nmin = [0, 0]\nmax = [1, {0}]\ncells = [1, {0}]\nmaterial = "
         "\"m\"\njoint = \"glue\"\nvelocity = [0, -1]\n",
@@ -88,8 +87,9 @@ TEST_CASE("A3b restitution of a deformable block and of bonded columns on a rigi
 
 TEST_CASE("A3b two equal blocks collide, a rigid block lands flat") {
   const double critical = 1 / std::sqrt(3e9 / 2000);
-  std::string text = head({0, 0}, 0) + block_text("a", box(0, 0, 1, 1), "deformable", "velocity = [0, 1]") +
-                     block_text("b", box(0, 1, 1, 2), "deformable") + stage(0.01, 0.1 * critical);
+  std::string text = head({0, 0}, 0) +
+                     block_text("a", box_polygon(0, 0, 1, 1), "deformable", "velocity = [0, 1]") +
+                     block_text("b", box_polygon(0, 1, 1, 2), "deformable") + stage(0.01, 0.1 * critical);
   double v[2] = {0, 0};
   const CaseResult r = run_case(text, {}, [&](const Instant& i) {
     for (int k = 0; k < 2; ++k) v[k] = centre_velocity(i.scene, i.state, k, k + 1);
@@ -99,8 +99,8 @@ TEST_CASE("A3b two equal blocks collide, a rigid block lands flat") {
   check_close("A3b two blocks, struck one after", v[1], 0.875, 1e-2, 2e-3, 1);
   check_below("A3b energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 
-  text = head({0, 0}, 0) + block_text("floor", box(-2, -1, 3, 0), "fixed") +
-         block_text("a", box(0, 0.01, 1, 1.01), "rigid", "velocity = [0, -1]") + stage(0.05, 1e-4);
+  text = head({0, 0}, 0) + block_text("floor", box_polygon(-2, -1, 3, 0), "fixed") +
+         block_text("a", box_polygon(0, 0.01, 1, 1.01), "rigid", "velocity = [0, -1]") + stage(0.05, 1e-4);
   const CaseResult flat =
       run_case(text, {}, [&](const Instant& i) { v[0] = centre_velocity(i.scene, i.state, 1, 2); });
   check_below("A3b rigid block, velocity after landing flat", std::abs(v[0]), 1e-2, 1e-9);
@@ -154,8 +154,8 @@ TEST_CASE("A6d two blocks lean on each other between abutments") {
   for (const double friction : {0.8, 0.6}) {
     const std::string text =
         head({0, -kG}, std::atan(friction) * 180 / std::numbers::pi, weight / 3 / kG) +
-        block_text("wall_l", box(-1, -1, 0, 2), "fixed") +
-        block_text("wall_r", box(2 * half, -1, 2 * half + 1, 2), "fixed") +
+        block_text("wall_l", box_polygon(-1, -1, 0, 2), "fixed") +
+        block_text("wall_r", box_polygon(2 * half, -1, 2 * half + 1, 2), "fixed") +
         block_text("l", left, "rigid", "spin = \"-1e-3 rad/s\"") +
         block_text("r", right, "rigid", "spin = \"1e-3 rad/s\"") +
         "[[monitor]]\nname = \"crown\"\ncontact = [\"l\", \"r\"]\n[[monitor]]\nname = \"foot\"\ncontact = "
@@ -181,9 +181,10 @@ TEST_CASE("A6f columns slide or tip at min(mu, b/H)") {
                        Case{1, 2, 0.4, 0.4}, Case{2, 1, 0.4, 0.4}}) {
     for (const double share : {0.99, 1.01, 0.998, 1.002}) {
       std::string text = head({share * c.limit * kG, -kG}, std::atan(c.friction) * 180 / std::numbers::pi) +
-                         block_text("floor", box(-3, -1, 9, 0), "fixed");
+                         block_text("floor", box_polygon(-3, -1, 9, 0), "fixed");
       for (int i = 0; i < c.cubes; ++i)
-        text += block_text(fmt::format("b{}", i), box(0, i * c.height, 1, (i + 1) * c.height), "rigid");
+        text +=
+            block_text(fmt::format("b{}", i), box_polygon(0, i * c.height, 1, (i + 1) * c.height), "rigid");
       text += fmt::format("[[monitor]]\nname = \"top\"\npoint = [0.5, {}]\n", c.cubes * c.height - 0.1) +
               stage(1, 1e-3);
       const CaseResult r = run_case(text);
@@ -208,8 +209,8 @@ TEST_CASE("A6h a rocking block: times of impact and loss at each") {
   const double alpha = std::atan(0.25), tilt = 0.5 * alpha;
   const Mat2 turn = kIdentity + Mat2{std::cos(tilt) - 1, -std::sin(tilt), std::sin(tilt), std::cos(tilt) - 1};
   Polygon block;  // 0.5 x 2 m, standing on its left corner
-  for (const Vec2 v : box(0, 0, 0.5, 2)) block.push_back(turn * v);
-  const std::string text = head({0, -kG}, 50) + block_text("floor", box(-3, -1, 4, 0), "fixed") +
+  for (const Vec2 v : box_polygon(0, 0, 0.5, 2)) block.push_back(turn * v);
+  const std::string text = head({0, -kG}, 50) + block_text("floor", box_polygon(-3, -1, 4, 0), "fixed") +
                            block_text("b", block, "rigid") + stage(3.2, 2e-4);
   std::vector<double> times, spins, since;  // |spin| at each step since the last impact
   double last = tilt, last_time = 0;

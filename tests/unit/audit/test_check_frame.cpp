@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include "support/box_polygon.h"
 
 namespace test_check_frame {
 
 using namespace talus;
+using namespace talus::test;
 using namespace talus::audit;
 
 namespace {
-
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 // Blocks of 1 m; names "b0", "b1" ...; one joint: friction 30 deg, 20 GPa/m where it is soft.
 struct Case {
@@ -53,7 +53,7 @@ bool has(const FrameResult& r, Defect defect, bool invalid) {
 
 // A block on a wider one, `closure` inside it, one point at each end.
 Case face(double closure, double force, double stiffness = 0) {
-  Case c({box(-1, -1, 2, 0), box(0, -closure, 1, 1 - closure)}, stiffness);
+  Case c({box_polygon(-1, -1, 2, 0), box_polygon(0, -closure, 1, 1 - closure)}, stiffness);
   c.add(1, 0, 0, 2, -closure, force);
   c.add(1, 1, 0, 2, -closure, force);
   c.pair_last_two();
@@ -106,7 +106,7 @@ TEST_CASE(
     "audit: a corner alone accounts for its wedge, a block across a crossing for the product of closures") {
   // a square on its corner, 1 cm deep: legs at 45 degrees, area d^2
   const double d = 0.01, r = std::sqrt(0.5);
-  Case c({box(-1, -1, 1, 0), {{0, -d}, {r, r - d}, {0, 2 * r - d}, {-r, r - d}}});
+  Case c({box_polygon(-1, -1, 1, 0), {{0, -d}, {r, r - d}, {0, 2 * r - d}, {-r, r - d}}});
   c.add(1, 0, 0, 2, -d, 1e5);
   CHECK(c.look().findings.empty());
   CHECK(c.look().unexplained_share < 1e-9);
@@ -115,8 +115,8 @@ TEST_CASE(
 
   // four blocks at a crossing of two joints closed by 2 cm: 0 and 3 overlap by 2 cm x 2 cm, at no point
   const double k = 0.02;
-  Case x(
-      {box(0, 0, 1, 1), box(1 - k, 0, 2 - k, 1), box(0, 1 - k, 1, 2 - k), box(1 - k, 1 - k, 2 - k, 2 - k)});
+  Case x({box_polygon(0, 0, 1, 1), box_polygon(1 - k, 0, 2 - k, 1), box_polygon(0, 1 - k, 1, 2 - k),
+          box_polygon(1 - k, 1 - k, 2 - k, 2 - k)});
   const auto join = [&x, k](int a, int corner_0, int corner_1, int b, int edge) {
     x.add(a, corner_0, b, edge, -k, 1e5);
     x.add(a, corner_1, b, edge, -k, 1e5);
@@ -129,7 +129,7 @@ TEST_CASE(
 }
 
 TEST_CASE("audit: an intact glued face accounts for its overlap by its two ends") {
-  Case c({box(0, 0, 1, 1), box(0, 0.98, 1, 1.98)});
+  Case c({box_polygon(0, 0, 1, 1), box_polygon(0, 0.98, 1, 1.98)});
   for (const double x : {0.0, 1.0}) {
     Point p;
     p.block_a = 1, p.block_b = 0, p.place = {x, 0.98}, p.normal_force = 1e5, p.joint = 0;
@@ -141,7 +141,7 @@ TEST_CASE("audit: an intact glued face accounts for its overlap by its two ends"
 }
 
 TEST_CASE("audit: prescribed blocks that overlap are not valid") {
-  Case c({box(0, 0, 1, 1), box(0.9, 0, 2, 1)});
+  Case c({box_polygon(0, 0, 1, 1), box_polygon(0.9, 0, 2, 1)});
   c.frame.blocks[0].hold = c.frame.blocks[1].hold = Hold::kPrescribed;
   const FrameResult r = c.look();
   REQUIRE(r.findings.size() == 1);
@@ -149,7 +149,7 @@ TEST_CASE("audit: prescribed blocks that overlap are not valid") {
   CHECK(r.findings[0].invalid);
   CHECK(r.findings[0].share == doctest::Approx(0.1));
   CHECK(r.unexplained_share == 0);
-  c.frame.blocks[1].polygon = box(1, 0, 2, 1);
+  c.frame.blocks[1].polygon = box_polygon(1, 0, 2, 1);
   CHECK(c.look().findings.empty());
   c.frame.blocks[1] = {Hold::kRemoved, {}, {}};
   CHECK(c.look().findings.empty());
@@ -157,7 +157,7 @@ TEST_CASE("audit: prescribed blocks that overlap are not valid") {
 
 TEST_CASE("audit: a force needs the two in touch") {
   const auto lifted = [](double gap) {
-    Case c({box(-1, -1, 2, 0), box(0, gap, 1, 1 + gap)});
+    Case c({box_polygon(-1, -1, 2, 0), box_polygon(0, gap, 1, 1 + gap)});
     c.add(1, 0, 0, 2, gap, 1e5);
     c.add(1, 1, 0, 2, gap, 1e5);
     c.pair_last_two();
@@ -189,7 +189,8 @@ TEST_CASE("audit: a corner on a side that the next block covers is not valid") {
   // 2 stands on 0 and 1, its left lower corner 1 um inside the left side of 1, which 0 covers
   const double d = 1e-6;
   const auto stack = [d](double opening, double step, double depth) {
-    Case c({box(-1, 0, 0 - opening, 1), box(0, 0, 1, 1 + step), box(-1, 1 - depth, d, 2)});
+    Case c({box_polygon(-1, 0, 0 - opening, 1), box_polygon(0, 0, 1, 1 + step),
+            box_polygon(-1, 1 - depth, d, 2)});
     c.add(2, 1, 1, 3, -d, 1e5);
     c.add(2, 0, 0, 2, -depth, 1e5);
     return c.look();
@@ -201,14 +202,15 @@ TEST_CASE("audit: a corner on a side that the next block covers is not valid") {
   CHECK(!has(stack(0.01, 0, 0.01), Defect::kCoveredSide, true));
 
   // the top of 1, on the other hand, is its way out
-  Case c({box(-1, 0, 0, 1), box(0, 0, 1, 1), box(-1, 1 - d, d, 2)});
+  Case c({box_polygon(-1, 0, 0, 1), box_polygon(0, 0, 1, 1), box_polygon(-1, 1 - d, d, 2)});
   c.add(2, 1, 1, 2, -d, 1e5);
   CHECK(!has(c.look(), Defect::kCoveredSide, true));
 }
 
 TEST_CASE("audit: what is glued to the corner's own block does not make a side a way out") {
   // 0 and 1 glued, 2 and 3 glued on top; the corner of 1 bears on the right side of 2, level with that of 0
-  Case c({box(-1, 0, 0, 1), box(0, 0, 1, 1), box(-1, 1, 0, 2), box(0, 1, 1, 2)});
+  Case c(
+      {box_polygon(-1, 0, 0, 1), box_polygon(0, 0, 1, 1), box_polygon(-1, 1, 0, 2), box_polygon(0, 1, 1, 2)});
   c.frame.blocks[1].polygon[3].y = 1 + 1e-6;
   c.add(1, 3, 2, 1, 0, 1e5);
   for (const auto& [a, b, y] : {std::tuple{0, 1, 0.0}, std::tuple{2, 3, 1.0}}) {

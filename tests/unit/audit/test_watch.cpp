@@ -3,15 +3,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include "support/box_polygon.h"
 
 namespace test_watch {
 
 using namespace talus;
+using namespace talus::test;
 using namespace talus::audit;
 
 namespace {
-
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 // A floor and a block of 1 m on it, whose place is given step by step.
 struct Two {
@@ -26,7 +26,8 @@ struct Two {
     watch.look({time, 1e-3, points, centroid, blocks,
                 [foot](int i) {
                   return Block{Hold::kFree,
-                               i == 0 ? box(-1, -1, 2, 0) : box(foot.x, foot.y, foot.x + 1, foot.y + 1),
+                               i == 0 ? box_polygon(-1, -1, 2, 0)
+                                      : box_polygon(foot.x, foot.y, foot.x + 1, foot.y + 1),
                                {}};
                 }},
                report);

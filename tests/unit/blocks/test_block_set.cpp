@@ -8,10 +8,12 @@
 #include <limits>
 #include <random>
 #include <vector>
+#include "support/relative.h"
 
 namespace test_block_set {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -82,11 +84,6 @@ double largest_eigenvalue(const Polygon& t, double thickness, double poisson, Pl
 std::array<double, 2> eigenvalues(const Mat2& m) {
   const double mean = 0.5 * (m.xx + m.yy), radius = std::hypot(0.5 * (m.xx - m.yy), m.xy);
   return {det(m) / (mean + radius), mean + radius};
-}
-
-// Equal up to `share` of the value itself.
-doctest::Approx relative(double value, double share) {
-  return doctest::Approx(value).epsilon(share).scale(0);
 }
 
 }  // namespace

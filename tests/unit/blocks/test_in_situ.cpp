@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/blocks/in_situ.h"
@@ -16,8 +17,6 @@ namespace {
 
 const PlaneModuli kModuli{6e9, 2e9, 2e9};
 const Mat2 kT0{-3e6, 1.2e6, 1.2e6, -5e6};
-
-double size_of(const Mat2& m) { return std::sqrt(contract(m, m)); }
 
 // What both grounds are made of.
 const std::string kRock = R"(talus = 1

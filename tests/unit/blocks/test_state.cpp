@@ -4,16 +4,16 @@
 
 #include <cmath>
 #include <random>
+#include "support/relative.h"
 
 namespace test_state {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
 const PlaneModuli kModuli{3.0, 1.2, 0.9};  // c11 - c12 = 2 c33: isotropic
-
-double size_of(const Mat2& m) { return std::sqrt(contract(m, m)); }
 
 Mat2 rotation(double angle) { return {std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle)}; }
 
@@ -21,11 +21,6 @@ Mat2 rotation(double angle) { return {std::cos(angle), -std::sin(angle), std::si
 Mat2 random_finite(std::mt19937& random) {
   std::uniform_real_distribution<double> entry(-0.4, 0.4);
   return {entry(random), entry(random), entry(random), entry(random)};
-}
-
-// Equal up to `share` of the value itself.
-doctest::Approx relative(double value, double share) {
-  return doctest::Approx(value).epsilon(share).scale(0);
 }
 
 }  // namespace

@@ -7,11 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "support/block_scene.h"
+#include "support/box_polygon.h"
+#include "support/relative.h"
 #include "talus/step/scene.h"
 
 namespace test_bonds {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -38,18 +42,12 @@ Scene scene_of(Model model) {
   return build_scene(std::move(model), std::move(layout));
 }
 
-Polygon box(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
-
 Scene scene_of(const std::vector<Polygon>& polygons, int joint) {
-  Model model = empty_model(joint);
-  for (size_t i = 0; i < polygons.size(); ++i) {
-    BlockInput b;
-    b.name = "b" + std::to_string(i);
-    b.polygon = polygons[i];
-    b.material = 0;
-    model.blocks.push_back(b);
-  }
-  return scene_of(std::move(model));
+  Findings findings("case.toml", "");
+  Scene scene = laid_out_scene(empty_model(joint), polygons, &findings);
+  INFO(findings.render());
+  REQUIRE_FALSE(findings.has_errors());
+  return scene;
 }
 
 Scene grid_scene(int joint, GridPattern pattern = GridPattern::kRectangles) {
@@ -66,18 +64,13 @@ Scene grid_scene(int joint, GridPattern pattern = GridPattern::kRectangles) {
 }
 
 // One square on another.
-Scene pair_scene(int joint) { return scene_of({box(0, 0, 1, 1), box(0, 1, 1, 2)}, joint); }
+Scene pair_scene(int joint) { return scene_of({box_polygon(0, 0, 1, 1), box_polygon(0, 1, 1, 2)}, joint); }
 
 int update(const Scene& s, double dt, State& state) {
   return update_bonds(s.blocks, s.bonds, joint_laws(s.model.joints), dt, Workers(1), state);
 }
 
 constexpr double kEnd = 0.5 * 1 * kThickness;  // area of half the face of pair_scene [m2]
-
-// Equal up to `share` of the value itself.
-doctest::Approx relative(double value, double share) {
-  return doctest::Approx(value).epsilon(share).scale(0);
-}
 
 }  // namespace
 
@@ -109,8 +102,9 @@ TEST_CASE("faces of a grid: one per shared side, its ends on both blocks") {
 }
 
 TEST_CASE("blocks of different size are bonded over the common length only") {
-  const Scene s =
-      scene_of({box(0, 0, 10, 1), box(2, 1, 2.25, 1.25), box(9.5, 1, 11, 2), box(12, 0, 13, 1)}, kBreakable);
+  const Scene s = scene_of({box_polygon(0, 0, 10, 1), box_polygon(2, 1, 2.25, 1.25),
+                            box_polygon(9.5, 1, 11, 2), box_polygon(12, 0, 13, 1)},
+                           kBreakable);
   REQUIRE(s.bonds.faces.size() == 2);
   CHECK(s.bonds.faces[0].block_b == 1);
   CHECK(s.bonds.faces[0].length == relative(0.25, 1e-14));
@@ -127,16 +121,17 @@ TEST_CASE("blocks of different size are bonded over the common length only") {
 }
 
 TEST_CASE("a slit, a corner or a gap makes no face") {
-  CHECK(scene_of({box(0, 0, 1, 1), box(1, 1, 2, 2)}, kBreakable).bonds.faces.empty());
-  CHECK(scene_of({box(0, 0, 1, 1), box(1.001, 0, 2, 1)}, kBreakable).bonds.faces.empty());
-  CHECK(scene_of({box(0, 0, 1, 1), box(1 + 1e-9, 0, 2, 1)}, kBreakable).bonds.faces.size() == 1);
-  CHECK(scene_of({box(0, 0, 1, 1), {{1, 0}, {2, 0}, {1.1, 1}}}, kBreakable)
+  CHECK(scene_of({box_polygon(0, 0, 1, 1), box_polygon(1, 1, 2, 2)}, kBreakable).bonds.faces.empty());
+  CHECK(scene_of({box_polygon(0, 0, 1, 1), box_polygon(1.001, 0, 2, 1)}, kBreakable).bonds.faces.empty());
+  CHECK(scene_of({box_polygon(0, 0, 1, 1), box_polygon(1 + 1e-9, 0, 2, 1)}, kBreakable).bonds.faces.size() ==
+        1);
+  CHECK(scene_of({box_polygon(0, 0, 1, 1), {{1, 0}, {2, 0}, {1.1, 1}}}, kBreakable)
             .bonds.faces.empty());  // not parallel
 }
 
 TEST_CASE("two faces between the same two blocks") {
   const Polygon l{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
-  const Scene s = scene_of({l, box(1, 1, 2, 2)}, kBreakable);
+  const Scene s = scene_of({l, box_polygon(1, 1, 2, 2)}, kBreakable);
   REQUIRE(s.bonds.faces.size() == 2);
   State state = start_state(s);
   state.face[0].broken = true;

@@ -10,12 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "support/block_scene.h"
 #include "talus/contact/contact_rows.h"
 #include "talus/step/scene.h"
 
 namespace test_find {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -32,22 +34,7 @@ Polygon diamond(Vec2 tip, double r) {
   return {tip, tip + Vec2{r, r}, tip + Vec2{0, 2 * r}, tip + Vec2{-r, r}};
 }
 
-Scene scene_of(const std::vector<Polygon>& polygons) {
-  Model model;
-  model.materials = {{"rock", 2700, 50e9, 0.25}};
-  for (size_t i = 0; i < polygons.size(); ++i) {
-    BlockInput b;
-    b.name = "b" + std::to_string(i);
-    b.polygon = polygons[i];
-    b.material = 0;
-    model.blocks.push_back(b);
-  }
-  // blocks may lie a little inside each other here, so findings about overlaps are not looked at
-  Findings findings("case.toml", "");
-  Layout layout = make_layout(model, findings);
-  REQUIRE(layout.blocks.size() == polygons.size());
-  return build_scene(std::move(model), std::move(layout));
-}
+Scene scene_of(const std::vector<Polygon>& polygons) { return laid_out_scene(plain_rock(), polygons); }
 
 std::vector<ContactPoint> touch(const Scene& s, const State& state, int a = 0, int b = 1) {
   std::vector<ContactPoint> out;

@@ -5,31 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "support/block_scene.h"
 #include "talus/contact/contact_rows.h"
 #include "talus/step/scene.h"
 
 namespace test_flat_corners {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
 constexpr double kMargin = 0.05;
 
-Scene scene_of(const std::vector<Polygon>& polygons) {
-  Model model;
-  model.materials = {{"rock", 2700, 50e9, 0.25}};
-  for (size_t i = 0; i < polygons.size(); ++i) {
-    BlockInput b;
-    b.name = "b" + std::to_string(i);
-    b.polygon = polygons[i];
-    b.material = 0;
-    model.blocks.push_back(b);
-  }
-  Findings findings("case.toml", "");
-  Layout layout = make_layout(model, findings);
-  return build_scene(std::move(model), std::move(layout));
-}
+Scene scene_of(const std::vector<Polygon>& polygons) { return laid_out_scene(plain_rock(), polygons); }
 
 std::vector<ContactPoint> touch(const Scene& s, int a, int b) {
   std::vector<ContactPoint> out;

@@ -1,5 +1,5 @@
 // What must hold for any network of lines: a closed partition without loss of area, before and after slivers
-// are merged. A thousand random networks (a hundred under the address sanitizer, which is ten times slower).
+// are merged.
 
 #include <doctest/doctest.h>
 
@@ -16,32 +16,9 @@ using namespace talus::test;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kNetworks = 100;
-#else
-constexpr int kNetworks = 1000;
-#endif
-
 // Shares of a cell: how far noding moves a line (half a diagonal to a corner, round-off on top), and how near
 // a point may lie to an edge before it is open which side it belongs to.
 constexpr double kMoved = 1.5, kDoubt = 2;
-
-// Calls `check(model, cut, random)` for every network; what it returns, "" for nothing wrong, must be "".
-void for_networks(const auto& check) {
-  for (int i = 0; i < kNetworks; ++i) {
-    CAPTURE(i);
-    const Model model = NetworkMaker(static_cast<uint64_t>(i)).make();
-    Findings findings("case.toml", "");
-    Random random(static_cast<uint64_t>(i) + 1000000);
-    std::string defect;
-    try {
-      defect = check(model, cut_model(model, findings), random);
-    } catch (const std::exception& e) {
-      defect = e.what();
-    }
-    CHECK(defect == "");
-  }
-}
 
 bool is_removed(const Model& model, const CutBlock& b) {
   return b.opening >= 0 && !model.openings[static_cast<size_t>(b.opening)].kept;
@@ -275,81 +252,100 @@ bool same(const std::vector<CutBlock>& a, const std::vector<CutBlock>& b) {
   });
 }
 
+// What is counted over many networks, to see that they are worth the name.
+struct Seen {
+  size_t blocks = 0, most = 0;
+  int merged = 0, kept = 0, pairs = 0;
+};
+
+std::string partition(const Model& model, const Cut& cut, Random& random, Seen& seen) {
+  seen.blocks += cut.whole.size(), seen.most = std::max(seen.most, cut.whole.size());
+  std::string defect = partition_defect(cut);
+  if (defect.empty()) defect = outline_area_defect(model, cut);
+  if (defect.empty()) defect = point_defect(model, cut, random);
+  for (size_t i = 0; i < cut.whole.size(); ++i)
+    if (cut.whole[i].id != static_cast<int>(i)) defect = "blocks are not numbered in their order";
+  return defect;
+}
+
+std::string merging(Model model, const Cut& kept_cut, Seen& seen) {
+  model.cut.slivers = SliverPolicy::kMerge;
+  for (const JointSetInput& set : model.joint_sets) model.cut.merge_along.push_back(set.name);
+  const Cut cut = with_slivers(model, kept_cut);
+  // in every region and opening by itself
+  const CellCut cells(cut);
+  std::map<std::pair<int, int>, Int128> lost;
+  for (const CutBlock& b : not_removed(model, cut.whole))
+    lost[{b.region, b.opening}] += twice_area(cells.ring(b));
+  for (const CutBlock& b : cut.blocks) lost[{b.region, b.opening}] -= twice_area(cells.ring(b));
+  for (const auto& [group, area] : lost)
+    if (area != 0) return "area was lost or went to another region or opening";
+  seen.merged += cut.slivers.merged, seen.kept += cut.slivers.kept;
+  return sliver_defect(model, cut);
+}
+
+std::string cut_again(const Model& model, const Cut& cut) {
+  Findings findings("case.toml", "");
+  const Cut again = cut_model(model, findings);
+  const bool equal = cut.point == again.point && cut.edge == again.edge &&
+                     cut.edge_origin == again.edge_origin && same(cut.whole, again.whole) &&
+                     same(cut.blocks, again.blocks);
+  return equal ? "" : "cut again it gives other blocks";
+}
+
+std::string sound_shapes(const Model& model, const Cut& cut, Random& random, Seen& seen) {
+  std::string defect = shape_defect(model, cut);
+  std::vector<Box> boxes;
+  for (const CutBlock& b : cut.blocks) boxes.push_back(bounding_box(cut.polygon(b)));
+  for (const auto& [i, j] : close_pairs(boxes, 0)) {
+    if (random.uniform() > 0.05) continue;
+    const Polygon a = cut.polygon(cut.blocks[static_cast<size_t>(i)]),
+                  b = cut.polygon(cut.blocks[static_cast<size_t>(j)]);
+    ++seen.pairs;
+    if (polygon_overlap(a, b).area > 0) defect = "blocks overlap";
+  }
+  return defect;
+}
+
+// Cuts the networks from `first` to the one before `last` once each, and looks at all that must hold of any:
+// a closed partition, every edge along its origin and no trace lost, merging without loss and complete,
+// deleting as told, the same bits again, sound shapes that do not overlap.
+void check_networks(int first, int last) {
+  Seen seen;
+  for (int i = first; i < last; ++i) {
+    CAPTURE(i);
+    const Model model = NetworkMaker(static_cast<uint64_t>(i)).make();
+    Findings findings("case.toml", "");
+    Random points(static_cast<uint64_t>(i) + 1000000), pairs(static_cast<uint64_t>(i) + 2000000);
+    std::string defect;
+    try {
+      const Cut cut = cut_model(model, findings);
+      defect = partition(model, cut, points, seen);
+      if (defect.empty()) defect = trace_defect(model, cut);
+      if (defect.empty()) defect = merging(model, cut, seen);
+      if (defect.empty()) defect = policy_defect(model);
+      if (defect.empty()) defect = cut_again(model, cut);
+      if (defect.empty()) defect = sound_shapes(model, cut, pairs, seen);
+    } catch (const std::exception& e) {
+      defect = e.what();
+    }
+    CHECK(defect == "");
+  }
+  const int networks = last - first;
+  CHECK(seen.blocks > 20 * static_cast<size_t>(networks));
+  CHECK(seen.most > 100);
+  CHECK(seen.merged > networks / 4);
+  CHECK(seen.pairs > networks);
+  MESSAGE(seen.blocks, " blocks, at most ", seen.most, "; ", seen.merged, " slivers merged, ", seen.kept,
+          " kept");
+}
+
 }  // namespace
 
-TEST_CASE("any network is cut into a closed partition of its regions") {
-  size_t blocks = 0, most = 0;
-  for_networks([&](const Model& model, const Cut& cut, Random& random) {
-    blocks += cut.whole.size(), most = std::max(most, cut.whole.size());
-    std::string defect = partition_defect(cut);
-    if (defect.empty()) defect = outline_area_defect(model, cut);
-    if (defect.empty()) defect = point_defect(model, cut, random);
-    for (size_t i = 0; i < cut.whole.size(); ++i)
-      if (cut.whole[i].id != static_cast<int>(i)) defect = "blocks are not numbered in their order";
-    return defect;
-  });
-  // the networks are worth the name
-  CHECK(blocks > 20 * kNetworks);
-  CHECK(most > 100);
-  MESSAGE(blocks, " blocks, at most ", most);
-}
+TEST_CASE("a hundred random networks: a cut has all its properties") { check_networks(0, 100); }
 
-TEST_CASE("every edge runs along its origin and no trace is lost") {
-  for_networks([](const Model& model, const Cut& cut, Random&) { return trace_defect(model, cut); });
-}
-
-TEST_CASE("merging slivers of any network loses no area and leaves none that could be merged") {
-  int merged = 0, kept = 0;
-  for_networks([&](Model model, const Cut& kept_cut, Random&) -> std::string {
-    model.cut.slivers = SliverPolicy::kMerge;
-    for (const JointSetInput& set : model.joint_sets) model.cut.merge_along.push_back(set.name);
-    const Cut cut = with_slivers(model, kept_cut);
-    // in every region and opening by itself
-    const CellCut cells(cut);
-    std::map<std::pair<int, int>, Int128> lost;
-    for (const CutBlock& b : not_removed(model, cut.whole))
-      lost[{b.region, b.opening}] += twice_area(cells.ring(b));
-    for (const CutBlock& b : cut.blocks) lost[{b.region, b.opening}] -= twice_area(cells.ring(b));
-    for (const auto& [group, area] : lost)
-      if (area != 0) return "area was lost or went to another region or opening";
-    merged += cut.slivers.merged, kept += cut.slivers.kept;
-    return sliver_defect(model, cut);
-  });
-  CHECK(merged > kNetworks / 4);
-  MESSAGE(merged, " slivers merged, ", kept, " kept");
-}
-
-TEST_CASE("deleting slivers takes away the area told, keeping them nothing") {
-  for_networks([](const Model& model, const Cut&, Random&) { return policy_defect(model); });
-}
-
-TEST_CASE("the same model gives the same blocks to the last bit") {
-  for_networks([](const Model& model, const Cut& cut, Random&) -> std::string {
-    Findings findings("case.toml", "");
-    const Cut again = cut_model(model, findings);
-    const bool equal = cut.point == again.point && cut.edge == again.edge &&
-                       cut.edge_origin == again.edge_origin && same(cut.whole, again.whole) &&
-                       same(cut.blocks, again.blocks);
-    return equal ? "" : "cut again it gives other blocks";
-  });
-}
-
-TEST_CASE("blocks of any network are sound polygons without overlap in the layout") {
-  int pairs = 0;
-  for_networks([&](const Model& model, const Cut& cut, Random& random) -> std::string {
-    std::string defect = shape_defect(model, cut);
-    std::vector<Box> boxes;
-    for (const CutBlock& b : cut.blocks) boxes.push_back(bounding_box(cut.polygon(b)));
-    for (const auto& [i, j] : close_pairs(boxes, 0)) {
-      if (random.uniform() > 0.05) continue;
-      const Polygon a = cut.polygon(cut.blocks[static_cast<size_t>(i)]),
-                    b = cut.polygon(cut.blocks[static_cast<size_t>(j)]);
-      ++pairs;
-      if (polygon_overlap(a, b).area > 0) defect = "blocks overlap";
-    }
-    return defect;
-  });
-  CHECK(pairs > kNetworks);
+TEST_CASE("nine hundred random networks more" * doctest::test_suite("optimised")) {
+  check_networks(100, 1000);
 }
 
 }  // namespace test_cut_properties

@@ -8,10 +8,12 @@
 #include <string>
 #include <utility>
 #include <vector>
+#include "support/relative.h"
 
 namespace test_polygon {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -33,11 +35,6 @@ std::vector<Shape> shapes() {
           {"L-shape",
            {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
            {3, {5.0 / 6, 5.0 / 6}, {11.0 / 12, -1.0 / 3, -1.0 / 3, 11.0 / 12}}}};
-}
-
-// Equal up to `share` of the value itself.
-doctest::Approx relative(double value, double share) {
-  return doctest::Approx(value).epsilon(share).scale(0);
 }
 
 void check_moments(const Polygon& polygon, const PolygonMoments& exact, double tolerance) {

@@ -4,12 +4,14 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "support/told.h"
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
 namespace test_wrong_input {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -49,18 +51,6 @@ std::string replaced(const std::string& from, const std::string& to) {
   const size_t at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
-}
-
-// Message of the InputError that reading `text` ends in; "" when it is accepted.
-std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  Findings findings("model.toml", text);
-  try {
-    prepare_run("model.toml", text, overrides, findings);
-  } catch (const InputError& e) {
-    CHECK(e.code() == 3);
-    return e.what();
-  }
-  return "";
 }
 
 void check_message(const std::string& message, const std::vector<std::string>& parts) {

@@ -2,12 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include "support/told.h"
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
 namespace test_wrong_input_bolts {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -40,16 +42,6 @@ const std::string kBar = "kind = \"grouted\"\ndiameter = \"25 mm\"\nspacing = 1\
                   kLine = "from = [1, 1]\nto = [3, 1.5]\n",
                   kRadial = "kind = \"radial\"\nlength = 1\ncenter = [2, 2]\nradius = 0.5\n";
 
-std::string refusal(const std::string& text) {
-  Findings findings("model.toml", text);
-  try {
-    prepare_run("model.toml", text, {}, findings);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return findings.render();  // warnings
-}
-
 std::string type(const std::string& keys) { return kSound + "[bolt_type.t]\n" + keys; }
 std::string bolt(const std::string& type_keys, const std::string& keys) {
   return type(type_keys) + "[[bolt]]\nname = \"b\"\ntype = \"t\"\n" + keys;
@@ -66,25 +58,19 @@ struct Case {
 void check_cases(const std::vector<Case>& cases) {
   for (const Case& c : cases) {
     INFO(c.what);
-    const std::string told = refusal(c.text);
-    INFO(told);
-    CHECK(told.find("model.toml:") != std::string::npos);
-    for (const std::string& piece : c.pieces) {
-      INFO(piece);
-      CHECK(told.find(piece) != std::string::npos);
-    }
+    check_told(c.text, c.pieces);
   }
 }
 
 }  // namespace
 
 TEST_CASE("sound bolts are taken without a word") {
-  CHECK(refusal(bolt(kBar, kLine)).empty());
-  CHECK(refusal(
-            bolt(kRod + "pretension = \"10 kN\"\nyield_stress = \"400 MPa\"\nrupture_strain = 0.05\n", kLine))
-            .empty());
-  CHECK(refusal(pattern("kind = \"row\"\nlength = 3\nfrom = [0.5, 1]\nto = [0.5, 3.1]\nspacing = 0.7\n"
-                        "direction = \"3 deg\"\n"))
+  CHECK(told(bolt(kBar, kLine)).empty());
+  CHECK(
+      told(bolt(kRod + "pretension = \"10 kN\"\nyield_stress = \"400 MPa\"\nrupture_strain = 0.05\n", kLine))
+          .empty());
+  CHECK(told(pattern("kind = \"row\"\nlength = 3\nfrom = [0.5, 1]\nto = [0.5, 3.1]\nspacing = 0.7\n"
+                     "direction = \"3 deg\"\n"))
             .empty());
 }
 

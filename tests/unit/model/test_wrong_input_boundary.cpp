@@ -3,12 +3,14 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "support/told.h"
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
 namespace test_wrong_input_boundary {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -39,16 +41,6 @@ kind = "dynamic"
 duration = "1 ms"
 )";
 
-std::string refusal(const std::string& text) {
-  Findings findings("model.toml", text);
-  try {
-    prepare_run("model.toml", text, {}, findings);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return findings.render();  // warnings
-}
-
 std::string boundary(const std::string& keys) { return kSound + "[[boundary]]\nname = \"b\"\n" + keys; }
 std::string load(const std::string& keys) { return kSound + "[[load]]\nname = \"l\"\n" + keys; }
 
@@ -60,13 +52,7 @@ struct Case {
 void check_cases(const std::vector<Case>& cases) {
   for (const Case& c : cases) {
     INFO(c.what);
-    const std::string told = refusal(c.text);
-    INFO(told);
-    CHECK(told.find("model.toml:") != std::string::npos);
-    for (const std::string& piece : c.pieces) {
-      INFO(piece);
-      CHECK(told.find(piece) != std::string::npos);
-    }
+    check_told(c.text, c.pieces);
   }
 }
 

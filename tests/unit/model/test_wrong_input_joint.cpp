@@ -7,29 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "support/told.h"
 #include "talus/base/error.h"
 #include "talus/run/run.h"
 
 namespace test_wrong_input_joint {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
-std::string refusal(const std::string& joint, const std::string& more = "") {
+std::string joint_refusal(const std::string& joint, const std::string& more = "") {
   const std::string text = "talus = 1\n[material.m]\ndensity = 2000\n[joint.face]\n" + joint +
                            "\n[[block]]\nname = \"a\"\npolygon = [[0, 0], [1, 0], [1, 1], [0, 1]]\nmaterial "
                            "= \"m\"\nkind = \"rigid\"\n"
                            "[contact]\njoint = \"face\"\n" +
                            more +
                            "\n[[stage]]\nname = \"s\"\nkind = \"static\"\nduration = 1\ntime_step = 1e-3\n";
-  Findings findings("model.toml", text);
-  try {
-    prepare_run("model.toml", text, {}, findings);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
+  return refusal(text);
 }
 
 struct Wrong {
@@ -44,7 +40,7 @@ TEST_CASE("wrong input: strengths of joints, safety") {
       "friction_angle = \"40 deg\"\nresidual_friction_angle = \"30 deg\"\ncohesion = 5\nresidual_cohesion = "
       "5\n"
       "dilation_angle = \"30 deg\"\n";
-  CHECK(refusal(sound, "[safety]\njoints = [\"face\"]\n") == "");
+  CHECK(joint_refusal(sound, "[safety]\njoints = [\"face\"]\n") == "");
   const std::vector<Wrong> cases = {
       {"friction_angle = \"30 deg\"\nresidual_friction_angle = \"31 deg\"",
        "",
@@ -71,7 +67,7 @@ TEST_CASE("wrong input: strengths of joints, safety") {
       {"kind = \"bonded\"", "[safety]\njoints = [\"face\"]\n", {"safety.joints", "is bonded"}},
   };
   for (const Wrong& wrong : cases) {
-    const std::string message = refusal(wrong.joint, wrong.more);
+    const std::string message = joint_refusal(wrong.joint, wrong.more);
     for (const std::string& part : wrong.parts) {
       INFO("message:\n", message, "\nshould hold: ", part);
       CHECK(message.find(part) != std::string::npos);
@@ -88,10 +84,12 @@ TEST_CASE("wrong input: a change that leaves a joint which could not be one from
     return fmt::format("[[change]]\nstage = \"{}\"\njoint = \"face\"\n{}\n", stage, keys);
   };
   const std::string later = "[[stage]]\nname = \"t\"\nkind = \"static\"\nduration = 1\ntime_step = 1e-3\n";
-  CHECK(refusal(joint, change("friction_angle = \"30 deg\"\ncohesion = 2\ntensile_strength = 0")) == "");
-  CHECK(refusal(rough, change("friction_angle = \"20 deg\"")) == "");
+  CHECK(joint_refusal(joint, change("friction_angle = \"30 deg\"\ncohesion = 2\ntensile_strength = 0")) ==
+        "");
+  CHECK(joint_refusal(rough, change("friction_angle = \"20 deg\"")) == "");
   // a stage is judged when all its changes are made
-  CHECK(refusal(rough, change("friction_angle = \"10 deg\"") + change("friction_angle = \"25 deg\"")) == "");
+  CHECK(joint_refusal(rough, change("friction_angle = \"10 deg\"") + change("friction_angle = \"25 deg\"")) ==
+        "");
 
   const std::vector<Wrong> cases = {
       {rough,
@@ -119,7 +117,7 @@ TEST_CASE("wrong input: a change that leaves a joint which could not be one from
        {"change.1.friction_angle", "is 15 deg"}},
   };
   for (const Wrong& wrong : cases) {
-    const std::string message = refusal(wrong.joint, wrong.more);
+    const std::string message = joint_refusal(wrong.joint, wrong.more);
     for (const std::string& part : wrong.parts) {
       INFO("message:\n", message, "\nshould hold: ", part);
       CHECK(message.find(part) != std::string::npos);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "support/folder.h"
 #include "talus/base/error.h"
 
 namespace test_files {
@@ -22,23 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace talus;
+using namespace talus::test;
 
 // A folder of its own that disappears with the test.
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("talus_files_" + std::to_string(getpid()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 void put(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
@@ -63,25 +50,25 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 }  // namespace
 
 TEST_CASE("write_file writes every byte, replaces, and leaves nothing beside") {
-  const TemporaryFolder folder;
+  const Folder folder;
   const std::string bytes("line\r\n\0\xff end", 12);
-  write_file(folder.path / "a.txt", "an older and longer text than the new one");
-  write_file(folder.path / "a.txt", bytes);
-  CHECK(content(folder.path / "a.txt") == bytes);
-  write_file(folder.path / "empty", "");
-  CHECK(fs::file_size(folder.path / "empty") == 0);
-  CHECK(count_in(folder.path) == 2);
+  write_file(folder / "a.txt", "an older and longer text than the new one");
+  write_file(folder / "a.txt", bytes);
+  CHECK(content(folder / "a.txt") == bytes);
+  write_file(folder / "empty", "");
+  CHECK(fs::file_size(folder / "empty") == 0);
+  CHECK(count_in(folder.path()) == 2);
 }
 
 TEST_CASE("write_file reports path and cause, and keeps the old file") {
-  const TemporaryFolder folder;
-  const fs::path missing = folder.path / "missing" / "a.txt";
+  const Folder folder;
+  const fs::path missing = folder / "missing" / "a.txt";
   const std::string text = error_of([&] { write_file(missing, "x"); });
   CHECK(has(text, missing.string()));
   CHECK(has(text, "No such file or directory"));
-  fs::create_directories(folder.path / "taken" / "x");
-  CHECK(has(error_of([&] { write_file(folder.path / "taken", "x"); }), (folder.path / "taken").string()));
-  CHECK(fs::exists(folder.path / "taken" / "x"));
+  fs::create_directories(folder / "taken" / "x");
+  CHECK(has(error_of([&] { write_file(folder / "taken", "x"); }), (folder / "taken").string()));
+  CHECK(fs::exists(folder / "taken" / "x"));
 }
 
 TEST_CASE("a device without space is reported") {
@@ -98,7 +85,7 @@ TEST_CASE("a device without space is reported") {
 }
 
 TEST_CASE("numbers come back from a CSV file to the last bit") {
-  const TemporaryFolder folder;
+  const Folder folder;
   using Limits = std::numeric_limits<double>;
   std::vector<double> numbers{0.0,
                               -0.0,
@@ -118,7 +105,7 @@ TEST_CASE("numbers come back from a CSV file to the last bit") {
     const double mantissa = std::uniform_real_distribution<double>(-1, 1)(random);
     numbers.push_back(std::ldexp(mantissa, std::uniform_int_distribution<int>(-1070, 1020)(random)));
   }
-  const fs::path path = folder.path / "a.csv";
+  const fs::path path = folder / "a.csv";
   {
     CsvWriter writer(path, {"t [s]", "u [m]"});
     for (const double v : numbers) writer.append({v, -v});
@@ -136,9 +123,9 @@ TEST_CASE("numbers come back from a CSV file to the last bit") {
 }
 
 TEST_CASE("numbers that are not finite come back as such") {
-  const TemporaryFolder folder;
+  const Folder folder;
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  const fs::path path = folder.path / "a.csv";
+  const fs::path path = folder / "a.csv";
   {
     CsvWriter writer(path, {"v"});
     for (const double v : {nan, -nan, inf, -inf}) writer.append({v});
@@ -153,8 +140,8 @@ TEST_CASE("numbers that are not finite come back as such") {
 }
 
 TEST_CASE("rows are in the file after flush") {
-  const TemporaryFolder folder;
-  const fs::path path = folder.path / "a.csv";
+  const Folder folder;
+  const fs::path path = folder / "a.csv";
   CsvWriter writer(path, {"a", "b"});
   CHECK(content(path) == "a,b\n");  // the header at once
   writer.append({1, 2.5});
@@ -163,8 +150,8 @@ TEST_CASE("rows are in the file after flush") {
 }
 
 TEST_CASE("read_csv accepts comments, empty lines and either line end") {
-  const TemporaryFolder folder;
-  const fs::path path = folder.path / "a.csv";
+  const Folder folder;
+  const fs::path path = folder / "a.csv";
   put(path, "# source\r\nt,v\r\n\r\n0,1\r\n# middle\n2,-3e2");
   const CsvTable table = read_csv(path);
   CHECK(table.columns == std::vector<std::string>{"t", "v"});
@@ -172,8 +159,8 @@ TEST_CASE("read_csv accepts comments, empty lines and either line end") {
 }
 
 TEST_CASE("read_csv names file and line of what it cannot read") {
-  const TemporaryFolder folder;
-  const fs::path path = folder.path / "a.csv";
+  const Folder folder;
+  const fs::path path = folder / "a.csv";
   const auto message = [&](const std::string& text) {
     put(path, text);
     return error_of([&] { read_csv(path); });
@@ -184,7 +171,7 @@ TEST_CASE("read_csv names file and line of what it cannot read") {
   CHECK(has(message("a,b\n1\n"), path.string() + ":2: has 1 cells, the header 2"));
   CHECK(has(message("a,b\n1,2,3\n"), path.string() + ":2: has 3 cells, the header 2"));
   CHECK(has(message("# nothing\n"), path.string() + ": is empty"));
-  const std::string missing = error_of([&] { read_csv(folder.path / "none.csv"); });
+  const std::string missing = error_of([&] { read_csv(folder / "none.csv"); });
   CHECK(has(missing, "none.csv"));
   CHECK(has(missing, "No such file or directory"));
 }
@@ -205,8 +192,8 @@ TEST_CASE("a column is found by its name or by the only beginning") {
 }
 
 TEST_CASE("open_result_folder") {
-  const TemporaryFolder base;
-  const fs::path folder = base.path / "deep" / "result";
+  const Folder base;
+  const fs::path folder = base / "deep" / "result";
   SUBCASE("a fresh folder is made, with its parents") {
     open_result_folder(folder, false);
     CHECK(fs::is_directory(folder));
@@ -235,10 +222,10 @@ TEST_CASE("open_result_folder") {
     CHECK(content(folder / "run.log") == "precious");
   }
   SUBCASE("a file in its place") {
-    put(base.path / "file", "text");
-    CHECK(has(error_of([&] { open_result_folder(base.path / "file", true); }), "is a file, not a folder"));
-    CHECK(has(error_of([&] { open_result_folder(base.path / "file" / "in", true); }), "cannot be created"));
-    CHECK(content(base.path / "file") == "text");
+    put(base / "file", "text");
+    CHECK(has(error_of([&] { open_result_folder(base / "file", true); }), "is a file, not a folder"));
+    CHECK(has(error_of([&] { open_result_folder(base / "file" / "in", true); }), "cannot be created"));
+    CHECK(content(base / "file") == "text");
   }
 }
 

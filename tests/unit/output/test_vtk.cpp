@@ -12,10 +12,12 @@
 #include <iterator>
 #include <string>
 #include <vector>
+#include "support/relative.h"
 
 namespace test_vtk {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -93,11 +95,6 @@ struct Setup {
     state.strain_part[1] = rotation_minus_identity(1);  // turned
   }
 };
-
-// Equal up to `share` of the value itself.
-doctest::Approx relative(double value, double share) {
-  return doctest::Approx(value).epsilon(share).scale(0);
-}
 
 }  // namespace
 

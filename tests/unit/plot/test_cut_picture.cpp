@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/folder.h"
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
 #include "talus/plot/cut_picture.h"
@@ -21,23 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace talus;
+using namespace talus::test;
 
 // A folder of its own that disappears with the test.
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("talus_test_cut_picture_" + std::to_string(getpid()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 const std::string kRock = "[material.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n";
 
@@ -64,7 +51,7 @@ std::string without_number(std::string svg) {
 
 // The SVG of the model in `text`, written and read back; the PNG must be there as well.
 std::string svg_of(const std::string& text) {
-  const TemporaryFolder folder;
+  const Folder folder;
   const std::string whole = "talus = 1\n" + text;
   Findings findings("model.toml", whole);
   const Model model = read_model("model.toml", whole, {}, findings);
@@ -72,9 +59,9 @@ std::string svg_of(const std::string& text) {
   INFO(findings.render());
   CHECK(model.shapes_readable);
   const Layout layout = make_layout(model, cut, findings);
-  plot::write_cut_picture(model, cut, layout, folder.path / "cut");
-  CHECK(content(folder.path / "cut.png").substr(0, 8) == "\x89PNG\r\n\x1a\n");
-  const std::string svg = content(folder.path / "cut.svg");
+  plot::write_cut_picture(model, cut, layout, folder / "cut");
+  CHECK(content(folder / "cut.png").substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  const std::string svg = content(folder / "cut.svg");
   CHECK(svg.substr(0, 5) == "<?xml");
   CHECK(svg.find("</svg>", svg.size() - 8) != std::string::npos);
   return without_number(svg);
@@ -262,11 +249,11 @@ TEST_CASE("write_cut_picture copes with odd models") {
 }
 
 TEST_CASE("write_cut_picture throws when a file cannot be written") {
-  const TemporaryFolder folder;
-  const fs::path stem = folder.path / "missing" / "cut";
+  const Folder folder;
+  const fs::path stem = folder / "missing" / "cut";
   CHECK_THROWS_WITH_AS(plot::write_cut_picture({}, {}, {}, stem), doctest::Contains("missing/cut.svg"),
                        std::runtime_error);
-  CHECK(fs::is_empty(folder.path));
+  CHECK(fs::is_empty(folder.path()));
 }
 
 }  // namespace test_cut_picture

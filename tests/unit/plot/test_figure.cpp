@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/folder.h"
 #include "talus/plot/figure.h"
 #include "talus/plot/scale.h"
 
@@ -21,26 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace talus::plot;
+using namespace talus::test;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A folder of its own that disappears with the test.
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("talus_figure_" + std::to_string(getpid()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 // Width and height of a PNG [pixels], four bytes each behind the signature and the head of the first chunk.
 unsigned png_number(const std::string& png, std::size_t offset) {
@@ -73,32 +60,32 @@ int occurrences(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("write_figure writes an SVG and a PNG of twice the size and leaves nothing else") {
-  const TemporaryFolder folder;
-  write_figure(sine_figure(), folder.path / "run.1");  // a dot in the name is not an extension
+  const Folder folder;
+  write_figure(sine_figure(), folder / "run.1");  // a dot in the name is not an extension
 
-  const std::string svg = content(folder.path / "run.1.svg");
+  const std::string svg = content(folder / "run.1.svg");
   CHECK(svg.find("<svg") != std::string::npos);
   CHECK(svg.find("width=\"760px\" height=\"460px\"") != std::string::npos);
   CHECK(svg.find("</svg>") != std::string::npos);
 
-  const std::string png = content(folder.path / "run.1.png");
+  const std::string png = content(folder / "run.1.png");
   REQUIRE(png.size() > 24);
   CHECK(png.substr(1, 3) == "PNG");
   CHECK(png_number(png, 16) == 1520);
   CHECK(png_number(png, 20) == 920);
 
-  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 2);
+  CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 2);
 }
 
 TEST_CASE("write_figure replaces older files") {
-  const TemporaryFolder folder;
-  std::ofstream(folder.path / "a.svg") << "old";
-  write_figure(sine_figure(), folder.path / "a");
-  CHECK(content(folder.path / "a.svg").find("<svg") != std::string::npos);
+  const Folder folder;
+  std::ofstream(folder / "a.svg") << "old";
+  write_figure(sine_figure(), folder / "a");
+  CHECK(content(folder / "a.svg").find("<svg") != std::string::npos);
 }
 
 TEST_CASE("a figure that cannot be written is reported with file and cause") {
-  const TemporaryFolder folder;
+  const Folder folder;
   const auto message = [](const fs::path& stem) -> std::string {
     try {
       write_figure(sine_figure(), stem);
@@ -108,19 +95,19 @@ TEST_CASE("a figure that cannot be written is reported with file and cause") {
     return "";
   };
   SUBCASE("the folder does not exist") {
-    const std::string text = message(folder.path / "missing" / "force");
-    CHECK(text.find((folder.path / "missing" / "force.svg").string()) != std::string::npos);
+    const std::string text = message(folder / "missing" / "force");
+    CHECK(text.find((folder / "missing" / "force.svg").string()) != std::string::npos);
     CHECK(text.find("No such file or directory") != std::string::npos);
   }
   SUBCASE("the name is taken by a folder; the temporary file is removed") {
-    fs::create_directories(folder.path / "force.png" / "x");
-    CHECK(message(folder.path / "force").find((folder.path / "force.png").string()) != std::string::npos);
-    CHECK_FALSE(fs::exists(folder.path / "force.png.part"));
+    fs::create_directories(folder / "force.png" / "x");
+    CHECK(message(folder / "force").find((folder / "force.png").string()) != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "force.png.part"));
   }
 }
 
 TEST_CASE("curves without a usable range are drawn") {
-  const TemporaryFolder folder;
+  const Folder folder;
   Figure figure;
   figure.title = "not UTF-8: \xff";
   SUBCASE("no curves") {}
@@ -137,38 +124,38 @@ TEST_CASE("curves without a usable range are drawn") {
     figure.y_min = figure.y_max = 5;
     figure.width = -1;
   }
-  CHECK_NOTHROW(write_figure(figure, folder.path / "odd"));
-  CHECK(fs::exists(folder.path / "odd.png"));
+  CHECK_NOTHROW(write_figure(figure, folder / "odd"));
+  CHECK(fs::exists(folder / "odd.png"));
 }
 
 TEST_CASE("coordinates of different number are refused with the name of the curve") {
-  const TemporaryFolder folder;
+  const Folder folder;
   Figure figure;
   figure.curves = {{"gap 3", {0, 1, 2}, {0, 1}}};
-  CHECK_THROWS_WITH_AS(write_figure(figure, folder.path / "a"), "curve 'gap 3': 3 values of x but 2 of y",
+  CHECK_THROWS_WITH_AS(write_figure(figure, folder / "a"), "curve 'gap 3': 3 values of x but 2 of y",
                        std::invalid_argument);
 }
 
 TEST_CASE("a curve hidden from the legend has no line sample there") {
-  const TemporaryFolder folder;
+  const Folder folder;
   const std::string color = "stroke:rgb(0%,44.7%,69.8%)";  // palette index 0, used for nothing else
   Figure figure = sine_figure();
-  write_figure(figure, folder.path / "with");
+  write_figure(figure, folder / "with");
   figure.curves[0].in_legend = false;
-  write_figure(figure, folder.path / "without");
-  const int with = occurrences(content(folder.path / "with.svg"), color);
-  const int without = occurrences(content(folder.path / "without.svg"), color);
+  write_figure(figure, folder / "without");
+  const int with = occurrences(content(folder / "with.svg"), color);
+  const int without = occurrences(content(folder / "without.svg"), color);
   CHECK(with == 2);
   CHECK(without == 1);
 }
 
 TEST_CASE("fourteen long legend entries leave half of the plot area") {
-  const TemporaryFolder folder;
+  const Folder folder;
   Figure figure = sine_figure();
   figure.curves[0].label = std::string(60, 'm');
   figure.curves.resize(14, figure.curves[0]);
-  write_figure(figure, folder.path / "a");
-  CHECK(png_number(content(folder.path / "a.png"), 20) > 920);  // grown
+  write_figure(figure, folder / "a");
+  CHECK(png_number(content(folder / "a.png"), 20) > 920);  // grown
 }
 
 TEST_CASE("widened gives every range a length to compute with") {

@@ -11,11 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "support/relative.h"
 #include "talus/rows/rows.h"
 
 namespace test_mobility {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -49,8 +51,6 @@ BlockSet one_of_each() {
 }
 
 constexpr size_t kDeformable = 0, kRigid = 1;
-
-double size_of(const Mat2& m) { return std::sqrt(contract(m, m)); }
 
 // Numbers of order 1 to 10 and a few dozen roundings of 1e-16 each; moments of inertia that differ tenfold.
 constexpr double kRound = 1e-13;

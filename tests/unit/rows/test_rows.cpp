@@ -5,10 +5,12 @@
 #include <cmath>
 #include <random>
 #include <vector>
+#include "support/relative.h"
 
 namespace test_rows {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
@@ -53,15 +55,8 @@ BlockRate random_rate(const BlockSet& blocks, size_t i, Random& random) {
   return {random.vector(), g};
 }
 
-double size_of(const Mat2& m) { return std::sqrt(contract(m, m)); }
-
 // Numbers of order 1, a dozen roundings of 1e-16 each.
 constexpr double kRound = 1e-14;
-
-// Equal up to `share` of the value itself.
-doctest::Approx relative(double value, double share) {
-  return doctest::Approx(value).epsilon(share).scale(0);
-}
 
 }  // namespace
 

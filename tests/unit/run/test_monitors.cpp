@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/run_case.h"
+#include "support/told.h"
 #include "support/tolerance.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
@@ -65,14 +66,8 @@ duration = 0.1
 time_step = 1e-3
 )";
 
-std::string refusal(const std::string& monitor) {
-  Findings findings("model.toml", kFlight);
-  try {
-    prepare_run("model.toml", kFlight + "[[monitor]]\nname = \"m\"\n" + monitor, {}, findings);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "accepted";
+std::string monitor_refusal(const std::string& monitor) {
+  return refusal(kFlight + "[[monitor]]\nname = \"m\"\n" + monitor);
 }
 
 }  // namespace
@@ -156,7 +151,7 @@ history_interval = 0.1
 
 TEST_CASE("wrong monitors are found before the first step") {
   const auto told = [](const std::string& monitor, const std::vector<std::string>& pieces) {
-    const std::string text = refusal(monitor);
+    const std::string text = monitor_refusal(monitor);
     INFO(text);
     for (const std::string& piece : pieces) CHECK(text.find(piece) != std::string::npos);
   };

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "support/box_polygon.h"
+#include "support/model_text.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/angle.h"
@@ -25,21 +26,13 @@ inline std::string head(const std::string& joint, double gravity, double frictio
       -gravity, poisson, friction, joint);
 }
 
-inline std::string place(Vec2 p) { return fmt::format("[{:.17g}, {:.17g}]", p.x, p.y); }
-
-inline std::string block(const std::string& name, const Polygon& corners, const std::string& kind) {
-  std::string list;
-  for (const Vec2 p : corners) list += (list.empty() ? "" : ", ") + place(p);
-  return fmt::format("[[block]]\nname = \"{}\"\npolygon = [{}]\nmaterial = \"m\"\nkind = \"{}\"\n", name,
-                     list, kind);
-}
-
 inline std::string constant(const std::string& name, double value) {
   return fmt::format("[history.{0}]\ntime = [0, 1]\nvalue = [{1:.17g}, {1:.17g}]\n", name, value);
 }
 
 inline std::string on_edge(const std::string& name, Vec2 from, Vec2 to, const std::string& what) {
-  return fmt::format("[[load]]\nname = \"{}\"\nedge = [{}, {}]\n{}\n", name, place(from), place(to), what);
+  return fmt::format("[[load]]\nname = \"{}\"\nedge = [{}, {}]\n{}\n", name, point_text(from), point_text(to),
+                     what);
 }
 
 // Implicit elasticity: steps are as long as what happens asks for.

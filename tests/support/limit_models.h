@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "talus/geometry/polygon.h"
+#include "support/model_text.h"
 
 namespace talus::test::limit {
 
@@ -21,15 +21,6 @@ inline double radians(double degrees) { return degrees * std::numbers::pi / 180;
 
 /// One [[block]] of the material "m".
 /// @param polygon  corners [m]
-/// @param kind     as in the model file: "fixed", "rigid"
-inline std::string block_text(const std::string& name, const Polygon& polygon, const std::string& kind) {
-  std::string corners;
-  for (const Vec2 v : polygon)
-    corners += fmt::format("{}[{:.17g},{:.17g}]", corners.empty() ? "" : ",", v.x, v.y);
-  return fmt::format("[[block]]\nname = \"{}\"\npolygon = [{}]\nmaterial = \"m\"\nkind = \"{}\"\n", name,
-                     corners, kind);
-}
-
 /// What comes before the blocks: gravity [m/s2], the material "m" [kg/m3], one joint for all contacts.
 inline std::string head_text(Vec2 gravity, double friction_degrees, double density) {
   return fmt::format(

@@ -142,7 +142,7 @@ TEST_CASE("bolt in rock that is excavated: refused before the first step, with b
     INFO(kind);
     const std::string text = refusal(dug_text(kind, 0.2, 2.6, "first"));
     INFO(text);
-    CHECK(text.find("case.toml:23:") != std::string::npos);
+    CHECK(text.find("model.toml:23:") != std::string::npos);
     CHECK(text.find("bolt.bar: is tied to block \"c\", which stage \"dig\" excavates") != std::string::npos);
     CHECK(text.find("tied to rock that stays") != std::string::npos);
     // what has gone when the bolt is installed holds nothing, so that the bolt ends in the air

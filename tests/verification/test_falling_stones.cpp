@@ -21,9 +21,9 @@ TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is cove
       "GPa/m\"\n"
       "[contact]\njoint = \"j\"\n[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.5\ntime_step = "
       "\"1 ms\"\n" +
-      block("floor", box_polygon(-3, -2, width + 3, 0), "fixed") +
-      block("left", box_polygon(-3, 0, -1, 20), "fixed") +
-      block("right", box_polygon(width, 0, width + 3, 20), "fixed");
+      block_text("floor", box_polygon(-3, -2, width + 3, 0), "fixed") +
+      block_text("left", box_polygon(-3, 0, -1, 20), "fixed") +
+      block_text("right", box_polygon(width, 0, width + 3, 20), "fixed");
   for (int k = 0; k < kStones; ++k) {
     const Vec2 middle{1.2 * (k % kColumns) + 0.15 + 0.1 * random.uniform(), 1.2 * (k / kColumns) + 0.8};
     const int corners = 4 + static_cast<int>(5 * random.uniform());
@@ -33,7 +33,7 @@ TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is cove
       const double angle = turned + 2 * std::numbers::pi * (c + 0.5 * random.uniform()) / corners;
       stone.push_back(middle + radius * Vec2{std::cos(angle), std::sin(angle)});
     }
-    text += block(fmt::format("s{}", k), stone, "rigid");
+    text += block_text(fmt::format("s{}", k), stone, "rigid");
   }
   audited(text);
 }

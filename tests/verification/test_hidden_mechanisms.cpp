@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/model_text.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/random.h"
@@ -25,14 +26,6 @@ double degrees(double deg) { return deg * M_PI / 180; }
 PreparedRun prepare(const std::string& text, const std::vector<std::string>& overrides = {}) {
   Findings findings("case.toml", text);
   return prepare_run("case.toml", text, overrides, findings);
-}
-
-std::string point(Vec2 p) { return fmt::format("[{:.17g}, {:.17g}]", p.x, p.y); }
-
-std::string points(const Polygon& polygon) {
-  std::string out;
-  for (const Vec2 p : polygon) out += (out.empty() ? "" : ", ") + point(p);
-  return "[" + out + "]";
 }
 
 // Rock between rollers on a base; `more` cuts it. sides: counter-clockwise from the lower left corner.
@@ -82,7 +75,7 @@ lowest = 0.5
 highest = 4
 tolerance = 0.002
 {})",
-                     kG, kDensity, friction, cohesion, cohesion, points(outline), names, more);
+                     kG, kDensity, friction, cohesion, cohesion, polygon_text(outline), names, more);
 }
 
 std::string monitor(const std::string& name, Vec2 p) {
@@ -90,7 +83,7 @@ std::string monitor(const std::string& name, Vec2 p) {
 }
 
 std::string fault(const std::string& name, Vec2 from, Vec2 to) {
-  return fmt::format("[[fault]]\nname = \"{}\"\npoints = {}\n", name, points({from, to}));
+  return fmt::format("[[fault]]\nname = \"{}\"\npoints = {}\n", name, polygon_text({from, to}));
 }
 
 struct Wedge {
@@ -128,7 +121,7 @@ Wedge slope_wedge(uint64_t seed) {
 std::string tunnel(double width, double height) {
   return fmt::format(
       "[[opening]]\nname = \"tunnel\"\nshape = \"polygon\"\npolygon = {}\n",
-      points({{-0.5 * width, -height}, {0.5 * width, -height}, {0.5 * width, 0}, {-0.5 * width, 0}}));
+      polygon_text({{-0.5 * width, -height}, {0.5 * width, -height}, {0.5 * width, 0}, {-0.5 * width, 0}}));
 }
 
 Polygon square(double half) { return {{-half, -half}, {half, -half}, {half, half}, {-half, half}}; }
@@ -182,7 +175,7 @@ Wedge sliding_roof_wedge(uint64_t seed) {
   w.text = held_but(rock(square(3 * width), {"base", "right", "top", "left"}, friction, 0,
                          fault("below", corner, apex) + tunnel(width, width) +
                              fmt::format("[[opening]]\nname = \"slit\"\nshape = \"polygon\"\npolygon = {}\n",
-                                         points(open))),
+                                         polygon_text(open))),
                     (1.0 / 3) * (corner + end + apex));
   w.factor = wanted;
   return w;
@@ -231,7 +224,7 @@ TEST_CASE("a slope with one fault and four anchors: the factor with their yield 
   for (const double y : {30.0, 34.0, 38.0, 42.0}) {
     const Vec2 head{40 + (y - 20) * 17 / 30, y};
     bolts += fmt::format("[[bolt]]\nname = \"b{:g}\"\nfrom = {}\nto = {}\ntype = \"anchor\"\n", y,
-                         point(head), point(head + 22.0 * way));
+                         point_text(head), point_text(head + 22.0 * way));
   }
   const Vec2 exit{44, 20 + 4 * 30.0 / 17}, end{85, 52.678};
   const PreparedRun prepared = prepare(rock({{0, 0}, {110, 0}, {110, 50}, {57, 50}, {40, 20}, {0, 20}},

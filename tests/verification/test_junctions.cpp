@@ -34,18 +34,18 @@ struct OpenJoint {
 CaseResult slide_over(const OpenJoint& c) {
   const double left = -1 - kStart, far = std::max(c.open, 0.0);
   const bool one = c.open < 0;
-  return audited(head(c.stiffness, 0, c.friction) +
-                 block("l1", box_polygon(-2, -1, one ? 2 : 0, 0), "fixed") +
-                 block("l2", one ? box_polygon(2, -1, 3, 0) : box_polygon(far, -1, far + 2, 0), "fixed") +
-                 block("a", box_polygon(left, 0, -kStart, 0.25), c.kind) + constant("p", kLoad) +
-                 on_edge("press", {left, 0.25}, {-kStart, 0.25}, "pressure = \"p\"") +
-                 fmt::format("[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, {0}, {0}]\n", kSpeed) +
-                 "[[support]]\nname = \"push\"\nx = { velocity = \"go\" }\ny = \"free\"\n" +
-                 (c.guided ? fmt::format("edge = [[{0:.17g}, 0], [{0:.17g}, 0.25]]\n", left)
-                           : fmt::format("point = [{:.17g}, 0]\n", left)) +
-                 stage("press", false, 2, 5e-5) + stage("slide", true, kSlide, 5e-5, "damping_mass = 500") +
-                 between("f1", "a", "l1") + between("f2", "a", "l2") +
-                 fmt::format("[[monitor]]\nname = \"a\"\npoint = [{:.17g}, 0.125]\n", left + 0.5));
+  return audited(
+      head(c.stiffness, 0, c.friction) + block_text("l1", box_polygon(-2, -1, one ? 2 : 0, 0), "fixed") +
+      block_text("l2", one ? box_polygon(2, -1, 3, 0) : box_polygon(far, -1, far + 2, 0), "fixed") +
+      block_text("a", box_polygon(left, 0, -kStart, 0.25), c.kind) + constant("p", kLoad) +
+      on_edge("press", {left, 0.25}, {-kStart, 0.25}, "pressure = \"p\"") +
+      fmt::format("[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, {0}, {0}]\n", kSpeed) +
+      "[[support]]\nname = \"push\"\nx = { velocity = \"go\" }\ny = \"free\"\n" +
+      (c.guided ? fmt::format("edge = [[{0:.17g}, 0], [{0:.17g}, 0.25]]\n", left)
+                : fmt::format("point = [{:.17g}, 0]\n", left)) +
+      stage("press", false, 2, 5e-5) + stage("slide", true, kSlide, 5e-5, "damping_mass = 500") +
+      between("f1", "a", "l1") + between("f2", "a", "l2") +
+      fmt::format("[[monitor]]\nname = \"a\"\npoint = [{:.17g}, 0.125]\n", left + 0.5));
 }
 
 TEST_CASE("a block slides over an open joint of the course below with the strength of its bed") {
@@ -110,9 +110,9 @@ TEST_CASE("a step of 1 mm or 0.1 mm up stops a block") {
         CAPTURE(height);
         const double push = height < 5e-4 ? 400 : 2000, gap = 2e-4, mass = 2500 * 0.5 * 0.1;
         const std::string text =
-            head(stiffness, 0, 0) + block("l1", box_polygon(-2, -1, 0, 0), "fixed") +
-            block("l2", box_polygon(0, -1, 2, height), "fixed") +
-            block("a", box_polygon(-0.5 - gap, 0, -gap, 0.1), kind) + constant("p", 4e5) +
+            head(stiffness, 0, 0) + block_text("l1", box_polygon(-2, -1, 0, 0), "fixed") +
+            block_text("l2", box_polygon(0, -1, 2, height), "fixed") +
+            block_text("a", box_polygon(-0.5 - gap, 0, -gap, 0.1), kind) + constant("p", 4e5) +
             on_edge("press", {-0.5 - gap, 0.1}, {-gap, 0.1}, "pressure = \"p\"") +
             fmt::format("[history.push]\ntime = [0, 0.01, 1]\nvalue = [0, {0}, {0}]\n", push / mass) +
             "[[load]]\nname = \"push\"\nblock = \"a\"\nacceleration_x = \"push\"\n" +
@@ -147,9 +147,10 @@ TEST_CASE("a thin sheet between two blocks bears and slides as any joint does") 
       CAPTURE(stiffness);
       CAPTURE(kind);
       const CaseResult r = audited(
-          head(stiffness, 0, 30) + block("floor", box_polygon(-1, -1, 2, 0), "fixed") +
-          block("sheet", box_polygon(0, 0, 1, 1e-3), kind) + block("a", box_polygon(0, 1e-3, 1, 0.25), kind) +
-          constant("p", p) + on_edge("press", {0, 0.25}, {1, 0.25}, "pressure = \"p\"") +
+          head(stiffness, 0, 30) + block_text("floor", box_polygon(-1, -1, 2, 0), "fixed") +
+          block_text("sheet", box_polygon(0, 0, 1, 1e-3), kind) +
+          block_text("a", box_polygon(0, 1e-3, 1, 0.25), kind) + constant("p", p) +
+          on_edge("press", {0, 0.25}, {1, 0.25}, "pressure = \"p\"") +
           "[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, 0.05, 0.05]\n"
           "[[support]]\nname = \"push\"\npoint = [0, 1e-3]\nblock = \"a\"\nx = { velocity = \"go\" }\ny = "
           "\"free\"\n" +
@@ -178,12 +179,13 @@ TEST_CASE("over a step of 1 mm down a block falls by 1 mm, and gains no energy")
       CAPTURE(stiffness);
       CAPTURE(kind);
       const double b = 0.1, drop = 1e-3, start = 5e-3, speed = 1;
-      const std::string text = head(stiffness, kG, 10) + block("l1", box_polygon(-1, -1, 0, 0), "fixed") +
-                               block("l2", box_polygon(0, -1, 1, -drop), "fixed") +
-                               block("a", box_polygon(-start - b, 0, -start, b), kind) +
-                               fmt::format("velocity = [{}, 0]\n", speed) + stage("slide", true, 0.7, 1e-4) +
-                               stage("rest", false, 5, 1e-4) +
-                               "[[monitor]]\nname = \"a\"\npoint = " + place({-start - b / 2, b / 2}) + "\n";
+      const std::string text =
+          head(stiffness, kG, 10) + block_text("l1", box_polygon(-1, -1, 0, 0), "fixed") +
+          block_text("l2", box_polygon(0, -1, 1, -drop), "fixed") +
+          block_text("a", box_polygon(-start - b, 0, -start, b), kind) +
+          fmt::format("velocity = [{}, 0]\n", speed) + stage("slide", true, 0.7, 1e-4) +
+          stage("rest", false, 5, 1e-4) +
+          "[[monitor]]\nname = \"a\"\npoint = " + point_text({-start - b / 2, b / 2}) + "\n";
       double energy = 0, fall = 0;
       const CaseResult r = audited(text, [&](const Instant& i) {
         if (i.stage != 0) return;
@@ -224,7 +226,7 @@ TEST_CASE("three blocks that meet at 120 degrees carry a pressure from all aroun
         int number = 0;
         for (const auto& [name, corners] :
              {std::pair{"upper", upper}, std::pair{"left", left}, std::pair{"lower", lower}}) {
-          text += block(name, corners, kind);
+          text += block_text(name, corners, kind);
           for (size_t k = 1; k < 5; ++k)
             text += on_edge(fmt::format("p{}", number++), corners[k], corners[k + 1], "pressure = \"p\"");
         }
@@ -249,9 +251,9 @@ TEST_CASE(
     "of three blocks that meet at 120 degrees one is pushed into the notch, and drawn out along a joint") {
   const double h = std::sqrt(0.75), p = 1e6;
   const auto blocks = [&](const std::string& kind) {
-    return block("upper", {{0, 0}, {1, 0}, {1.5, h}, {1, 2 * h}, {0, 2 * h}, {-0.5, h}}, kind) +
-           block("left", {{0, 0}, {-0.5, h}, {-1.5, h}, {-2, 0}, {-1.5, -h}, {-0.5, -h}}, "fixed") +
-           block("lower", {{0, 0}, {-0.5, -h}, {0, -2 * h}, {1, -2 * h}, {1.5, -h}, {1, 0}}, "fixed") +
+    return block_text("upper", {{0, 0}, {1, 0}, {1.5, h}, {1, 2 * h}, {0, 2 * h}, {-0.5, h}}, kind) +
+           block_text("left", {{0, 0}, {-0.5, h}, {-1.5, h}, {-2, 0}, {-1.5, -h}, {-0.5, -h}}, "fixed") +
+           block_text("lower", {{0, 0}, {-0.5, -h}, {0, -2 * h}, {1, -2 * h}, {1.5, -h}, {1, 0}}, "fixed") +
            between("ul", "upper", "left") + between("lu", "upper", "lower");
   };
   const double mass = 2500 * 3 * h;
@@ -308,20 +310,23 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
   const std::vector<double> all{0, 15, 35};
   const Corner corners[] = {
       {"wall on the floor",
-       block("floor", box_polygon(-1, -1, 2, 0), "fixed") + block("wall", box_polygon(-1, 0, 0, 2), "fixed"),
+       block_text("floor", box_polygon(-1, -1, 2, 0), "fixed") +
+           block_text("wall", box_polygon(-1, 0, 0, 2), "fixed"),
        all},
       {"floor beside the wall",
-       block("floor", box_polygon(0, -1, 2, 0), "fixed") + block("wall", box_polygon(-1, -1, 0, 2), "fixed"),
+       block_text("floor", box_polygon(0, -1, 2, 0), "fixed") +
+           block_text("wall", box_polygon(-1, -1, 0, 2), "fixed"),
        all},
       {"crossing",
-       block("floor", box_polygon(0, -1, 2, 0), "fixed") + block("wall", box_polygon(-1, 0, 0, 2), "fixed") +
-           block("third", box_polygon(-1, -1, 0, 0), "fixed"),
+       block_text("floor", box_polygon(0, -1, 2, 0), "fixed") +
+           block_text("wall", box_polygon(-1, 0, 0, 2), "fixed") +
+           block_text("third", box_polygon(-1, -1, 0, 0), "fixed"),
        all},
       {"mitre",
-       block("floor", {{0, 0}, {-1, -1}, {2, -1}, {2, 0}}, "fixed") +
-           block("wall", {{0, 0}, {0, 2}, {-1, 2}, {-1, -1}}, "fixed"),
+       block_text("floor", {{0, 0}, {-1, -1}, {2, -1}, {2, 0}}, "fixed") +
+           block_text("wall", {{0, 0}, {0, 2}, {-1, 2}, {-1, -1}}, "fixed"),
        all},
-      {"one block", block("floor", {{-1, -1}, {2, -1}, {2, 0}, {0, 0}, {0, 2}, {-1, 2}}, "fixed"), all}};
+      {"one block", block_text("floor", {{-1, -1}, {2, -1}, {2, 0}, {0, 0}, {0, 2}, {-1, 2}}, "fixed"), all}};
   for (const std::string& stiffness : {kHard, kElastic})
     for (const Corner& corner : corners)
       for (const double lean : corner.leans) {
@@ -337,7 +342,7 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
         const bool two = corner.name != "one block";
         const std::string text =
             head(stiffness, 0, 0) + corner.blocks +
-            block("wedge", {{0, 0}, tip_at(lean), tip_at(lean + 40)}, "rigid") +
+            block_text("wedge", {{0, 0}, tip_at(lean), tip_at(lean + 40)}, "rigid") +
             fmt::format(
                 "[history.ax]\ntime = [0, 0.02, 1]\nvalue = [0, {0:.17g}, {0:.17g}]\n"
                 "[history.ay]\ntime = [0, 0.02, 1]\nvalue = [0, {1:.17g}, {1:.17g}]\n",
@@ -395,11 +400,12 @@ TEST_CASE("a block whose support is excavated falls freely, slides at its fricti
                            "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"side\"\n"
                            "[[contact_pair]]\nbetween = [\"ul\", \"lr\"]\njoint = \"side\"\n";
         const CaseResult r = audited(
-            head(stiffness, kG, 0, 0) + upright + block("floor", box_polygon(-1, -1, 3, 0), "fixed") +
-            block("ll", box_polygon(0, 0, 1, 1), kind) + block("lr", box_polygon(1, 0, 2, 1), "fixed") +
-            block("ul", box_polygon(0, 1, 1, 2), kind) + block("ur", box_polygon(1, 1, 2, 2), "fixed") +
-            constant("q", q) + on_edge("left", {0, 0}, {0, 2}, "pressure = \"q\"") +
-            stage("stand", false, 5, 1e-4) +
+            head(stiffness, kG, 0, 0) + upright + block_text("floor", box_polygon(-1, -1, 3, 0), "fixed") +
+            block_text("ll", box_polygon(0, 0, 1, 1), kind) +
+            block_text("lr", box_polygon(1, 0, 2, 1), "fixed") +
+            block_text("ul", box_polygon(0, 1, 1, 2), kind) +
+            block_text("ur", box_polygon(1, 1, 2, 2), "fixed") + constant("q", q) +
+            on_edge("left", {0, 0}, {0, 2}, "pressure = \"q\"") + stage("stand", false, 5, 1e-4) +
             stage("fall", true, duration, 1e-4, "excavate = [\"ll\"]\nreset_displacements = true") +
             "[[monitor]]\nname = \"ul\"\npoint = [0.5, 1.5]\n" + between("upper", "ul", "ur") +
             between("lower", "ul", "lr"));
@@ -470,9 +476,11 @@ TEST_CASE("a block whose support is excavated under most of it tilts, or stays w
         const CaseResult r = audited(
             head(stiffness, kG, 0) +
             (glued ? "[[contact_pair]]\nbetween = [\"ul\", \"ur\"]\njoint = \"glue\"\n" : "") +
-            block("floor", box_polygon(-1, -1, 5, 0), "fixed") + block("ll", box_polygon(0, 0, 1, 1), kind) +
-            block("lr", box_polygon(1, 0, 4, 1), "fixed") + block("ul", box_polygon(0.3, 1, 1.3, 2), kind) +
-            block("ur", box_polygon(1.3 + gap, 1, 3.3 + gap, 2), kind) +
+            block_text("floor", box_polygon(-1, -1, 5, 0), "fixed") +
+            block_text("ll", box_polygon(0, 0, 1, 1), kind) +
+            block_text("lr", box_polygon(1, 0, 4, 1), "fixed") +
+            block_text("ul", box_polygon(0.3, 1, 1.3, 2), kind) +
+            block_text("ur", box_polygon(1.3 + gap, 1, 3.3 + gap, 2), kind) +
             stage("stand", false, 5, 1e-4, "unbalanced = 1e-3") +
             stage("tilt", true, duration, 1e-4, "excavate = [\"ll\"]\nreset_displacements = true") +
             "[[monitor]]\nname = \"a\"\npoint = [0.3, 1.5]\n[[monitor]]\nname = \"b\"\npoint = [1.3, 1.5]\n" +
@@ -512,8 +520,9 @@ TEST_CASE("a block that comes from an elastic bed onto a hard one is not thrown 
         head(kElastic, 0, 30) +
             "[joint.hard]\nfriction_angle = \"30 deg\"\n[[contact_pair]]\nbetween = "
             "[\"a\", \"l2\"]\njoint = \"hard\"\n" +
-            block("l1", box_polygon(-2, -1, 0, 0), "fixed") + block("l2", box_polygon(0, -1, 2, 0), "fixed") +
-            block("a", box_polygon(left, 0, -kStart, 0.25), kind) + constant("p", kLoad) +
+            block_text("l1", box_polygon(-2, -1, 0, 0), "fixed") +
+            block_text("l2", box_polygon(0, -1, 2, 0), "fixed") +
+            block_text("a", box_polygon(left, 0, -kStart, 0.25), kind) + constant("p", kLoad) +
             on_edge("press", {left, 0.25}, {-kStart, 0.25}, "pressure = \"p\"") +
             fmt::format("[history.go]\ntime = [0, 0.005, 1]\nvalue = [0, {0}, {0}]\n", kSpeed) +
             fmt::format("[[support]]\nname = \"push\"\nx = {{ velocity = \"go\" }}\ny = \"free\"\npoint = "

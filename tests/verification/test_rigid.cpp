@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "support/box_polygon.h"
+#include "support/model_text.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -16,18 +17,6 @@ namespace {
 
 constexpr double kG = 9.81;
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
-std::string polygon_text(const Polygon& p) {
-  std::string out = "[";
-  for (const Vec2 v : p) out += fmt::format("{}[{:.17g},{:.17g}]", out.size() > 1 ? "," : "", v.x, v.y);
-  return out + "]";
-}
-
-std::string block_text(const std::string& name, const Polygon& p, const std::string& kind,
-                       const std::string& more = "") {
-  return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n{}\n", name,
-                     polygon_text(p), kind, more);
-}
 
 // Head of a model: gravity, one material, one joint.
 std::string head(Vec2 gravity, double friction_degrees, double density = 2000, double young = 1e9) {

@@ -34,9 +34,9 @@ Rocked rocked(const std::string& joint, const std::string& turn, const std::stri
       fmt::format(
           "talus = 1\n[material.m]\ndensity = 2500\n[joint.j]\n{}\n[contact]\njoint = \"j\"\nalpha = {}\n",
           joint, alpha) +
-          block("lower", box_polygon(-1, -1, 3, 0), "rigid") +
+          block_text("lower", box_polygon(-1, -1, 3, 0), "rigid") +
           "[[support]]\nname = \"west\"\npoint = [-1, -1]\n[[support]]\nname = \"east\"\npoint = [3, -1]\n" +
-          block("upper", box_polygon(0, 0, 1, 2), "driven") +
+          block_text("upper", box_polygon(0, 0, 1, 2), "driven") +
           "motion_rotation = { displacement = \"turn\" }\nmotion_x = { displacement = \"x\" }\n"
           "motion_y = { displacement = \"y\" }\n" +
           history("turn", "-(" + turn + ")") +

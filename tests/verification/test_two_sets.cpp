@@ -41,7 +41,7 @@ void shear_along_a_set(const std::string& stiffness) {
     const auto region = [&](const std::string& name, double left, double right, double foot) {
       const Polygon c{at(left, foot), at(right, foot), at(right, foot + height), at(left, foot + height)};
       std::string list;
-      for (const Vec2 v : c) list += (list.empty() ? "" : ", ") + place(v);
+      for (const Vec2 v : c) list += (list.empty() ? "" : ", ") + point_text(v);
       return fmt::format(
                  "[[region]]\nname = \"{0}\"\npolygon = [{1}]\nsides = [\"{0}-foot\", \"{0}-right\", "
                  "\"{0}-top\", \"{0}-left\"]\nmaterial = \"m\"\njoint = \"inside\"\n",
@@ -52,7 +52,7 @@ void shear_along_a_set(const std::string& stiffness) {
                  "[[joint_set]]\nname = \"{0}-second\"\nregion = \"{0}\"\nangle = \"{2} deg\"\nspacing = "
                  "0.04\n"
                  "origin = {3}\n",
-                 name, angle, other, place(at(first, 0)));
+                 name, angle, other, point_text(at(first, 0)));
     };
     const auto history = [](const char* name, double value) {
       return fmt::format("[history.{}]\ntime = [0, 0.008, 0.014]\nvalue = [0, 0, {:.17g}]\n", name, value);

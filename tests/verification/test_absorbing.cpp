@@ -180,8 +180,8 @@ TEST_CASE("static reactions stay when a viscous base takes over: a settled colum
   const CaseResult r = run_case(kSettled, {}, [&](const Instant& i) {
     if (i.stage != 1) return;
     double sum = 0;
-    for (size_t k = 0; k < i.state.boundary_force.size(); ++k)
-      sum += i.state.boundary_force[k][0] * i.scene.boundaries.points[k].normal.y;
+    for (size_t k = 0; k < i.state.boundaries.size(); ++k)
+      sum += i.state.boundaries[k].force[0] * i.scene.boundaries.points[k].normal.y;
     if (i.stage_start) reaction = sum, start = i.state.displacement[0].y;
     moved = std::max(moved, std::abs(i.state.displacement[0].y - start));
     for (size_t k = 0; k < i.state.rate.size(); ++k)
@@ -220,10 +220,10 @@ TEST_CASE("static = roller and free: what stands in static stages") {
       text += "[[support]]\nname = \"side\"\nedge = [[0, 0], [0, 10]]\ny = \"free\"\n";
     run_case(text, {}, [&](const Instant& i) {
       if (i.stage != 1 || !i.stage_start) return;
-      for (size_t k = 0; k < i.state.boundary_static.size(); ++k) {
+      for (size_t k = 0; k < i.state.boundaries.size(); ++k) {
         const BoundaryPoint& p = i.scene.boundaries.points[k];
         const Vec2 f =
-            i.state.boundary_static[k][0] * p.normal + i.state.boundary_static[k][1] * turn_right(p.normal);
+            i.state.boundaries[k].kept[0] * p.normal + i.state.boundaries[k].kept[1] * turn_right(p.normal);
         fx += f.x, fy += f.y;
       }
     });

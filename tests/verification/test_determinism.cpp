@@ -169,7 +169,7 @@ uint64_t hash_of(const State& s) {
   for (size_t i = 0; i < s.rate.size(); ++i) {
     hash.add(s.displacement[i]), hash.add(s.strain_part[i]), hash.add(s.angle[i]);
     hash.add(s.rate[i].a), hash.add(s.rate[i].G);
-    hash.add(s.contact_force[i].f), hash.add(s.contact_force[i].Q);
+    hash.add(s.row_force[i].f), hash.add(s.row_force[i].Q);
   }
   for (const Contact& c : s.contacts) hash.add(c.force[0]), hash.add(c.force[1]);
   const WorkDone& w = s.work;

@@ -304,7 +304,7 @@ TEST_CASE("example hammer has the same bits for any number of threads") {
     MemoryObserver observer(run.scene, nullptr);
     run_stages(run.scene, run.plans, end.back(), observer, Workers(threads));
   }
-  bool same = end[0].boundary_force == end[1].boundary_force;
+  bool same = end[0].boundaries == end[1].boundaries;
   for (size_t i = 0; i < end[0].displacement.size(); ++i)
     same = same && end[0].displacement[i] == end[1].displacement[i];
   CHECK(same);

@@ -36,14 +36,14 @@ struct BoltSegment {
 /// A joint that the bar crosses: two rows between the blocks, along the bar and across it.
 struct BoltCrossing {
   int segment = 0;
-  Vec2 direction[2];            // of the bar in the reference shape of its two blocks, unit
-  Vec2 apart;                   // from the node before to the node after, less their displacements [m]
-  double row_stiffness = 0;     // of the row along the bar [N/m], at least what the bar has
-  double most = 0;              // force that the bar can pass on at all [N]
-  double shear_stiffness = 0;   // dowel [N/m], 0: none
-  double shear_yield = 0;       // [N]
-  double shear_plastic = 0;     // [m]
-  double shear = 0;             // displacement across the bar since installation [m]
+  std::array<Vec2, 2> direction{};  // of the bar in the reference shape of its two blocks, unit
+  Vec2 apart;                       // from the node before to the node after, less their displacements [m]
+  double row_stiffness = 0;         // of the row along the bar [N/m], at least what the bar has
+  double most = 0;                  // force that the bar can pass on at all [N]
+  double shear_stiffness = 0;       // dowel [N/m], 0: none
+  double shear_yield = 0;           // [N]
+  double shear_plastic = 0;         // [m]
+  double shear = 0;                 // displacement across the bar since installation [m]
   std::array<double, 2> row{};  // impulse of the two rows over the length of the kick, on the first block [N]
 };
 

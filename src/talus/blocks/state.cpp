@@ -37,7 +37,7 @@ State initial_state(const BlockSet& blocks, const Layout& layout) {
   s.strain_part.resize(n);
   s.angle.resize(n);
   s.rate.resize(n);
-  s.contact_force.resize(n);
+  s.row_force.resize(n);
   for (size_t i = 0; i < n; ++i) {
     if (!blocks.moves_freely(static_cast<int>(i))) continue;
     s.rate[i] = {layout.blocks[i].velocity, spin_matrix(layout.blocks[i].spin)};

@@ -129,6 +129,15 @@ struct FaceState {
   std::array<double, 2> slip{};        // along the tangent, of points at the limit of their shear [m]
 };
 
+/// A point held from outside, by a support, a boundary or a tie.
+struct HeldPoint {
+  std::array<double, 2> force{};  // of its two rows, in all [N]
+  Vec2 hold;                      // displacement at which it is held [m]
+  std::array<double, 2> kept{};   // of the force, the reaction kept from a static stage [N]
+
+  friend bool operator==(const HeldPoint&, const HeldPoint&) = default;
+};
+
 /// How a static stage comes to rest, looked at every 250 steps.
 struct RestWatch {
   int64_t steps = 0;   // since the stage began
@@ -156,18 +165,16 @@ struct State {
   std::vector<Mat2> strain_part;   // [count] F - I
   std::vector<double> angle;       // [count] rotation of blocks that do not deform [rad]
   std::vector<BlockRate> rate;     // [count] at the middle of the step before; the initial rate at the start
-  std::vector<BlockForce> contact_force;  // [count] of all rows, at the step before [N], [N m]
+  std::vector<BlockForce> row_force;  // [count] of all rows, at the step before [N], [N m]
 
-  std::vector<std::array<double, 2>> bond_force;       // [n_bond_points] normal, tangential [N]
-  std::vector<FaceState> face;                         // [n_bond_faces]
-  std::vector<std::array<double, 2>> support_force;    // [n_supported_points] x, y [N]
-  std::vector<std::array<double, 2>> boundary_force;   // [n_boundary_points] normal, tangential, in all [N]
-  std::vector<std::array<double, 2>> boundary_static;  // of it, the reaction kept from the static stage [N]
-  std::vector<Vec2> boundary_hold;  // [n_boundary_points] displacement at which static stages hold [m]
-  std::vector<std::array<double, 2>> tie_force;  // [n_ties] normal, tangential on the first side [N]
-  std::vector<Bolt> bolts;                       // installed so far, in the order of installation
-  std::vector<Vec2> column_displacement;         // [n_column_nodes] of the free field, dynamic part [m]
-  std::vector<Vec2> column_rate;                 // [n_column_nodes] at the middle of the step before [m/s]
+  std::vector<std::array<double, 2>> bond_force;  // [n_bond_points] normal, tangential [N]
+  std::vector<FaceState> face;                    // [n_bond_faces]
+  std::vector<HeldPoint> supports;    // [n_supported_points] force along x, y; hold: where the support began
+  std::vector<HeldPoint> boundaries;  // [n_boundary_points] normal, tangential; hold: of static stages
+  std::vector<HeldPoint> ties;        // [n_ties] normal, tangential on the first side
+  std::vector<Bolt> bolts;            // installed so far, in the order of installation
+  std::vector<Vec2> column_displacement;  // [n_column_nodes] of the free field, dynamic part [m]
+  std::vector<Vec2> column_rate;          // [n_column_nodes] at the middle of the step before [m/s]
   CandidateList candidates;
   std::vector<ContactPair> pairs;  // sorted by (a, b)
   std::vector<Contact> contacts;   // pair by pair
@@ -176,7 +183,6 @@ struct State {
       initial_stress;  // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7); empty: none
   std::vector<BlockForce> kept_force;    // [count] of excavated blocks on the others; empty: none
   double relaxed = 1;                    // share of it that is gone
-  std::vector<Vec2> support_hold;        // [n_supported_points] displacement at which a support began [m]
   std::vector<Vec2> displacement_start;  // [count] from which displacements are counted; empty: 0 [m]
   std::vector<Mat2> strain_part_start;   // [count] the same of F - I
 

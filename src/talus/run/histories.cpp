@@ -195,7 +195,7 @@ void Histories::at(const Instant& instant, bool keep) {
         const int index = supports_[support++];
         Vec2 sum;
         for (size_t i = 0; i < scene_.supported.size(); ++i)
-          if (scene_.supported[i].support == index) sum += {s.support_force[i][0], s.support_force[i][1]};
+          if (scene_.supported[i].support == index) sum += {s.supports[i].force[0], s.supports[i].force[1]};
         row.insert(row.end(), {sum.x, sum.y});
         break;
       }

@@ -4,69 +4,48 @@
 
 #include "talus/base/error.h"
 #include "talus/base/version.h"
+#include "talus/blocks/state_fields.h"
 
 namespace talus {
 
 namespace {
 
-// A field that is added to one of these and not saved would be lost: whoever adds one comes by here.
-static_assert(sizeof(Contact) == 104 && sizeof(ContactPair) == 192 && sizeof(FaceState) == 80 &&
-                  sizeof(WorkDone) == 80 && sizeof(State) == 856 && sizeof(BoltNode) == 56 &&
-                  sizeof(BoltSegment) == 72 && sizeof(BoltCrossing) == 120 && sizeof(Bolt) == 96,
-              "a field was added: save it in exchange_state(), then correct the size here");
+template <class T>
+concept HasFields = requires(T& value) {
+  each_field(value, [](const char*, auto&) {});
+};
 
-void exchange_contacts(Exchange& x, State& s) {
-  x("state.candidates.displacement", s.candidates.displacement);
-  x("state.candidates.strain_part", s.candidates.strain_part);
-  x("state.candidates.skin", s.candidates.skin);
-  x("state.candidates.reach", s.candidates.reach);
-  x("state.candidates.neighbours.begin", s.candidates.neighbours.begin);
-  x("state.candidates.neighbours.block", s.candidates.neighbours.block);
-  x("state.candidates.rebuilds", s.candidates.rebuilds);
-  x.each("state.pairs", s.pairs, [](auto& field, ContactPair& p) {
-    field("a", p.a), field("b", p.b), field("begin", p.begin), field("count", p.count);
-    field("face", p.face), field("from_start", p.from_start), field("shares_face", p.shares_face),
-        field("reuse", p.reuse);
-    field("margin", p.margin), field("arm", p.arm), field("turn", p.turn);
-    field("cover_0", p.cover[0]), field("cover_1", p.cover[1]), field("cover_place", p.cover_place),
-        field("cover_turn", p.cover_turn);
-  });
-  x.each("state.contacts", s.contacts, [](auto& field, Contact& c) {
-    field("block_a", c.key.block_a), field("vertex", c.key.vertex);
-    field("block_b", c.key.block_b), field("edge", c.key.edge);
-    field("joint", c.joint), field("partner", c.partner), field("memory", c.memory);
-    field("length", c.length), field("force", c.force), field("allowed", c.allowed), field("toes", c.toes);
-    field("side_lo", c.face.side_lo), field("side_hi", c.face.side_hi), field("face_end", c.face.end);
-    field("stretch", c.stretch), field("anchor", c.anchor);
-    field("slip", c.slip), field("slip_signed", c.slip_signed), field("touched", c.touched);
-  });
+template <class T>
+inline constexpr bool kIsList = false;
+template <class T>
+inline constexpr bool kIsList<std::vector<T>> = true;
+
+template <HasFields T>
+void exchange_value(Exchange& x, const std::string& name, std::vector<T>& list);
+
+// A value under its name, down to the fields of structs and of lists of structs.
+template <class T>
+void exchange_value(Exchange& x, const std::string& name, T& value) {
+  if constexpr (HasFields<T>)
+    each_field(value,
+               [&](const char* field, auto& member) { exchange_value(x, name + "." + field, member); });
+  else
+    x(name, value);
 }
 
-void exchange_bolts(Exchange& x, std::vector<Bolt>& bolts) {
-  x.each("state.bolts", bolts, [](auto& field, Bolt& b) {
-    field("input", b.input), field("anchored", b.anchored), field("share", b.share);
-    field("rupture_strain", b.rupture_strain);
+// The fields of a list as columns; lists in its elements by themselves.
+template <HasFields T>
+void exchange_value(Exchange& x, const std::string& name, std::vector<T>& list) {
+  x.each(name, list, [](auto& column, T& element) {
+    each_field(element, [&](const char* field, auto& member) {
+      if constexpr (!kIsList<std::remove_reference_t<decltype(member)>>) column(field, member);
+    });
   });
-  for (size_t i = 0; i < bolts.size(); ++i) {
-    const std::string name = fmt::format("state.bolts.{}", i);
-    x.each(name + ".nodes", bolts[i].nodes, [](auto& field, BoltNode& n) {
-      field("block", n.block), field("arm", n.arm), field("stiffness", n.stiffness);
-      field("limit", n.limit), field("plastic", n.plastic), field("slip", n.slip);
+  for (size_t i = 0; i < list.size(); ++i)
+    each_field(list[i], [&](const char* field, auto& member) {
+      if constexpr (kIsList<std::remove_reference_t<decltype(member)>>)
+        exchange_value(x, fmt::format("{}.{}.{}", name, i, field), member);
     });
-    x.each(name + ".segments", bolts[i].segments, [](auto& field, BoltSegment& s) {
-      field("length", s.length), field("stiffness", s.stiffness), field("gauge", s.gauge);
-      field("yield", s.yield), field("start", s.start), field("plastic", s.plastic);
-      field("stretch", s.stretch), field("force", s.force), field("crossing", s.crossing);
-      field("yielded", s.yielded), field("ruptured", s.ruptured);
-    });
-    x.each(name + ".crossings", bolts[i].crossings, [](auto& field, BoltCrossing& c) {
-      field("segment", c.segment), field("direction_a", c.direction[0]), field("direction_b", c.direction[1]),
-          field("apart", c.apart);
-      field("row_stiffness", c.row_stiffness), field("most", c.most);
-      field("shear_stiffness", c.shear_stiffness), field("shear_yield", c.shear_yield);
-      field("shear_plastic", c.shear_plastic), field("shear", c.shear), field("row", c.row);
-    });
-  }
 }
 
 void exchange_plan(auto& field, StagePlan& p) {
@@ -78,31 +57,7 @@ void exchange_plan(auto& field, StagePlan& p) {
 
 }  // namespace
 
-void exchange_state(Exchange& x, State& s) {
-  x("state.time", s.time), x("state.step", s.step);
-  x("state.history_time", s.history_time), x("state.dt_before", s.dt_before);
-  x("state.displacement", s.displacement), x("state.strain_part", s.strain_part);
-  x("state.angle", s.angle), x("state.rate", s.rate), x("state.contact_force", s.contact_force);
-  x("state.bond_force", s.bond_force);
-  x.each("state.face", s.face, [](auto& field, FaceState& f) {
-    field("broken", f.broken), field("broken_step", f.broken_step);
-    field("offset", f.offset), field("mean_force", f.mean_force), field("slip", f.slip);
-  });
-  x("state.support_force", s.support_force), x("state.support_hold", s.support_hold);
-  x("state.boundary_force", s.boundary_force), x("state.boundary_static", s.boundary_static);
-  x("state.boundary_hold", s.boundary_hold), x("state.tie_force", s.tie_force);
-  x("state.column_displacement", s.column_displacement), x("state.column_rate", s.column_rate);
-  exchange_bolts(x, s.bolts);
-  exchange_contacts(x, s);
-  x("state.initial_stress", s.initial_stress), x("state.kept_force", s.kept_force);
-  x("state.relaxed", s.relaxed);
-  x("state.displacement_start", s.displacement_start), x("state.strain_part_start", s.strain_part_start);
-  x("state.work", s.work), x("state.energy_start", s.energy_start);
-  x("state.largest_kinetic", s.largest_kinetic);
-  x("state.rest.steps", s.rest.steps), x("state.rest.best", s.rest.best),
-      x("state.rest.before", s.rest.before);
-  x("state.rest.sharper", s.rest.sharper), x("state.rest.stuck", s.rest.stuck);
-}
+void exchange_state(Exchange& x, State& s) { exchange_value(x, "state", s); }
 
 void exchange_standing(Exchange& x, Standing& standing) {
   RunResult& r = standing.result;
@@ -178,10 +133,8 @@ SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
   exchange_standing(exchange, saved.standing);
   const State fresh = start_state(scene);
   if (saved.state.displacement.size() != fresh.displacement.size() ||
-      saved.state.face.size() != fresh.face.size() ||
-      saved.state.support_force.size() != fresh.support_force.size() ||
-      saved.state.boundary_force.size() != fresh.boundary_force.size() ||
-      saved.standing.result.stages.empty())
+      saved.state.face.size() != fresh.face.size() || saved.state.supports.size() != fresh.supports.size() ||
+      saved.state.boundaries.size() != fresh.boundaries.size() || saved.standing.result.stages.empty())
     throw InputError(fmt::format(
         "{}: error: the state does not fit the model, which this program cuts or supports otherwise ({} "
         "blocks now, {} then). Run the model anew\n",

@@ -10,7 +10,7 @@
 namespace talus {
 
 /// Number of the layout of these files; another one is refused.
-inline constexpr int kStateFormat = 3;
+inline constexpr int kStateFormat = 4;
 
 /// All of a State. @param prefix  of the names, "state"
 void exchange_state(Exchange& exchange, State& state);

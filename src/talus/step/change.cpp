@@ -106,7 +106,7 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
   const BlockSet& now = scene.blocks;
   for (int i = 0; i < now.count; ++i) {
     const auto k = static_cast<size_t>(i);
-    if (before.moves_freely(i) && !now.moves_freely(i)) state.rate[k] = {}, state.contact_force[k] = {};
+    if (before.moves_freely(i) && !now.moves_freely(i)) state.rate[k] = {}, state.row_force[k] = {};
     if (scene.layout.blocks[k].kind != BlockKind::kDeformable) continue;
     const Mat2 stress = initial_stress_for(before.moduli[k], now.moduli[k], state.strain_part[k],
                                            initial_stress_of(state, k));
@@ -126,7 +126,7 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
     const auto prescribed = [&](const Motion& m) {
       return m.displacement_at(state.history_time, scene.model.histories);
     };
-    state.support_hold[i] =
+    state.supports[i].hold =
         displacement_at(state, static_cast<size_t>(p.block), p.arm) - Vec2{prescribed(s.x), prescribed(s.y)};
   }
   // pairs with blocks that have gone leave the list, others may have come to matter

@@ -31,7 +31,7 @@ struct RowSums {
 RowSums judge_rows(const StepWork& work, const State& state);
 
 /// Puts the work of rows and blocks into the ledger (theory 10), and what is left out of balance into the
-/// report; writes state.contact_force.
+/// report; writes state.row_force.
 void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,
            StepReport& report);
 

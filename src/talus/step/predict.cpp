@@ -29,7 +29,7 @@ BlockForce local_damping_impulse(const Scheme& scheme, const StepWork& step, con
   const BlockForce moving = momentum(scheme.blocks, i, v);
   const double speed = std::sqrt(std::max(0.0, work(moving, v)));
   if (speed == 0) return {};
-  const BlockForce unbalanced = step.forces[i] + state.contact_force[i];
+  const BlockForce unbalanced = step.forces[i] + state.row_force[i];
   const double push = std::sqrt(std::max(0.0, work(unbalanced, accelerate(scheme.blocks, i, unbalanced))));
   return -std::min(scheme.settings.damping_local * push * scheme.clock.dt_kick / speed, 1.0) * moving;
 }

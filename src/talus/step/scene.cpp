@@ -95,14 +95,11 @@ State start_state(const Scene& scene) {
   State state = initial_state(scene.blocks, scene.layout);
   state.bond_force.resize(2 * scene.bonds.faces.size());
   state.face.resize(scene.bonds.faces.size());
-  state.support_force.resize(scene.supported.size());
-  state.support_hold.resize(scene.supported.size());
+  state.supports.resize(scene.supported.size());
   state.initial_stress = initial_stresses(scene.model, scene.blocks);
   const BoundarySet& b = scene.boundaries;
-  state.boundary_force.resize(b.points.size());
-  state.boundary_static.resize(b.points.size());
-  state.boundary_hold.resize(b.points.size());
-  state.tie_force.resize(b.ties.size());
+  state.boundaries.resize(b.points.size());
+  state.ties.resize(b.ties.size());
   state.column_displacement.resize(b.free_field.height.size());
   state.column_rate.resize(b.free_field.height.size());
   state.energy_start = kinetic_energy(scene.blocks, state.rate);

@@ -95,15 +95,15 @@ RowSums solve_rows(const Scene& scene, const StepSettings& settings, StepWork& w
 void remember(const Scene& scene, const StepWork& work, State& state) {
   remember_bonds(scene.blocks, scene.bonds, work.rows, work.clock, work.workers, state);
   remember_contacts(work.rows, work.places, work.clock, work.workers, state);
-  for (auto* force : {&state.support_force, &state.boundary_force, &state.tie_force})
-    std::fill(force->begin(), force->end(), std::array{0.0, 0.0});
+  for (auto* points : {&state.supports, &state.boundaries, &state.ties})
+    for (HeldPoint& p : *points) p.force = {0, 0};
   for (size_t r = work.rows.range(Family::kSupport).begin; r < work.rows.range(Family::kTie).end; ++r) {
     const RowOwner owner = work.rows.owner[r];
     const Impulse& p = work.rows.impulse[r];
     const std::array<double, 2> force{p[0] / work.clock.dt_kick, p[1] / work.clock.dt_kick};
-    if (owner.family == Family::kSupport) state.support_force[owner.at()] = {force[0], -force[1]};
-    if (owner.family == Family::kBoundary) state.boundary_force[owner.at()] = force;
-    if (owner.family == Family::kTie) state.tie_force[owner.at()] = force;
+    if (owner.family == Family::kSupport) state.supports[owner.at()].force = {force[0], -force[1]};
+    if (owner.family == Family::kBoundary) state.boundaries[owner.at()].force = force;
+    if (owner.family == Family::kTie) state.ties[owner.at()].force = force;
   }
   remember_bolts(work.rows, work.clock, state);
 }

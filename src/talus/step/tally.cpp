@@ -105,7 +105,7 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
     force += (1 / kick) * more;
   }
   const BlockForce rows = (1 / kick) * scheme.impulse_for(i, v1 - step.rate_free[i]);
-  state.contact_force[i] = rows;
+  state.row_force[i] = rows;
   const double unbalanced = force_norm(blocks, i, force + rows);
   if (unbalanced > s.worst) s.worst = unbalanced, s.worst_block = static_cast<int>(i);
   const double acting = 0.5 * (force_norm(blocks, i, force) + force_norm(blocks, i, rows));

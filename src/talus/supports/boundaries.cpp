@@ -185,10 +185,10 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& p = set.points[i];
     if (is_static) {
-      state.boundary_hold[i] = displacement_at(state, static_cast<size_t>(p.block), p.arm);
-      state.boundary_static[i] = {0, 0};
+      state.boundaries[i].hold = displacement_at(state, static_cast<size_t>(p.block), p.arm);
+      state.boundaries[i].kept = {0, 0};
     } else if (was_static) {
-      state.boundary_static[i] = state.boundary_force[i];  // none of a boundary that begins to act
+      state.boundaries[i].kept = state.boundaries[i].force;  // none of a boundary that begins to act
     }
   }
   if (!is_static) return;
@@ -211,7 +211,7 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
     const Vec2 axis[2] = {point.normal, turn_right(point.normal)};
     if (!clock.histories_run) {
       const StaticHold hold = model.boundaries[static_cast<size_t>(point.boundary)].hold;
-      const Vec2 off = displacement_at(state, block, point.arm) - state.boundary_hold[i];
+      const Vec2 off = displacement_at(state, block, point.arm) - state.boundaries[i].hold;
       for (size_t k = 0; k < 2; ++k) {
         p.row[k].bias = dot(axis[k], off) / clock.dt;
       }
@@ -222,12 +222,12 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
       const Vec2 target = medium_velocity(model, set, point, clock, column_velocity),
                  push = free_field_force(set, point, state);
       for (size_t k = 0; k < 2; ++k) {
-        const double z = point.dashpot[k], force = state.boundary_static[i][k] + dot(axis[k], push);
+        const double z = point.dashpot[k], force = state.boundaries[i].kept[k] + dot(axis[k], push);
         p.row[k].compliance = 2 / (z * clock.dt_kick);
         p.row[k].bias = u[k] - 2 * dot(axis[k], target) - 2 * force / z;
       }
     }
-    rows.add(p, {state.boundary_force[i][0] * clock.dt_kick, state.boundary_force[i][1] * clock.dt_kick},
+    rows.add(p, {state.boundaries[i].force[0] * clock.dt_kick, state.boundaries[i].force[1] * clock.dt_kick},
              {Family::kBoundary, static_cast<int>(i)});
   }
 }

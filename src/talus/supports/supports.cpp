@@ -27,7 +27,7 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
     p.block_a = points[i].block;
     p.arm_a = acting_arm(blocks, state, block, points[i].arm);
     p.normal = {1, 0};
-    const Vec2 now = displacement_at(state, block, points[i].arm) - state.support_hold[i];
+    const Vec2 now = displacement_at(state, block, points[i].arm) - state.supports[i].hold;
     const auto hold = [&](Row& row, const Motion& motion, double place, double sign) {
       if (motion.kind != Motion::kFree)
         row.bias = sign * (place - motion.displacement_at(clock.history_end(), model.histories)) / clock.dt;
@@ -36,7 +36,7 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
     hold(p.row[1], support.y, now.y, -1);
     if (support.x.kind == Motion::kFree) p.lower = p.upper = 0;
     if (support.y.kind == Motion::kFree) p.cohesion = 0;
-    rows.add(p, {state.support_force[i][0] * clock.dt_kick, -state.support_force[i][1] * clock.dt_kick},
+    rows.add(p, {state.supports[i].force[0] * clock.dt_kick, -state.supports[i].force[1] * clock.dt_kick},
              {Family::kSupport, static_cast<int>(i)});
   }
 }

@@ -120,7 +120,7 @@ void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, con
     p.normal = {1, 0};
     const Vec2 apart = displacement_at(state, a, t.arm_a) - displacement_at(state, b, t.arm_b);
     p.row[0].bias = apart.x / clock.dt, p.row[1].bias = -apart.y / clock.dt;
-    rows.add(p, {state.tie_force[i][0] * clock.dt_kick, state.tie_force[i][1] * clock.dt_kick},
+    rows.add(p, {state.ties[i].force[0] * clock.dt_kick, state.ties[i].force[1] * clock.dt_kick},
              {Family::kTie, static_cast<int>(i)});
   }
 }

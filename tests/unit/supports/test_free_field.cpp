@@ -211,16 +211,16 @@ TEST_CASE("a static stage after a dynamic one puts the free field to rest and ke
   State s = start_state(scene);
   for (Vec2& d : s.displacement) d = {1e-3, 2e-3};
   for (Vec2& d : s.column_displacement) d = {1, 1};
-  for (auto& f : s.boundary_force) f = {5, 7};
+  for (HeldPoint& p : s.boundaries) p.force = {5, 7};
   enter_stage(scene.boundaries, false, true, s);
   CHECK(s.column_displacement[1] == Vec2{});
-  CHECK(s.boundary_hold[0] == Vec2{1e-3, 2e-3});
-  CHECK(s.boundary_static[0][0] == 0);
+  CHECK(s.boundaries[0].hold == Vec2{1e-3, 2e-3});
+  CHECK(s.boundaries[0].kept[0] == 0);
   enter_stage(scene.boundaries, true, false, s);
-  CHECK(s.boundary_static[0][1] == 7);
-  for (auto& f : s.boundary_force) f = {0, 0};
+  CHECK(s.boundaries[0].kept[1] == 7);
+  for (HeldPoint& p : s.boundaries) p.force = {0, 0};
   enter_stage(scene.boundaries, false, false, s);  // dynamic after dynamic: kept
-  CHECK(s.boundary_static[0][1] == 7);
+  CHECK(s.boundaries[0].kept[1] == 7);
 }
 
 }  // namespace test_free_field

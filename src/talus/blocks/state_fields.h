@@ -1,0 +1,102 @@
+#pragma once
+// Every field of a State by name, the one list that saving, restoring and tests go through. A field that is
+// added to a struct does not compile until it is named here.
+
+#include "talus/blocks/state.h"
+
+namespace talus {
+
+// each_field(value, f) calls f("name", field) for each field of the value.
+
+void each_field(Contact& c, auto&& f) {
+  auto& [key, joint, partner, memory, touched, toes, face, allowed, length, force, stretch, anchor, slip,
+         slip_signed] = c;
+  auto& [block_a, vertex, block_b, edge] = key;
+  auto& [side_lo, side_hi, end] = face;
+  f("block_a", block_a), f("vertex", vertex), f("block_b", block_b), f("edge", edge);
+  f("joint", joint), f("partner", partner), f("memory", memory), f("touched", touched), f("toes", toes);
+  f("side_lo", side_lo), f("side_hi", side_hi), f("face_end", end);
+  f("allowed", allowed), f("length", length), f("force", force), f("stretch", stretch), f("anchor", anchor);
+  f("slip", slip), f("slip_signed", slip_signed);
+}
+
+void each_field(ContactPair& p, auto&& f) {
+  auto& [a, b, begin, count, face, from_start, shares_face, reuse, margin, arm, turn, cover, cover_place,
+         cover_turn] = p;
+  f("a", a), f("b", b), f("begin", begin), f("count", count), f("face", face);
+  f("from_start", from_start), f("shares_face", shares_face), f("reuse", reuse), f("margin", margin);
+  f("arm", arm), f("turn", turn), f("cover_0", cover[0]), f("cover_1", cover[1]);
+  f("cover_place", cover_place), f("cover_turn", cover_turn);
+}
+
+void each_field(Neighbours& n, auto&& f) {
+  auto& [begin, block] = n;
+  f("begin", begin), f("block", block);
+}
+
+void each_field(CandidateList& c, auto&& f) {
+  auto& [displacement, strain_part, skin, reach, neighbours, rebuilds] = c;
+  f("displacement", displacement), f("strain_part", strain_part), f("skin", skin), f("reach", reach);
+  f("neighbours", neighbours), f("rebuilds", rebuilds);
+}
+
+void each_field(FaceState& s, auto&& f) {
+  auto& [broken, broken_step, offset, mean_force, slip] = s;
+  f("broken", broken), f("broken_step", broken_step), f("offset", offset), f("mean_force", mean_force);
+  f("slip", slip);
+}
+
+void each_field(HeldPoint& p, auto&& f) {
+  auto& [force, hold, kept] = p;
+  f("force", force), f("hold", hold), f("kept", kept);
+}
+
+void each_field(BoltNode& n, auto&& f) {
+  auto& [block, arm, stiffness, limit, plastic, slip] = n;
+  f("block", block), f("arm", arm), f("stiffness", stiffness), f("limit", limit), f("plastic", plastic);
+  f("slip", slip);
+}
+
+void each_field(BoltSegment& s, auto&& f) {
+  auto& [length, stiffness, gauge, yield, start, plastic, stretch, force, crossing, yielded, ruptured] = s;
+  f("length", length), f("stiffness", stiffness), f("gauge", gauge), f("yield", yield), f("start", start);
+  f("plastic", plastic), f("stretch", stretch), f("force", force), f("crossing", crossing);
+  f("yielded", yielded), f("ruptured", ruptured);
+}
+
+void each_field(BoltCrossing& c, auto&& f) {
+  auto& [segment, direction, apart, row_stiffness, most, shear_stiffness, shear_yield, shear_plastic, shear,
+         row] = c;
+  f("segment", segment), f("direction", direction), f("apart", apart), f("row_stiffness", row_stiffness);
+  f("most", most), f("shear_stiffness", shear_stiffness), f("shear_yield", shear_yield);
+  f("shear_plastic", shear_plastic), f("shear", shear), f("row", row);
+}
+
+void each_field(Bolt& b, auto&& f) {
+  auto& [input, anchored, share, rupture_strain, nodes, segments, crossings] = b;
+  f("input", input), f("anchored", anchored), f("share", share), f("rupture_strain", rupture_strain);
+  f("nodes", nodes), f("segments", segments), f("crossings", crossings);
+}
+
+void each_field(RestWatch& r, auto&& f) {
+  auto& [steps, best, before, sharper, stuck] = r;
+  f("steps", steps), f("best", best), f("before", before), f("sharper", sharper), f("stuck", stuck);
+}
+
+void each_field(State& s, auto&& f) {
+  auto& [time, step, history_time, dt_before, displacement, strain_part, angle, rate, row_force, bond_force,
+         face, supports, boundaries, ties, bolts, column_displacement, column_rate, candidates, pairs,
+         contacts, initial_stress, kept_force, relaxed, displacement_start, strain_part_start, work,
+         energy_start, largest_kinetic, rest] = s;
+  f("time", time), f("step", step), f("history_time", history_time), f("dt_before", dt_before);
+  f("displacement", displacement), f("strain_part", strain_part), f("angle", angle), f("rate", rate);
+  f("row_force", row_force), f("bond_force", bond_force), f("face", face);
+  f("supports", supports), f("boundaries", boundaries), f("ties", ties), f("bolts", bolts);
+  f("column_displacement", column_displacement), f("column_rate", column_rate);
+  f("candidates", candidates), f("pairs", pairs), f("contacts", contacts);
+  f("initial_stress", initial_stress), f("kept_force", kept_force), f("relaxed", relaxed);
+  f("displacement_start", displacement_start), f("strain_part_start", strain_part_start), f("work", work);
+  f("energy_start", energy_start), f("largest_kinetic", largest_kinetic), f("rest", rest);
+}
+
+}  // namespace talus

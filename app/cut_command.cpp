@@ -8,6 +8,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/cut/blocks_file.h"
+#include "talus/cut/check_places.h"
 #include "talus/maps/expand.h"
 #include "talus/maps/vector_module.h"
 #include "talus/model/read_model.h"
@@ -15,6 +16,7 @@
 #include "talus/output/files.h"
 #include "talus/plot/cut_picture.h"
 #include "talus/plot/map_picture.h"
+#include "talus/run/check_monitors.h"
 
 namespace talus::app {
 
@@ -39,7 +41,8 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   const Cut cut = cut_or_read(model, findings);
   if (findings.error_count() > errors)
     findings.throw_if_errors();  // without blocks all else would look wrong
-  const Layout layout = make_layout(model, cut, findings);
+  const Layout layout = checked_layout(model, cut, findings);
+  check_monitors(model, layout, findings);
   findings.throw_if_errors();
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
 

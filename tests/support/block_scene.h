@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/box_polygon.h"
+#include "talus/cut/check_places.h"
 #include "talus/step/scene.h"
 
 namespace talus::test {
@@ -57,7 +58,7 @@ inline Scene laid_out_scene(Model model, const std::vector<Polygon>& polygons, F
     model.blocks.push_back(b);
   }
   Findings unseen("case.toml", "");
-  Layout layout = make_layout(model, findings ? *findings : unseen);
+  Layout layout = checked_layout(model, findings ? *findings : unseen);
   return build_scene(std::move(model), std::move(layout));
 }
 

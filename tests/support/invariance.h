@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "talus/base/random.h"
+#include "talus/cut/check_places.h"
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
 #include "talus/talus.h"
@@ -74,7 +75,7 @@ inline Layout cut_layout(const Model& model, double& cell) {
   Findings findings("invariance.toml", "");
   const Cut cut = cut_or_read(model, findings);
   cell = cut.grid;
-  Layout layout = make_layout(model, cut, findings);
+  Layout layout = checked_layout(model, cut, findings);
   INFO(findings.render());
   REQUIRE_FALSE(findings.has_errors());
   return layout;

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "talus/cut/layout.h"
+#include "talus/cut/check_places.h"
 
 namespace talus::test {
 
@@ -22,7 +22,7 @@ inline BlockInput block_input(const std::string& name, const Polygon& polygon) {
 /// The layout of a model in which nothing is wrong: a finding that is an error ends the test.
 inline Layout layout_of(const Model& model) {
   Findings findings("case.toml", "");
-  const Layout layout = make_layout(model, findings);
+  const Layout layout = checked_layout(model, findings);
   INFO(findings.render());
   REQUIRE_FALSE(findings.has_errors());
   return layout;

@@ -8,7 +8,7 @@
 #include "support/overlap.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
-#include "talus/cut/layout.h"
+#include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 #include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
@@ -36,7 +36,7 @@ CutExample cut_example(const std::string& name, const std::vector<std::string>& 
   CutExample e;
   e.model = read_model(name, text, overrides, findings);
   e.cut = cut_model(e.model, findings);
-  make_layout(e.model, e.cut, findings);
+  checked_layout(e.model, e.cut, findings);
   findings.throw_if_errors();
   e.statistics = cut_statistics(e.model, e.cut);
   return e;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "talus/base/text.h"
@@ -36,66 +35,6 @@ void check_contradictions(const Model& model, const Layout& layout, Findings& fi
             "make one of them \"free\" along that axis, shorten it, or let them act in different stages");
         return;
       }
-    }
-  }
-}
-
-void check_point(const Layout& layout, Vec2 point, const Where& where, const std::string& path,
-                 Findings& findings) {
-  if (block_of_point(layout, point) >= 0) return;
-  double nearest = std::numeric_limits<double>::infinity();
-  std::string name;
-  for (const BlockShape& b : layout.blocks) {
-    for (size_t i = 0; i < b.polygon.size(); ++i) {
-      const double d = distance_to_segment(point, b.polygon[i], b.polygon[(i + 1) % b.polygon.size()]);
-      if (d < nearest) nearest = d, name = b.name;
-    }
-  }
-  findings.error(where, path, fmt::format("({:g}, {:g}) lies outside every block", point.x, point.y),
-                 fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
-}
-
-// What a monitor is relative to: a support, a free field, or blocks.
-void check_reference(const Model& model, const Layout& layout, const MonitorInput& m, Findings& findings) {
-  for (const SupportInput& s : model.supports)
-    if (s.name == m.relative_to) return;
-  for (const BoundaryInput& b : model.boundaries)
-    if (b.name == m.relative_to && b.kind == BoundaryKind::kFreeField) return;
-  if (!layout.blocks_called(m.relative_to).empty()) return;
-  std::vector<std::string> names = layout.groups;
-  for (const SupportInput& s : model.supports) names.push_back(s.name);
-  for (const BoundaryInput& b : model.boundaries)
-    if (b.kind == BoundaryKind::kFreeField) names.push_back(b.name);
-  const std::string near = closest_name(m.relative_to, names);
-  findings.error(
-      m.where_relative, "monitor." + m.name + ".relative_to",
-      fmt::format("there is no support, free-field boundary or block called \"{}\"", m.relative_to),
-      near.empty() ? fmt::format("there is {}", join_or(names)) : fmt::format("did you mean \"{}\"?", near));
-}
-
-void check_monitors(const Model& model, const Layout& layout, Findings& findings) {
-  for (const MonitorInput& m : model.monitors) {
-    const std::string path = "monitor." + m.name;
-    if (m.kind == MonitorKind::kPoint || m.kind == MonitorKind::kConvergence)
-      check_point(layout, m.point, m.where, path, findings);
-    if (m.kind == MonitorKind::kConvergence) check_point(layout, m.other, m.where, path, findings);
-    for (const Vec2 point : m.relative_to_points)
-      check_point(layout, point, m.where_relative, path, findings);
-    if (!m.relative_to.empty()) check_reference(model, layout, m, findings);
-    if (m.kind == MonitorKind::kBlock) {
-      const std::vector<int> called = layout.blocks_called(m.target_a);
-      if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);
-      if (called.size() > 1)
-        findings.error(m.where, path, fmt::format("\"{}\" is {} blocks, not one", m.target_a, called.size()),
-                       fmt::format("name one of its blocks, for example \"{}\"",
-                                   layout.blocks[static_cast<size_t>(called[0])].name));
-    }
-    if (m.kind == MonitorKind::kContact && m.target_a == m.target_b && !m.target_a.empty())
-      findings.error(m.where, path, fmt::format("names \"{}\" twice", m.target_a),
-                     "name the two partners of the contact");
-    if (m.kind == MonitorKind::kContact) {
-      for (const std::string& name : {m.target_a, m.target_b})
-        if (layout.blocks_called(name).empty()) unknown_block(layout, name, m.where, path, findings);
     }
   }
 }
@@ -231,24 +170,8 @@ void check_stages(const Model& model, const Layout& layout, Findings& findings) 
 
 }  // namespace
 
-void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
-                   Findings& findings) {
-  if (name.empty()) return;  // told by the reader
-  if (layout.find_group(name) >= 0) {
-    findings.error(where, path, fmt::format("\"{}\" has no block left", name),
-                   "its rock is taken out, or another region or opening covers it");
-    return;
-  }
-  std::vector<std::string> names = layout.groups;
-  for (const BlockShape& b : layout.blocks) names.push_back(b.name);
-  const std::string near = closest_name(name, names);
-  findings.error(where, path, fmt::format("there is no block, grid or region called \"{}\"", name),
-                 near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
-}
-
 void check_places(const Model& model, const Layout& layout, Findings& findings) {
   for (const LoadInput& l : model.loads) check_load(layout, l, findings);
-  check_monitors(model, layout, findings);
   check_contradictions(model, layout, findings);
   check_stages(model, layout, findings);
   for (const SupportInput& s : model.supports)
@@ -260,6 +183,16 @@ void check_places(const Model& model, const Layout& layout, Findings& findings) 
       check_edges(layout, b.opposite, b.where_opposite, path, b.opposite.along.empty() ? "to_edge" : "to",
                   findings);
   }
+}
+
+Layout checked_layout(const Model& model, const Cut& cut, Findings& findings) {
+  Layout layout = make_layout(model, cut, findings);
+  if (layout.sound && !layout.blocks.empty()) check_places(model, layout, findings);
+  return layout;
+}
+
+Layout checked_layout(const Model& model, Findings& findings) {
+  return checked_layout(model, cut_or_read(model, findings), findings);
 }
 
 }  // namespace talus

@@ -1,17 +1,17 @@
 #pragma once
 // Places that sections of the model name - blocks, points, edges - are there, and those who hold them agree.
 
-#include <string>
-
 #include "talus/cut/layout.h"
 
 namespace talus {
 
-/// Told when no block is called `name`.
-void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
-                   Findings& findings);
-
-/// Places of monitors, supports, boundaries and loads. @pre  the layout has blocks
+/// Places of supports, boundaries, loads and stages. @pre  the layout is sound and has blocks
 void check_places(const Model& model, const Layout& layout, Findings& findings);
+
+/// The layout of the model with its places checked, where it is sound.
+Layout checked_layout(const Model& model, const Cut& cut, Findings& findings);
+
+/// The same, cutting first.
+Layout checked_layout(const Model& model, Findings& findings);
 
 }  // namespace talus

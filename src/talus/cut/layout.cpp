@@ -9,7 +9,6 @@
 #include "talus/base/memory.h"
 #include "talus/base/text.h"
 #include "talus/cut/blocks_file.h"
-#include "talus/cut/check_places.h"
 #include "talus/cut/expected.h"
 #include "talus/geometry/polygon_check.h"
 
@@ -224,6 +223,21 @@ std::vector<int> Layout::blocks_called(const std::string& name) const {
   return list;
 }
 
+void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
+                   Findings& findings) {
+  if (name.empty()) return;  // told by the reader
+  if (layout.find_group(name) >= 0) {
+    findings.error(where, path, fmt::format("\"{}\" has no block left", name),
+                   "its rock is taken out, or another region or opening covers it");
+    return;
+  }
+  std::vector<std::string> names = layout.groups;
+  for (const BlockShape& b : layout.blocks) names.push_back(b.name);
+  const std::string near = closest_name(name, names);
+  findings.error(where, path, fmt::format("there is no block, grid or region called \"{}\"", name),
+                 near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
+}
+
 Layout make_layout(const Model& model, Findings& findings) {
   return make_layout(model, cut_or_read(model, findings), findings);
 }
@@ -294,10 +308,8 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   if (layout.blocks.empty() && sound)
     findings.error({1, 1, ""}, "block", "the model has no block",
                    "add a [[block]], a [[grid]], a [[mesh]] or a [[region]]");
-  if (layout.blocks.empty() || !sound) return layout;
-
-  check_overlaps(layout, findings);
-  check_places(model, layout, findings);
+  layout.sound = sound;
+  if (sound && !layout.blocks.empty()) check_overlaps(layout, findings);
   return layout;
 }
 

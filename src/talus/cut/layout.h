@@ -55,6 +55,7 @@ struct Layout {
   std::map<std::pair<int, int>, int> pair_joint;  // (smaller group, larger group) -> joint
   int default_joint = -1;
   int needles_merged = 0, slivers_merged = 0, slivers_deleted = 0, slivers_kept = 0;  // of the cut
+  bool sound = true;        // false: a polygon is none, and nothing that needs them all can be said
   std::vector<char> glued;  // [joints] bonded: no law for blocks that meet at a corner; empty: none
 
   /// Whether a block was cut out of a region, together with others.
@@ -77,6 +78,10 @@ struct Layout {
   std::vector<int> blocks_called(const std::string& name) const;
 };
 
+/// Told when no block is called `name`.
+void unknown_block(const Layout& layout, const std::string& name, const Where& where, const std::string& path,
+                   Findings& findings);
+
 /// Cuts the regions of the model, or reads the blocks file that `cut.blocks` names. Everything wrong goes to
 /// `findings`, and then the cut is empty.
 Cut cut_or_read(const Model& model, Findings& findings);
@@ -85,8 +90,8 @@ Cut cut_or_read(const Model& model, Findings& findings);
 /// count from the first region.
 std::vector<BlockShape> shapes_of(const Model& model, const Cut& cut, const std::vector<CutBlock>& blocks);
 
-/// Blocks, expanded grids and cut blocks as polygons, counter-clockwise, all checked. Everything wrong goes
-/// to `findings`.
+/// Blocks, expanded grids and cut blocks as polygons, counter-clockwise, all checked (places that sections
+/// name are not: check_places.h). Everything wrong goes to `findings`.
 /// @pre  read_model found no error
 Layout make_layout(const Model& model, const Cut& cut, Findings& findings);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a run will do, known before its first step: time steps, counts, memory and output size.
+// The time steps of a run, known before its first one.
 
 #include <string>
 #include <vector>
@@ -27,15 +27,5 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings);
 
 /// What sets the stable limit, by its name: "" when nothing does.
 std::string bound_name(const Scene& scene, const StagePlan& plan);
-
-struct Prediction {
-  int blocks = 0, bond_faces = 0, contacts = 0, supported = 0;
-  int boundary = 0;   // points and ties
-  double memory = 0;  // [bytes] of the run, without the program itself
-  double output = 0;  // [bytes] of all result files
-  int64_t frames = 0, history_rows = 0, step_rows = 0;
-};
-
-Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans);
 
 }  // namespace talus

@@ -8,7 +8,9 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
+#include "talus/run/check_monitors.h"
 #include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
 #include "talus/step/change.h"
@@ -432,7 +434,8 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
   Cut cut = cut_or_read(model, findings);
   if (findings.error_count() > errors)
     findings.throw_if_errors();  // without blocks all else would look wrong
-  Layout layout = make_layout(model, cut, findings);
+  Layout layout = checked_layout(model, cut, findings);
+  check_monitors(model, layout, findings);
   if (keep) *keep = std::move(cut);
   findings.throw_if_errors();
   run.scene = build_scene(std::move(model), std::move(layout), findings);

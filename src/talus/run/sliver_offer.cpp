@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "talus/base/text.h"
+#include "talus/cut/check_places.h"
+#include "talus/run/check_monitors.h"
 #include "talus/step/scene.h"
 
 namespace talus {
@@ -41,7 +43,8 @@ std::vector<SliverOffer> sliver_offers(const PreparedRun& run, const Cut& cut) {
     offer.merged = merged.slivers.merged;
     if (offer.merged == 0 || (!offers.empty() && offers[0].merged == offer.merged)) continue;
     Findings findings(model.file, model.text);
-    Layout layout = make_layout(model, merged, findings);
+    Layout layout = checked_layout(model, merged, findings);
+    check_monitors(model, layout, findings);
     if (findings.has_errors()) continue;  // a name that the model uses would be gone
     offer.stage = model.stages[s].name;
     const Scene scene = build_scene(std::move(model), std::move(layout), findings);

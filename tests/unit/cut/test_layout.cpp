@@ -8,6 +8,7 @@
 
 #include "support/box_polygon.h"
 #include "support/layout_case.h"
+#include "talus/cut/check_places.h"
 #include "talus/cut/selection.h"
 
 namespace test_layout {
@@ -29,7 +30,7 @@ GridInput grid(const std::string& name, Vec2 min, Vec2 max, int columns, int row
 
 std::string errors_of(const Model& model) {
   Findings findings("case.toml", "");
-  make_layout(model, findings);
+  checked_layout(model, findings);
   CHECK(findings.has_errors());
   return findings.render();
 }
@@ -219,12 +220,6 @@ TEST_CASE("what cannot be laid out is reported by name") {
   model.contact_pairs = {{"a", "wall[0,0]", 0, {}}};
   CHECK(has(errors_of(model), "\"wall[0,0]\" is one block of several"));
   model.contact_pairs.clear();
-  MonitorInput monitor;
-  monitor.name = "tip";
-  monitor.point = {2.25, 0.5};
-  model.monitors = {monitor};
-  CHECK(has(errors_of(model), "\"b\", is 0.25 m away"));
-  model.monitors[0].point = {2, 0.5};
   layout_of(model);
 }
 

@@ -7,7 +7,7 @@
 
 #include "support/cut_case.h"
 #include "support/layout_case.h"
-#include "talus/cut/layout.h"
+#include "talus/cut/check_places.h"
 #include "talus/cut/selection.h"
 #include "talus/geometry/shapes.h"
 
@@ -157,7 +157,7 @@ TEST_CASE("layout of a cut: a support along a side holds exactly the corners on 
   CHECK(places(layout_of(model), along("walls")) == Places{{0, 0}, {0, 4}, {8, 0}, {8, 4}});
   model.supports.push_back(along("bottom"));
   Findings findings("case.toml", "");
-  make_layout(model, findings);
+  checked_layout(model, findings);
   CHECK(findings.render().find("there is no side, opening, fault or joint set called \"bottom\"") !=
         std::string::npos);
 }

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "support/layout_case.h"
-#include "talus/cut/layout.h"
+#include "talus/cut/check_places.h"
 #include "talus/cut/selection.h"
 #include "talus/model/read_model.h"
 
@@ -83,7 +83,7 @@ struct Case {
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "m.msh") << mesh;
     model = read_model((folder / "m.toml").string(), text, {}, findings);
-    if (model.shapes_readable) layout = make_layout(model, findings);
+    if (model.shapes_readable) layout = checked_layout(model, findings);
     std::filesystem::remove_all(folder);
   }
   std::filesystem::path folder;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "support/told.h"
-#include "talus/cut/layout.h"
+#include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 
 namespace test_placement {
@@ -34,7 +34,7 @@ Layout laid_out(const std::string& sections) {
   const std::string text = kHead + sections;
   Findings findings("model.toml", text);
   Model model = read_model("model.toml", text, {}, findings);
-  Layout out = make_layout(model, findings);
+  Layout out = checked_layout(model, findings);
   INFO(findings.render());
   REQUIRE(!findings.has_errors());
   return out;

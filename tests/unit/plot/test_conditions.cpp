@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 
 namespace test_conditions {
@@ -61,7 +62,7 @@ duration = 1
   Findings findings("model.toml", text);
   Shown out;
   out.model = read_model("model.toml", text, {}, findings);
-  out.layout = make_layout(out.model, findings);
+  out.layout = checked_layout(out.model, findings);
   INFO(findings.render());
   REQUIRE(!findings.has_errors());
   out.list = conditions_of(out.model, out.layout, kView);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/folder.h"
+#include "talus/cut/check_places.h"
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
 #include "talus/plot/cut_picture.h"
@@ -58,7 +59,7 @@ std::string svg_of(const std::string& text) {
   const Cut cut = cut_model(model, findings);
   INFO(findings.render());
   CHECK(model.shapes_readable);
-  const Layout layout = make_layout(model, cut, findings);
+  const Layout layout = checked_layout(model, cut, findings);
   plot::write_cut_picture(model, cut, layout, folder / "cut");
   CHECK(content(folder / "cut.png").substr(0, 8) == "\x89PNG\r\n\x1a\n");
   const std::string svg = content(folder / "cut.svg");

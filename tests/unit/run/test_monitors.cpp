@@ -155,6 +155,9 @@ TEST_CASE("wrong monitors are found before the first step") {
     INFO(text);
     for (const std::string& piece : pieces) CHECK(text.find(piece) != std::string::npos);
   };
+  told("point = [2.75, 0.5]\n", {"(2.75, 0.5) lies outside", "\"right\", is 0.25 m away"});
+  told("block = \"pair\"\n", {"\"pair\" is 2 blocks, not one", "\"pair[0,0]\""});
+  told("contact = [\"left\", \"rigth\"]\n", {"did you mean \"right\"?"});
   told("point = [3.5, 1]\nrelative_to = \"bass\"\n", {"monitor.m.relative_to", "did you mean \"base\"?"});
   told("point = [3.5, 1]\nrelative_to_point = [9, 9]\n", {"(9, 9) lies outside every block"});
   told("point = [3.5, 1]\nrelative_to = \"base\"\nrelative_to_point = [0.5, 0.5]\n",

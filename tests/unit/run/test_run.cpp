@@ -8,6 +8,7 @@
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
 #include "talus/run/plan.h"
+#include "talus/run/prediction.h"
 
 namespace test_run {
 

@@ -1,0 +1,67 @@
+#include "talus/run/prediction.h"
+
+#include <algorithm>
+
+#include "talus/contact/pairs.h"
+#include "talus/run/histories.h"
+
+namespace talus {
+
+namespace {
+
+// Measured sizes of one cell or item in result files [bytes], from runs of the examples.
+constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 152, kVtkFile = 1900,
+                 kJointRow = 200;
+
+int64_t rows_of(double duration, int64_t steps, double interval) {
+  if (interval <= 0) return steps;
+  return static_cast<int64_t>(std::min(static_cast<double>(steps), duration / interval));
+}
+
+}  // namespace
+
+Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
+  Prediction p;
+  p.blocks = scene.blocks.count;
+  p.bond_faces = static_cast<int>(scene.bonds.faces.size());
+  p.supported = static_cast<int>(scene.supported.size());
+  p.boundary = static_cast<int>(scene.boundaries.points.size() + scene.boundaries.ties.size());
+  const State state = start_state(scene);
+  p.contacts = static_cast<int>(
+      find_contacts(scene.blocks, scene.bonds, state, 0.02 * smallest_size(scene.blocks)).size());
+
+  const OutputInput& out = scene.model.output;
+  p.frames = 1;
+  for (size_t i = 0; i < plans.size(); ++i) {
+    const double duration = scene.model.stages[i].duration;
+    p.history_rows += rows_of(duration, plans[i].steps, out.history_interval);
+    p.step_rows += rows_of(duration, plans[i].steps, out.steps_interval);
+    p.frames += std::max<int64_t>(
+        1, out.field_interval > 0 ? rows_of(duration, plans[i].steps, out.field_interval) : 1);
+  }
+  ++p.history_rows, ++p.step_rows;
+
+  const double corners = static_cast<double>(scene.blocks.arm.size());
+  const double points = 2.0 * p.bond_faces + p.contacts + p.supported + p.boundary;
+  const auto breakable = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(),
+                                       [](const BondFace& f) { return !f.unbreakable; });
+  const double joint_rows =
+      (2.0 * static_cast<double>(breakable) + p.contacts) * static_cast<double>(plans.size());
+  const double columns = static_cast<double>(Histories(scene, nullptr).columns().size());
+  const double frame = kVtkCorner * corners + kVtkBlock * p.blocks + kVtkContact * points + 2 * kVtkFile;
+  p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +
+                         static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
+             frame * static_cast<double>(p.frames) + kJointRow * joint_rows + 5000 +
+             2 * (900 + 50 * corners + 60.0 * p.blocks);  // tables, frames, summary, two pictures
+  // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
+  // entries of W, its factor and copies
+  const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {
+    return f.unbreakable || !scene.laws[static_cast<size_t>(f.joint)].is_soft(0);
+  });
+  const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
+                                     2 * static_cast<size_t>(hard)) == SolverKind::kNewton;
+  p.memory = 1600.0 * p.blocks + 32 * corners + points * (600 + (factors ? 2 * 32 * 16 * 6 : 0));
+  return p;
+}
+
+}  // namespace talus

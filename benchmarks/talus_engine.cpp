@@ -58,7 +58,7 @@ std::vector<BenchBlock> TalusEngine::blocks() const {
     const auto k = static_cast<size_t>(i);
     BenchBlock b{!scene_.blocks.moves_freely(i), {}};
     for (int v = 0; v < scene_.blocks.vertex_count(i); ++v)
-      b.corners.push_back(scene_.blocks.centroid[k] + offset_now(state_, k, scene_.blocks.corner(i, v)));
+      b.corners.push_back(scene_.blocks.centroid[k] + offset_now(state_, k, scene_.blocks.corner({i, v})));
     list.push_back(std::move(b));
   }
   return list;

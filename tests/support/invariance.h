@@ -390,8 +390,8 @@ class SnapshotObserver : public Observer {
     double best = std::cos(0.1);
     int side = -1;
     for (int e = 0; e < n; ++e) {
-      const Vec2 from = offset_now(i.state, k, blocks.corner(block, e));
-      const Vec2 to = offset_now(i.state, k, blocks.corner(block, (e + 1) % n));
+      const Vec2 from = offset_now(i.state, k, blocks.corner({block, e}));
+      const Vec2 to = offset_now(i.state, k, blocks.corner({block, (e + 1) % n}));
       const double d = dot(turn_right(to - from), direction) / norm(to - from);
       if (d > best) best = d, side = problem_.side[k][static_cast<size_t>(e)];
     }

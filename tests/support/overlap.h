@@ -22,7 +22,7 @@ inline LargestOverlap largest_overlap(const BlockSet& blocks, const State& state
     const auto k = static_cast<size_t>(i);
     Polygon p;
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      p.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner(i, v)));
+      p.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner({i, v})));
     boxes.push_back(bounding_box(p));
     polygons.push_back(std::move(p));
   }

@@ -54,7 +54,7 @@ TEST_CASE("example shaken_tower: carries its weight at rest, then follows the ba
   const CaseResult r = run_example("shaken_tower", [&](const Instant& i) {
     if (i.stage != 1) return;
     const int base = 0, tower = 1;  // the driven block comes first, then the lowest cell
-    const double foot = displacement_at(i.state, tower, i.scene.blocks.corner(tower, 0)).x -
+    const double foot = displacement_at(i.state, tower, i.scene.blocks.corner({tower, 0})).x -
                         i.state.displacement[static_cast<size_t>(base)].x;
     if (i.stage_start) {
       start = foot;

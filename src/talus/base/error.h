@@ -52,9 +52,13 @@ class NumericalError : public Error {
 
 }  // namespace talus
 
+// Builds without NDEBUG (debug, sanitize) watch what only our own mistakes can break; what users write is
+// judged in every build.
 #if defined(NDEBUG) && !defined(TALUS_ASSERTIONS)
 #define TALUS_ASSERT(condition) static_cast<void>(0)
+#define TALUS_VALIDATE(...) static_cast<void>(0)
 #else
 #define TALUS_ASSERT(condition) \
   ((condition) ? static_cast<void>(0) : ::talus::fail_assertion(#condition, __FILE__, __LINE__))
+#define TALUS_VALIDATE(...) ::talus::validate(__VA_ARGS__)
 #endif

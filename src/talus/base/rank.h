@@ -2,14 +2,15 @@
 // Values by their rank.
 
 #include <algorithm>
-#include <cassert>
 #include <vector>
+
+#include "talus/base/error.h"
 
 namespace talus {
 
 /// The value that `rank` others of the list come before, in rising order. Cost: linear. @pre rank < size
 inline double value_at_rank(std::vector<double> values, size_t rank) {
-  assert(rank < values.size());
+  TALUS_ASSERT(rank < values.size());
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), at, values.end());
   return *at;

@@ -40,7 +40,7 @@ Eigen2 eigen_symmetric(const Mat2& m) {
   return {s1, std::max(det(m) / s1, 0.0), {std::cos(angle), std::sin(angle)}};
 }
 
-// Largest squared angular frequency of a free block with principal moments s1, s2 (theory 2.4): the
+// Largest squared angular frequency of a free block with principal moments s1, s2 (eq. 2.2): the
 // stretching modes couple through c12; the shear mode has c33 (1/s1 + 1/s2).
 double largest_frequency2(const PlaneModuli& c, double volume, double s1, double s2) {
   const double a = c.c11 / s1, b = c.c11 / s2, off2 = c.c12 * c.c12 / (s1 * s2);
@@ -61,7 +61,9 @@ PlaneModuli plane_moduli(double young, double poisson, Plane plane) {
   return {lambda + 2 * c33, lambda, c33};
 }
 
+// Theory 1.2, 1.3.
 BlockSet build_blocks(const Model& model, const Layout& layout) {
+  TALUS_ASSERT(layout.sound);
   BlockSet set;
   set.thickness = model.thickness;
   set.vertex_begin.push_back(0);
@@ -125,7 +127,9 @@ StableStep stable_step(const BlockSet& blocks) {
   return least;
 }
 
+// Theory 2.6.
 void clamp_moments(BlockSet& blocks, double dt) {
+  TALUS_ASSERT(dt > 0);
   // a mode exactly at its limit grows linearly: clamped blocks stay a tenth below it
   const double allowed = 4 * kClampMargin * kClampMargin / (dt * dt);
   for (int i = 0; i < blocks.count; ++i) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/error.h"
 #include "talus/base/vec2.h"
 #include "talus/cut/layout.h"
 
@@ -64,9 +65,10 @@ struct BlockSet {
   int vertex_count(int i) const {
     return vertex_begin[static_cast<size_t>(i) + 1] - vertex_begin[static_cast<size_t>(i)];
   }
-  /// Reference arm of corner k of block i.
-  Vec2 corner(int i, int k) const {
-    return arm[static_cast<size_t>(vertex_begin[static_cast<size_t>(i)] + k)];
+  /// Reference arm of a corner.
+  Vec2 corner(BlockCorner c) const {
+    TALUS_ASSERT(c.corner >= 0 && c.corner < vertex_count(c.block));
+    return arm[static_cast<size_t>(vertex_begin[static_cast<size_t>(c.block)] + c.corner)];
   }
 };
 

@@ -1,5 +1,7 @@
 #include "talus/blocks/state.h"
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 State::State() = default;
@@ -18,6 +20,7 @@ struct Polar {
   double exx, eyy, exy;  // U - I
 };
 
+// Theory 1.5.
 Polar polar_strain(const Mat2& H) {
   const double a = 2 + H.xx + H.yy, b = H.yx - H.xy;
   const double r = std::sqrt(a * a + b * b);
@@ -31,6 +34,7 @@ Polar polar_strain(const Mat2& H) {
 }  // namespace
 
 State initial_state(const BlockSet& blocks, const Layout& layout) {
+  TALUS_ASSERT(layout.blocks.size() == static_cast<size_t>(blocks.count));
   State s;
   const auto n = static_cast<size_t>(blocks.count);
   s.displacement.resize(n);
@@ -45,6 +49,7 @@ State initial_state(const BlockSet& blocks, const Layout& layout) {
   return s;
 }
 
+// Eq. 1.4, 1.5.
 ElasticState elastic_state(const PlaneModuli& k, const Mat2& H, const Mat2& T0) {
   const Polar p = polar_strain(H);
   const double exx = k.c11 * p.exx + k.c12 * p.eyy, eyy = k.c12 * p.exx + k.c11 * p.eyy,
@@ -61,6 +66,7 @@ ElasticState elastic_state(const PlaneModuli& k, const Mat2& H, const Mat2& T0) 
   return e;
 }
 
+// Theory 2.7.
 Mat2 initial_stress_for(const PlaneModuli& before, const PlaneModuli& now, const Mat2& H, const Mat2& T0) {
   const Polar p = polar_strain(H);
   const double c11 = before.c11 - now.c11, c12 = before.c12 - now.c12,
@@ -72,6 +78,7 @@ Mat2 piola_stress(const PlaneModuli& k, const Mat2& H) { return elastic_state(k,
 
 double strain_energy_density(const PlaneModuli& k, const Mat2& H) { return elastic_state(k, H).density; }
 
+// Theory 1.5.
 Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return {};

@@ -45,6 +45,9 @@ inline BlockRate mean(const BlockRate& u, const BlockRate& v) {
 struct ContactKey {
   int block_a = -1, vertex = -1, block_b = -1, edge = -1;
 
+  BlockCorner corner() const { return {block_a, vertex}; }
+  BlockEdge on() const { return {block_b, edge}; }
+
   friend bool operator==(const ContactKey&, const ContactKey&) = default;
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
@@ -221,7 +224,7 @@ inline Vec2 acting_arm(const BlockSet& b, const State& s, size_t i, Vec2 X) {
   return b.kind[i] == BlockKind::kDeformable ? X : X + s.strain_part[i] * X;
 }
 
-/// Velocity at an acting arm.
+/// Velocity at an acting arm (eq. 1.1).
 inline Vec2 velocity_at(const BlockRate& v, Vec2 acting) { return v.a + v.G * acting; }
 
 /// What the shape of a deformable block says of its elastic state.

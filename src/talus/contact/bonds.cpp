@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/joint_state.h"
 
@@ -24,18 +25,18 @@ bool holds(const std::vector<JointLaw>& laws, int joint) {
   return joint >= 0 && laws[static_cast<size_t>(joint)].holds();
 }
 
-// Overlaps of antiparallel edges of two blocks in contact, as faces.
+// Overlaps of antiparallel edges of two blocks in contact, as faces (theory 3.4).
 void add_faces(const BlockSet& blocks, int a, int b, double touching, std::vector<BondFace>& faces) {
   const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
   const double near = std::max(touching, kTouching * std::min(blocks.size[ia], blocks.size[ib]));
   const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
   for (int eb = 0; eb < blocks.vertex_count(b); ++eb) {
-    const Vec2 b0 = blocks.corner(b, eb), b1 = blocks.corner(b, (eb + 1) % blocks.vertex_count(b));
+    const Vec2 b0 = blocks.corner({b, eb}), b1 = blocks.corner({b, (eb + 1) % blocks.vertex_count(b)});
     const double length_b = norm(b1 - b0);
     const Vec2 along = (b1 - b0) / length_b, n = turn_right(along);
     for (int ea = 0; ea < blocks.vertex_count(a); ++ea) {
       // ends of a's edge seen from b; antiparallel: a's second corner comes first along b
-      const Vec2 a0 = blocks.corner(a, ea), a1 = blocks.corner(a, (ea + 1) % blocks.vertex_count(a));
+      const Vec2 a0 = blocks.corner({a, ea}), a1 = blocks.corner({a, (ea + 1) % blocks.vertex_count(a)});
       const Vec2 r0 = a0 + shift - b0, r1 = a1 + shift - b0;
       if (std::abs(dot(n, r0)) > near || std::abs(dot(n, r1)) > near || dot(along, a1 - a0) >= 0) continue;
       const double from = std::max(dot(along, r1), 0.0), to = std::min(dot(along, r0), length_b);
@@ -54,7 +55,7 @@ void add_faces(const BlockSet& blocks, int a, int b, double touching, std::vecto
 }
 
 // Blocks of a bonded body that meet at a corner only are tied when a fan of bonded faces around that corner
-// joins them: their neighbours hold them, and a contact would only say the same again.
+// joins them: their neighbours hold them, and a contact would only say the same again (theory 3.4).
 void tie_around_corners(const Layout& layout, const BlockSet& blocks,
                         const std::vector<std::pair<int, int>>& pairs, BondSet& bonds) {
   std::vector<std::vector<int>> neighbours(static_cast<size_t>(blocks.count));
@@ -104,6 +105,7 @@ double transit_time(const Model& model, const BlockSet& blocks, int i) {
   return blocks.size[k] / std::sqrt(blocks.moduli[k].c11 / density);
 }
 
+// Theory 1.7.
 void close_face(const Model& model, const BlockSet& blocks, const JointLaw& law, BondFace& face) {
   const Vec2 along = face.arm_b[1] - face.arm_b[0];
   for (int end = 0; end < 2; ++end) {
@@ -113,12 +115,14 @@ void close_face(const Model& model, const BlockSet& blocks, const JointLaw& law,
   }
 }
 
-// What two ends without tensile strength show when they part, and a face without cohesion when it slips.
+// What two ends without tensile strength show when they part, and a face without cohesion when it slips
+// (theory 3.5).
 bool stands_open(const JointLaw& law, double opening, double noticed) {
   return law.peak().tension == 0 && opening > noticed;
 }
 
-// Whether a face has come to its limit at both ends: pulled or open, or at the limit of its shear.
+// Whether a face has come to its limit at both ends: pulled or open, or at the limit of its shear
+// (theory 3.5).
 bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointLaw& law, const FaceState& now,
                  const FaceOffset& offset) {
   const double half_area = 0.5 * face.length * blocks.thickness;
@@ -146,7 +150,9 @@ bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointLaw& l
 
 }  // namespace
 
+// Theory 3.4.
 BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks) {
+  TALUS_ASSERT(layout.blocks.size() == static_cast<size_t>(blocks.count));
   BondSet bonds;
   const std::vector<JointLaw> laws = joint_laws(model.joints);
   std::vector<Box> boxes;
@@ -167,7 +173,7 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
     add_faces(blocks, a, b, layout.touching, faces);
     bool all_bonded = !faces.empty();
     for (BondFace& face : faces) {
-      face.joint = layout.joint_at(a, face.edge_a, b, face.edge_b);
+      face.joint = layout.joint_at({a, face.edge_a}, {b, face.edge_b});
       const JointLaw law = face.joint < 0 ? JointLaw() : laws[static_cast<size_t>(face.joint)];
       face.unbreakable = law.bonded();
       if (model.in_situ.given && face.joint >= 0 && !face.unbreakable) close_face(model, blocks, law, face);
@@ -186,7 +192,7 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
 FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face) {
   const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
   const int next = (face.edge_b + 1) % blocks.vertex_count(face.block_b);
-  const Vec2 edge = blocks.corner(face.block_b, next) - blocks.corner(face.block_b, face.edge_b);
+  const Vec2 edge = blocks.corner({face.block_b, next}) - blocks.corner({face.block_b, face.edge_b});
   const Vec2 now = edge + state.strain_part[b] * edge;
   FaceOffset out;
   out.normal = turn_right(now) / norm(now);
@@ -210,9 +216,12 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
   return false;
 }
 
+// Theory 3.5, 4.6.
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
                    const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                    const Workers& workers, RowSet& rows) {
+  TALUS_ASSERT(state.face.size() == bonds.faces.size() && state.bond_force.size() == 2 * bonds.faces.size());
+  TALUS_ASSERT(rows.size() == 0 && before.size() == static_cast<size_t>(blocks.count));
   const size_t first = rows.size();
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
@@ -261,6 +270,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
   });
 }
 
+// Theory 3.5.
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows, const StepClock& clock,
                     const Workers& workers, State& state) {
   const RowRange range = rows.range(Family::kFace);
@@ -282,7 +292,7 @@ void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& 
 
 namespace {
 
-// Follows the mean forces of a face over a step of length dt; whether it has come to its limit.
+// Follows the mean forces of a face over a step of length dt; whether it has come to its limit (theory 3.5).
 bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointLaw& law, double dt, size_t f,
                  State& state) {
   const BondFace& face = bonds.faces[f];
@@ -306,6 +316,7 @@ bool follow_face(const BlockSet& blocks, const BondSet& bonds, const JointLaw& l
 
 int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws, double dt,
                  const Workers& workers, State& state) {
+  TALUS_ASSERT(state.face.size() == bonds.faces.size());
   return workers.sum_chunks<int>(bonds.faces.size(), kFaceGrain, [&](size_t begin, size_t end, int& broken) {
     for (size_t f = begin; f < end; ++f) {
       if (bonds.faces[f].unbreakable || state.face[f].broken) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/joint_state.h"
 
@@ -33,7 +34,7 @@ constexpr double kPushedOut = 1e-3, kMostPushedOut = 1e-7;
 constexpr double kLeastAllowed = 1e-12;
 
 // Bias of a hard normal row: it may close the gap and not more; an overlap is pushed back except for the
-// slop.
+// slop (theory 4, table of rows).
 double hard_bias(double gap, double slop, double dt) {
   if (gap >= 0) return gap / dt;
   return std::min(gap + 0.5 * slop, 0.0) / dt;
@@ -41,13 +42,13 @@ double hard_bias(double gap, double slop, double dt) {
 
 // What of a distance lies beyond half the slop. Contacts that stick redundantly, as two corners at one place
 // do, have anchors that differ by what was left of the errors of earlier steps; no motion brings both home,
-// and forces would grow without end over it.
+// and forces would grow without end over it (theory 4.10).
 double beyond(double off, double slop) {
   if (std::abs(off) <= 0.5 * slop) return 0;
   return off > 0 ? off - 0.5 * slop : off + 0.5 * slop;
 }
 
-// How far a contact is from where it sticks, before the kick [m].
+// How far a contact is from where it sticks, before the kick [m] (theory 4.19).
 double off_anchor(const Contact& c, double slip) {
   // NaN: the contact slid in the last step; it sticks anew where it is, its elastic slip apart
   const bool anew = c.memory == Contact::kPassed || std::isnan(c.anchor);
@@ -66,7 +67,7 @@ struct Point {
 };
 
 // The part of an interface that is closed, or is going to be in this step: from one end on, as share of its
-// length. 1: all of it, or nothing yet.
+// length. 1: all of it, or nothing yet (theory 4.6).
 double closed_share(double gap, double other, double gap_then, double other_then) {
   if (gap >= 0 && other >= 0) gap = gap_then, other = other_then;
   if ((gap < 0) == (other < 0)) return 1;
@@ -133,9 +134,9 @@ class ContactRows {
     const Contact& c = state_.contacts[i];
     const auto b = static_cast<size_t>(c.key.block_b);
     const JointLaw& law = law_of(c);
-    p.over = corner_over_edge(blocks_, state_, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+    p.over = corner_over_edge(blocks_, state_, c.key.corner(), c.key.on());
     const int next = c.key.edge + 1 == blocks_.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
-    p.b0 = blocks_.corner(c.key.block_b, c.key.edge), p.edge = blocks_.corner(c.key.block_b, next) - p.b0;
+    p.b0 = blocks_.corner({c.key.block_b, c.key.edge}), p.edge = blocks_.corner({c.key.block_b, next}) - p.b0;
     p.slip = -p.over.along * norm(p.edge);
     p.closure = {};
     const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
@@ -160,7 +161,7 @@ class ContactRows {
 
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.block_a, c.key.vertex));
+    p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.corner()));
     p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
     p.normal = q.over.normal;
     p.friction = law.residual().friction;
@@ -226,7 +227,7 @@ class ContactRows {
     const auto k = static_cast<size_t>(block);
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (int v = 0; v < blocks_.vertex_count(block); ++v) {
-      const Vec2 X = blocks_.corner(block, v);
+      const Vec2 X = blocks_.corner({block, v});
       const double at = cross(normal, X + state_.strain_part[k] * X);
       least = std::min(least, at), most = std::max(most, at);
     }
@@ -235,7 +236,7 @@ class ContactRows {
 
   // Where only one end of an interface is closed the other end of its row couple is the end of the closed
   // part: W = kn t/2 times the integral of closure^2 has the slope and the tangent of that part. Returns its
-  // share.
+  // share (eq. 4.1a).
   double close_face(Point& q, const Point& other, const Contact& c, const Contact& far, double size,
                     PointRows& p) const {
     const double gap = q.gap + q.closure.x, away = other.gap + other.closure.x;
@@ -264,15 +265,15 @@ class ContactRows {
   PointRows arms_of(const Point& q, const Contact& c) const {
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a =
-        acting_arm(blocks_, state_, static_cast<size_t>(p.block_a), blocks_.corner(p.block_a, c.key.vertex));
+    p.arm_a = acting_arm(blocks_, state_, static_cast<size_t>(p.block_a),
+                         blocks_.corner({p.block_a, c.key.vertex}));
     p.arm_b = acting_arm(blocks_, state_, static_cast<size_t>(p.block_b),
                          q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
     p.normal = q.over.normal;
     return p;
   }
 
-  // A corner alone: the part of its two sides that has gone into the edge.
+  // A corner alone: the part of its two sides that has gone into the edge (theory 4.6).
   double close_corner(Point& q, const Contact& c, double size, PointRows& p) const {
     const double gap = q.gap + q.closure.x, then = gap + clock_.dt * q.u[0];
     const Toe toe = toe_of(q, c, -(gap < 0 ? gap : then));
@@ -289,7 +290,7 @@ class ContactRows {
     if (depth <= 0) return toe;
     const int n = blocks_.vertex_count(c.key.block_a), v = c.key.vertex;
     const auto a = static_cast<size_t>(c.key.block_a);
-    const Vec2 X = blocks_.corner(c.key.block_a, v), along = turn_left(q.over.normal);
+    const Vec2 X = blocks_.corner({c.key.block_a, v}), along = turn_left(q.over.normal);
     const double on_edge = q.over.along * q.over.length;  // the edge runs along turn_left(normal)
     double force = 0, moment = 0;
     int bit = 1;
@@ -297,7 +298,7 @@ class ContactRows {
       const bool bears = c.toes & bit;
       bit = 2;
       if (!bears) continue;
-      const Vec2 E = blocks_.corner(c.key.block_a, neighbour) - X, side = E + state_.strain_part[a] * E;
+      const Vec2 E = blocks_.corner({c.key.block_a, neighbour}) - X, side = E + state_.strain_part[a] * E;
       const double up = dot(side, q.over.normal), run = dot(side, along);
       const double room = std::min(std::abs(run), run > 0 ? q.over.length - on_edge : on_edge);
       if (room <= 0) continue;
@@ -339,6 +340,7 @@ class ContactRows {
 void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
                       const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                       const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
+  TALUS_ASSERT(before.size() == static_cast<size_t>(blocks.count) && laws.size() == model.joints.size());
   const size_t first = rows.add_more(Family::kContact, state.contacts.size());
   resize_sparingly(place, state.contacts.size());
   const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
@@ -348,8 +350,11 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
   });
 }
 
+// Eq. 4.7.
 void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
                        const Workers& workers, State& state) {
+  TALUS_ASSERT(rows.range(Family::kContact).size() == state.contacts.size() &&
+               place.size() == state.contacts.size());
   const size_t first = rows.range(Family::kContact).begin;
   workers.for_chunks(state.contacts.size(), kContactGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

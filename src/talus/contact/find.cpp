@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/error.h"
 #include "talus/geometry/polygon.h"
 
 namespace talus {
@@ -72,8 +73,8 @@ void ContactSearch::Outline::take(const BlockSet& blocks, const State& state, in
   const auto n = static_cast<size_t>(count), k = static_cast<size_t>(i);
   corner.resize(n), edge.resize(n), length.resize(n), flat.resize(n), convex.resize(n);
   for (size_t v = 0; v < n; ++v) {
-    const Vec2 X = blocks.corner(i, static_cast<int>(v));
-    const Vec2 E = blocks.corner(i, after(static_cast<int>(v))) - X;
+    const Vec2 X = blocks.corner({i, static_cast<int>(v)});
+    const Vec2 E = blocks.corner({i, after(static_cast<int>(v))}) - X;
     corner[v] = offset_now(state, k, X);
     edge[v] = E + state.strain_part[k] * E;
     length[v] = norm(edge[v]);
@@ -124,7 +125,7 @@ int ContactSearch::Outline::edge_beside(int first, Vec2 place) const {
 }
 
 // Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards, by more than
-// -`dip` (sine).
+// -`dip` (sine) (theory 3.2).
 bool ContactSearch::Outline::may_enter(int k, Vec2 n, double dip) const {
   const auto v = static_cast<size_t>(k), b = static_cast<size_t>(before(k));
   return convex[v] && !flat[v] && dot(edge[v], n) >= -dip * length[v] && -dot(edge[b], n) >= -dip * length[b];
@@ -148,11 +149,11 @@ bool ContactSearch::Outline::on_convex_chain(int edge_1, int edge_2) const {
 
 // Corner v of a comes towards edge e of b level with its end, where b's other edge there and an edge of a lie
 // in one line: a slides over the joint between b and its neighbour. It touches b's other edge next, not the
-// side of b.
+// side of b (theory 3.3).
 bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outline& a, int v,
                              const Outline& b, int e, int end) const {
   const int other = end == e ? b.before(e) : end;
-  const CornerEdge over = corner_over_edge(blocks, s, a.block, v, b.block, other);
+  const CornerEdge over = corner_over_edge(blocks, s, {a.block, v}, {b.block, other});
   if (std::abs(over.gap) > same_) return false;
   return a.runs_against(v, b, other, kParallel) || a.runs_against(a.before(v), b, other, kParallel);
 }
@@ -188,7 +189,7 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
 }
 
 // Whether x is the way out rather than y: what was in touch before, else the larger gap, or of nearly equal
-// ones what is coming.
+// ones what is coming (theory 3.3 iv).
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
   const bool x_stays = x.held && !x.covered, y_stays = y.held && !y.covered;
   if (x_stays != y_stays) return x_stays;
@@ -207,7 +208,7 @@ bool ContactSearch::is_better(const Hit& x, const Hit& y) {
 }
 
 // Whether corner v of a bore on the straight side of b's edge e before, with a force or an overlap that it
-// keeps.
+// keeps (theory 3.3 i).
 bool ContactSearch::was_in_touch(const Outline& a, int v, const Outline& b, int e) const {
   for (const Contact& c : range_.known) {
     if (c.key.block_a != a.block || c.key.vertex != v || c.memory == Contact::kNone) continue;
@@ -251,7 +252,7 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
     if (norm(at) > blocks.radius[ic] * (1 + std::sqrt(contract(h, h)))) continue;
     outline_.clear();
     for (int k = 0; k < blocks.vertex_count(third); ++k) {
-      const Vec2 X = blocks.corner(third, k);
+      const Vec2 X = blocks.corner({third, k});
       outline_.push_back(X + h * X);
     }
     if (!contains(outline_, at)) continue;
@@ -265,7 +266,7 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
 
 // Whether a third block fills the place through which a hit would be pushed out: beside the side of b, or
 // beside the antiparallel side of a, at the middle of the stretch that they share. Gaps narrower than `reach`
-// hide nothing.
+// hide nothing (theory 3.3 ii).
 bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Outline& a, const Outline& b,
                                Vec2 shift, const Hit& h, double reach) {
   if (range_.neighbours == nullptr) return false;
@@ -329,7 +330,8 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   return filled(a.block, b.block, a0, ea, a.length[kf], at, turn_right(ea));
 }
 
-// All corner-edge pairs of corners of a over edges of b. `shift` leads from the centroid of b to that of a.
+// All corner-edge pairs of corners of a over edges of b. `shift` leads from the centroid of b to that of a
+// (theory 3.2, 3.3).
 void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, const Outline& a,
                                        const Outline& b, Vec2 shift) {
   const auto ia = static_cast<size_t>(a.block), ib = static_cast<size_t>(b.block);
@@ -347,16 +349,16 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       // far beyond its ends: what comes within the look-ahead is nearer than the margin
       const double run = dot(b.edge[ke], from_end), beside = 2 * (range_.margin + same_) * b.length[ke];
       if (run < -beside || run > b.length[ke] * b.length[ke] + beside) continue;
-      const CornerEdge c = corner_over_edge(blocks, s, a.block, v, b.block, e);
+      const CornerEdge c = corner_over_edge(blocks, s, {a.block, v}, {b.block, e});
       if (c.gap > range_.margin || c.gap < -range_.depth) continue;
       // beyond a convex end lies free space; beyond an end in a notch lies the block itself, and a corner
       // that has gone slightly into both sides of the notch is still held by both
       const double before = b.convex[ke] ? same_ : range_.margin;
       const double beyond = b.convex[static_cast<size_t>(b.after(e))] ? same_ : range_.margin;
-      const Vec2 b0 = blocks.corner(b.block, e), b1 = blocks.corner(b.block, b.after(e));
+      const Vec2 b0 = blocks.corner({b.block, e}), b1 = blocks.corner({b.block, b.after(e)});
       const double along = std::clamp(c.along, 0.0, 1.0);
       const Vec2 foot = b0 + along * (b1 - b0);
-      const Vec2 arm_a = acting_arm(blocks, s, ia, blocks.corner(a.block, v)),
+      const Vec2 arm_a = acting_arm(blocks, s, ia, blocks.corner({a.block, v})),
                  arm_b = acting_arm(blocks, s, ib, foot);
       const auto moves = [&](const std::vector<BlockRate>& rate) {
         return velocity_at(rate[ia], arm_a) - velocity_at(rate[ib], arm_b);
@@ -379,7 +381,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       Hit hit;
       hit.point.key = {a.block, v, b.block, e};
       hit.point.normal = c.normal;
-      hit.point.arm_a = blocks.corner(a.block, v);
+      hit.point.arm_a = blocks.corner({a.block, v});
       hit.point.arm_b = foot;
       hit.point.gap = c.gap;
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
@@ -425,7 +427,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
   }
 }
 
-// Where corner of a meets corner of b there may be hits both ways; one stays.
+// Where corner of a meets corner of b there may be hits both ways; one stays (theory 3.3 iv).
 void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 shift) {
   // a tip and the corner that it went in beside, each in the other
   const auto both_in = [&](const Hit& x, const Hit& y) {
@@ -479,7 +481,7 @@ void ContactSearch::spans_of(const Outline& a, const Outline& b, const Hit& h,
 }
 
 // Two points that end the overlap of the same two antiparallel sides share its length. `shift` leads from the
-// centroid of b to that of a.
+// centroid of b to that of a (theory 3.3, interfaces).
 void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) {
   if (spans_.size() < hits_.size()) spans_.resize(hits_.size());
   for (size_t i = 0; i < hits_.size(); ++i) spans_of(a, b, hits_[i], spans_[i]);
@@ -526,7 +528,7 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
 }
 
 // Which sides of a corner alone bear on its edge by themselves: not those whose interface has its own two
-// ends.
+// ends (theory 4.6).
 void ContactSearch::find_toes(const Outline& a, const Outline& b) {
   for (Hit& h : hits_) {
     if (h.point.partner >= 0) continue;
@@ -545,10 +547,12 @@ void ContactSearch::find_toes(const Outline& a, const Outline& b) {
   }
 }
 
-CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int a, int vertex, int b, int edge) {
-  const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
-  const int next = edge + 1 == blocks.vertex_count(b) ? 0 : edge + 1;
-  const Vec2 Xa = blocks.corner(a, vertex), Xb = blocks.corner(b, edge), E = blocks.corner(b, next) - Xb;
+// Theory 3.2.
+CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner, BlockEdge on) {
+  const auto ia = static_cast<size_t>(corner.block), ib = static_cast<size_t>(on.block);
+  const int next = on.edge + 1 == blocks.vertex_count(on.block) ? 0 : on.edge + 1;
+  const Vec2 Xa = blocks.corner(corner), Xb = blocks.corner({on.block, on.edge}),
+             E = blocks.corner({on.block, next}) - Xb;
   // the difference of reference places first, then the difference of displacements: both small
   const Vec2 reference = (blocks.centroid[ia] - blocks.centroid[ib]) + (Xa - Xb);
   const Vec2 r = reference + (displacement_at(state, ia, Xa) - displacement_at(state, ib, Xb));
@@ -560,6 +564,7 @@ CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int a, i
 
 const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, int a, int b,
                                   const SearchRange& range) {
+  TALUS_ASSERT(a != b && range.margin >= 0);
   const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
   range_ = range;
   same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);

@@ -33,8 +33,7 @@ struct CornerEdge {
   Vec2 normal;        // outward
 };
 
-CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, int block_a, int vertex, int block_b,
-                            int edge);
+CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner, BlockEdge edge);
 
 /// How far, how deep and in whose company the points of a pair are sought.
 struct SearchRange {
@@ -52,8 +51,7 @@ struct Found {
   double clearance = 0;         // the least distance, along an edge or between gaps, to another outcome [m]
   bool this_step_only = false;  // velocities or neighbours had a say: the outcome holds for this step only
   bool plain = false;           // no corner of the two lies on a straight side
-  std::vector<int>
-      cover;  // third blocks that cover a side here: were they to leave, there would be more points
+  std::vector<int> cover;  // third blocks that cover a side here: were they to leave, there were more points
 };
 
 /// Looks for contact points; keeps its memory from pair to pair.
@@ -64,8 +62,7 @@ class ContactSearch {
   ///    edges do not lie behind the edge (entrance condition).
   ///  - A flat corner (turning by less than 1e-4) enters nothing: the edges beside it are one straight side.
   ///  - A side that a third block covers is no way out: neither a corner alone nor a stretch of two sides
-  ///  that
-  ///    is not much longer than the overlap bears there.
+  ///    that is not much longer than the overlap bears there.
   ///  - What was in touch before stays on its side until it opens or passes the end.
   ///  - Else a corner near a convex corner of the other block obeys one edge: the one with the larger gap;
   ///    equal gaps by what they come to within `look_ahead`, then by the lower key.

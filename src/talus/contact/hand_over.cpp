@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -9,8 +11,9 @@ namespace {
 // Corners closer to the end of a face than this share of its length stand in its place.
 constexpr double kAtEnd = 0.01;
 
+// Theory 3.5.
 void take_from_face(const BlockSet& blocks, const BondFace& face, const FaceState& broken, Contact& c) {
-  const Vec2 corner = blocks.corner(c.key.block_a, c.key.vertex);
+  const Vec2 corner = blocks.corner(c.key.corner());
   for (size_t end = 0; end < 2; ++end) {
     const Vec2 arm = c.key.block_a == face.block_a ? face.arm_a[end] : face.arm_b[end];
     if (norm(corner - arm) > kAtEnd * face.length) continue;
@@ -30,6 +33,7 @@ void take_from_face(const BlockSet& blocks, const BondFace& face, const FaceStat
 
 void hand_over(const BlockSet& blocks, const BondSet& bonds, const State& state, const ContactPair& pair,
                Contact* points, size_t count) {
+  TALUS_ASSERT(pair.face < 0 || state.face.size() == bonds.faces.size());
   for (size_t i = 0; i < count; ++i) {
     Contact& c = points[i];
     if (c.memory != Contact::kNone || c.touched) continue;

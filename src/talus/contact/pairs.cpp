@@ -51,7 +51,8 @@ double speed_of(const BlockSet& blocks, const std::vector<BlockRate>& rate, size
   return norm(rate[i].a) + turning_speed(blocks, rate, i);
 }
 
-// Faces that rode up over their roughness are that far apart and in touch: the most that joints can rise [m].
+// Faces that rode up over their roughness are that far apart and in touch: the most that joints can rise [m]
+// (theory 3.1).
 double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
   if (std::none_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })) return 0;
   double rise = 0;
@@ -60,12 +61,14 @@ double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
   return rise;
 }
 
-// How far block i has to look ahead: with the same of the other block at least the margin of their pair [m].
+// How far block i has to look ahead: with the same of the other block at least the margin of their pair [m]
+// (theory 3.1).
 double reach_of(const BlockSet& blocks, const LookAhead& ahead, size_t i) {
   return std::max(0.5 * kMarginShare * blocks.size[i],
                   4 * ahead.clock.dt * speed_of(blocks, ahead.before, i));
 }
 
+// Theory 3.1.
 bool list_holds(const BlockSet& blocks, const State& state, const LookAhead& ahead, double rise,
                 const Workers& workers) {
   const CandidateList& list = state.candidates;
@@ -86,10 +89,10 @@ std::vector<Box> boxes_now(const BlockSet& blocks, const State& state) {
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
     const Vec2 from = blocks.centroid[k] - origin;
-    Box box{from + offset_now(state, k, blocks.corner(i, 0)), {}};
+    Box box{from + offset_now(state, k, blocks.corner({i, 0})), {}};
     box.max = box.min;
     for (int v = 1; v < blocks.vertex_count(i); ++v) {
-      const Vec2 p = from + offset_now(state, k, blocks.corner(i, v));
+      const Vec2 p = from + offset_now(state, k, blocks.corner({i, v}));
       box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};
       box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y)};
     }
@@ -125,7 +128,7 @@ BySize by_size(const BlockSet& blocks, const ContactPair& p) {
 }
 
 // How far the two have moved against each other since their contact points were sought, at the worst place of
-// the smaller block, where they touch.
+// the smaller block, where they touch (theory 3.7).
 double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p) {
   const auto [small, large] = by_size(blocks, p);
   const Vec2 off = (blocks.centroid[small] - blocks.centroid[large] - p.arm) +
@@ -147,7 +150,7 @@ void keep_cover(const State& s, const std::vector<int>& cover, ContactPair& p) {
   }
 }
 
-// Whether a block that covers sides of the pair has gone, or moved by more than `most` [m].
+// Whether a block that covers sides of the pair has gone, or moved by more than `most` [m] (theory 3.7).
 bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p, double most) {
   const auto a = static_cast<size_t>(p.a);
   for (size_t k = 0; k < p.cover.size() && p.cover[k] >= 0; ++k) {
@@ -175,15 +178,15 @@ void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
 Vec2 place_of(const BlockSet& blocks, const State& s, int from, const ContactKey& key) {
   const auto k = static_cast<size_t>(key.block_a);
   return (blocks.centroid[k] - blocks.centroid[static_cast<size_t>(from)]) +
-         offset_now(s, k, blocks.corner(key.block_a, key.vertex));
+         offset_now(s, k, blocks.corner(key.corner()));
 }
 
 // How far a known contact is now from where it sticks, along its tangent [m]; NaN where it slid.
 double off_now(const BlockSet& blocks, const State& s, const Contact& c) {
   const ContactKey& k = c.key;
-  const CornerEdge over = corner_over_edge(blocks, s, k.block_a, k.vertex, k.block_b, k.edge);
+  const CornerEdge over = corner_over_edge(blocks, s, k.corner(), k.on());
   const int next = k.edge + 1 == blocks.vertex_count(k.block_b) ? 0 : k.edge + 1;
-  return -over.along * norm(blocks.corner(k.block_b, next) - blocks.corner(k.block_b, k.edge)) - c.anchor;
+  return -over.along * norm(blocks.corner({k.block_b, next}) - blocks.corner({k.block_b, k.edge})) - c.anchor;
 }
 
 // Which known contact a found point goes on from: the one with its key, else the one at its end of the same
@@ -238,7 +241,8 @@ class Memory {
   const double same_;
 };
 
-// A found point with what a known one at the same place remembers. `plain`: every straight side is one edge.
+// A found point with what a known one at the same place remembers. `plain`: every straight side is one edge
+// (theory 3.3, memory).
 Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& point, const Memory& memory,
                    bool plain, const Layout& joints_of) {
   Contact c;
@@ -251,8 +255,8 @@ Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& p
     c.joint = from->joint;  // the same two edges
   else
     c.joint = point.face_edge_b >= 0
-                  ? joints_of.joint_at(key.block_a, point.face_edge_a, key.block_b, point.face_edge_b)
-                  : joints_of.joint_at_corner(key.block_a, key.vertex, key.block_b, key.edge);
+                  ? joints_of.joint_at({key.block_a, point.face_edge_a}, {key.block_b, point.face_edge_b})
+                  : joints_of.joint_at_corner(key.corner(), key.on());
   if (!from) {
     if (kind == Origin::kNothing) c.allowed = std::max(0.0, -point.gap);
     return c;
@@ -476,8 +480,11 @@ class Updater {
 
 }  // namespace
 
+// Theory 3.1.
 bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state) {
+  TALUS_ASSERT(ahead.before.size() == static_cast<size_t>(blocks.count) &&
+               state.face.size() == bonds.faces.size());
   const double rise = highest_rise(joints, state);
   if (blocks.count == 0 || list_holds(blocks, state, ahead, rise, workers)) return false;
   CandidateList& list = state.candidates;
@@ -528,9 +535,11 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
   return true;
 }
 
+// Theory 3.7.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
                              const std::vector<JointLaw>& joints, const LookAhead& ahead,
                              const Workers& workers, State& state) {
+  TALUS_ASSERT(joints_of.blocks.size() == static_cast<size_t>(blocks.count));
   return Updater(blocks, bonds, joints_of, joints, ahead, state).run(workers);
 }
 

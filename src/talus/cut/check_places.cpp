@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/cut/selection.h"
 
@@ -74,6 +75,7 @@ void check_corners(const Layout& layout, const Selection& place, const Where& wh
 
 void check_edges(const Layout& layout, const Selection& place, const Where& where, const std::string& path,
                  const std::string& key, Findings& findings) {
+  if (!place.is_edge && place.along.empty()) return;  // told by the reader
   if (!names_exist(layout, place, where, path, key, findings)) return;
   const OuterEdges outer = outer_edges(layout, place);
   if (outer.partly.block >= 0) {
@@ -171,6 +173,7 @@ void check_stages(const Model& model, const Layout& layout, Findings& findings) 
 }  // namespace
 
 void check_places(const Model& model, const Layout& layout, Findings& findings) {
+  TALUS_ASSERT(layout.sound && !layout.blocks.empty());
   for (const LoadInput& l : model.loads) check_load(layout, l, findings);
   check_contradictions(model, layout, findings);
   check_stages(model, layout, findings);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "talus/base/error.h"
 #include "talus/cut/slivers.h"
 #include "talus/geometry/arrangement.h"
 
@@ -186,7 +187,9 @@ Cut with_slivers(const Model& model, Cut cut) {
   return cut;
 }
 
+// Theory 10.
 Cut cut_model(const Model& model, Findings& findings) {
+  TALUS_ASSERT(model.shapes_readable);
   if (model.regions.empty() && model.arches.empty()) return {};
   const int errors = findings.error_count();
   Cutter cutter(model, findings);

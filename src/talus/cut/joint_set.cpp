@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "talus/base/error.h"
 #include "talus/base/random.h"
 
 namespace talus {
@@ -67,7 +68,7 @@ double trace_angle(Vec3 p, double azimuth) {
   return std::atan2(-along, p.z);
 }
 
-// A pole scattered about that of the set by the Fisher distribution.
+// A pole scattered about that of the set by the Fisher distribution (theory 10.1).
 Vec3 fisher_pole(const JointSetInput& set, Random& random) {
   const double sd = std::sin(set.dip), cd = std::cos(set.dip);
   const double sa = std::sin(set.dip_direction), ca = std::cos(set.dip_direction);
@@ -179,6 +180,7 @@ class LineMaker {
 
 }  // namespace
 
+// Eq. 10.1.
 ApparentDip apparent_dip(double dip, double dip_direction, double section_azimuth) {
   // components of the pole in the section: along +x and upwards
   const double x = std::sin(dip) * std::cos(dip_direction - section_azimuth), z = std::cos(dip);
@@ -235,6 +237,7 @@ JointSetDefect joint_set_defect(const JointSetInput& set, const JointSetNote& no
 
 std::vector<std::pair<Vec2, Vec2>> joint_set_lines(const JointSetInput& set, const JointSetNote& note,
                                                    const CutInput& cut, const Box& box) {
+  TALUS_ASSERT(joint_set_defect(set, note, box).text.empty());
   return LineMaker(set, note, cut, box).make();
 }
 

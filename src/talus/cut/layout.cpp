@@ -174,26 +174,27 @@ int Layout::joint_of_pair(int group_a, int group_b) const {
   return it == pair_joint.end() ? kNoPair : it->second;
 }
 
-int Layout::joint_at(int block_a, int edge_a, int block_b, int edge_b) const {
-  const BlockShape &a = blocks[static_cast<size_t>(block_a)], &b = blocks[static_cast<size_t>(block_b)];
+int Layout::joint_at(BlockEdge at_a, BlockEdge at_b) const {
+  const BlockShape &a = blocks[static_cast<size_t>(at_a.block)], &b = blocks[static_cast<size_t>(at_b.block)];
   const int pair = joint_of_pair(a.group, b.group);
   if (pair != kNoPair) return pair;
   const auto own = [](const BlockShape& shape, int edge) { return edge >= 0 && !shape.edge_joint.empty(); };
-  const bool has_a = own(a, edge_a), has_b = own(b, edge_b);
-  if (has_a && (!has_b || block_a < block_b)) return a.edge_joint[static_cast<size_t>(edge_a)];
-  if (has_b) return b.edge_joint[static_cast<size_t>(edge_b)];
+  const bool has_a = own(a, at_a.edge), has_b = own(b, at_b.edge);
+  if (has_a && (!has_b || at_a.block < at_b.block)) return a.edge_joint[static_cast<size_t>(at_a.edge)];
+  if (has_b) return b.edge_joint[static_cast<size_t>(at_b.edge)];
   return default_joint;
 }
 
-int Layout::joint_at_corner(int block_a, int vertex, int block_b, int edge_b) const {
-  const int at_edge = joint_at(block_a, -1, block_b, edge_b);
-  const BlockShape& a = blocks[static_cast<size_t>(block_a)];
+// Theory 1.7.
+int Layout::joint_at_corner(BlockCorner corner, BlockEdge on) const {
+  const int at_edge = joint_at({corner.block, -1}, on);
+  const BlockShape& a = blocks[static_cast<size_t>(corner.block)];
   const auto is_glued = [this](int joint) {
     return joint >= 0 && !glued.empty() && glued[static_cast<size_t>(joint)];
   };
-  if (!is_glued(at_edge) || joint_of_pair(a.group, blocks[static_cast<size_t>(block_b)].group) != kNoPair)
+  if (!is_glued(at_edge) || joint_of_pair(a.group, blocks[static_cast<size_t>(on.block)].group) != kNoPair)
     return at_edge;
-  const auto v = static_cast<size_t>(vertex);
+  const auto v = static_cast<size_t>(corner.corner);
   if (!a.edge_joint.empty())
     for (const size_t edge : {v, v == 0 ? a.edge_joint.size() - 1 : v - 1})
       if (!is_glued(a.edge_joint[edge])) return a.edge_joint[edge];

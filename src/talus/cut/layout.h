@@ -12,6 +12,14 @@
 
 namespace talus {
 
+/// A corner of a block, and an edge, from its corner `edge` to the next; -1: none.
+struct BlockCorner {
+  int block = -1, corner = -1;
+};
+struct BlockEdge {
+  int block = -1, edge = -1;
+};
+
 struct BlockShape {
   // made and taken apart in one file: here every file of the program would hold that code
   BlockShape();
@@ -44,8 +52,7 @@ struct Layout {
   ~Layout();
 
   std::vector<BlockShape> blocks;
-  std::vector<std::string>
-      groups;  // names of blocks, grids, meshes and their surfaces, regions, kept openings
+  std::vector<std::string> groups;   // blocks, grids, meshes and their surfaces, regions, kept openings
   std::vector<Where> group_where;    // [groups]
   std::map<int, int> mesh_of;        // group of a physical surface -> that of its mesh
   int first_mesh_group = 0;          // groups from here to the next are those of meshes
@@ -60,13 +67,13 @@ struct Layout {
 
   /// Whether a block was cut out of a region, together with others.
   bool was_cut(const BlockShape& block) const { return block.group >= first_cut_group; }
-  /// Joint where edge `edge_a` of block a (-1: a corner) meets edge `edge_b` of block b; -1: hard and
-  /// frictionless. A joint given for the pair goes first; then that of the edge, where two differ that of the
-  /// lower block; then the default.
-  int joint_at(int block_a, int edge_a, int block_b, int edge_b) const;
-  /// Joint of a corner of block a that touches an edge of block b but ends no face: that of the edge; where
+  /// Joint where two edges meet (edge -1: a corner of the block); -1: hard and frictionless. A joint
+  /// given for the pair goes first; then that of the edge, where two differ that of the lower block; then
+  /// the default.
+  int joint_at(BlockEdge a, BlockEdge b) const;
+  /// Joint of a corner that touches an edge of another block but ends no face: that of the edge; where
   /// the edge is glued, to a third block, that of the joint that ends at the corner, or the default.
-  int joint_at_corner(int block_a, int vertex, int block_b, int edge_b) const;
+  int joint_at_corner(BlockCorner a, BlockEdge b) const;
   /// Joint given for two groups, or kNoPair.
   static constexpr int kNoPair = -2;
   int joint_of_pair(int group_a, int group_b) const;

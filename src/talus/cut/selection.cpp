@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -85,6 +87,7 @@ std::vector<SelectedCorner> selected_corners(const Layout& layout, const Selecti
 }
 
 std::vector<SelectedEdge> selected_edges(const Layout& layout, const Selection& place) {
+  TALUS_ASSERT(place.is_edge || !place.along.empty());
   const double tolerance = point_tolerance(layout);
   std::vector<SelectedEdge> edges;
   for (const int i : candidates_of(layout, place)) {

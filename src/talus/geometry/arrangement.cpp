@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "talus/base/error.h"
 #include "talus/base/random.h"
 #include "talus/geometry/geos.h"
 #include "talus/geometry/open_holes.h"
@@ -270,6 +271,7 @@ double grid_width(double extent, double wanted) {
 
 Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin,
                     const std::function<bool(Vec2)>& is_solid) {
+  TALUS_ASSERT(grid > 0);
   Arrangement out;
   out.grid = grid;
   if (lines.empty()) return out;
@@ -346,6 +348,7 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
 }
 
 Vec2 interior_point(const Polygon& polygon) {
+  TALUS_ASSERT(signed_area(polygon) != 0);
   // between the heights of two corners no corner is met; the roomiest of all stretches there
   std::vector<double> height;
   for (const Vec2 p : polygon) height.push_back(p.y);

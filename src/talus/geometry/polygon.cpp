@@ -67,6 +67,7 @@ bool contains(std::span<const Vec2> polygon, Vec2 point, double tolerance) {
 }
 
 Box bounding_box(std::span<const Vec2> points) {
+  TALUS_ASSERT(!points.empty());
   Box box{points[0], points[0]};
   for (const Vec2 p : points) {
     box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -16,6 +18,7 @@ Vec2 on_circle(Vec2 center, double radius, double angle) {
 }  // namespace
 
 Polygon circle_polygon(Vec2 center, double diameter, int segments) {
+  TALUS_ASSERT(diameter > 0 && segments >= 3);
   // n triangles of area R^2 sin(2 pi / n) / 2
   const double angle = 2 * kPi / segments;
   const double radius = 0.5 * diameter * std::sqrt(angle / std::sin(angle));
@@ -27,6 +30,7 @@ Polygon circle_polygon(Vec2 center, double diameter, int segments) {
 double sagitta(double radius, double angle) { return radius * (1 - std::cos(0.5 * angle)); }
 
 Polygon horseshoe_polygon(Vec2 center, double width, double height, int segments) {
+  TALUS_ASSERT(height >= 0.5 * width && segments >= 1);
   const double r = 0.5 * width, floor = center.y - (height - r);
   // inner corners at radius R, the two ends at r: sin(a)/2 (2 r R + (n - 2) R^2) = pi r^2 / 2
   const double angle = kPi / segments, n = segments;

@@ -124,10 +124,9 @@ struct ContactPairInput {
 /// Where something acts: block edges on a segment or along a line by its name, or a point; "" = no condition.
 struct Selection {
   bool is_edge = false;
-  Vec2 from, to;  // the segment; the point when is_edge is false
-  std::string
-      along;  // name of an outline side, opening, fault or joint set: all block edges along it; "" = none
-  std::string block;  // "" = any
+  Vec2 from, to;      // the segment; the point when is_edge is false
+  std::string along;  // an outline side, opening, fault or joint set: all block edges along it; "": none
+  std::string block;  // "": any
   Where where_block;
 };
 
@@ -294,8 +293,8 @@ struct Model {
   std::string file, title, hash;
   std::string folder;  // that relative paths of the file count from
   std::string text;    // the file as read, byte for byte, with the overrides as closing comments
-  bool shapes_readable =
-      false;  // every block and grid has its polygon: the layout can be checked in spite of errors
+  // every block and grid has its polygon: the layout can be checked in spite of errors
+  bool shapes_readable = true;
   double thickness = 1;
   Plane plane = Plane::kStrain;
   Inertia inertia = Inertia::kConsistent;

@@ -31,6 +31,7 @@ class ModelReader : private SectionReader {
       : SectionReader(source, findings), model_(model) {}
 
   void read() {
+    model_.shapes_readable = false;
     check_section_names();
     if (!read_top() || !check_maps()) return;
     model_.shapes_readable = true;

@@ -118,7 +118,8 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      corner.push_back((blocks.centroid[k] - blocks.centroid[0]) + offset_now(state, k, blocks.corner(i, v)));
+      corner.push_back((blocks.centroid[k] - blocks.centroid[0]) +
+                       offset_now(state, k, blocks.corner({i, v})));
   }
   const Box box = bounding_box(corner);
   const double wide = std::max(box.max.x - box.min.x, 1e-300), high = box.max.y - box.min.y;
@@ -127,8 +128,8 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
 
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} "
-      "{1:.0f}\" "
-      "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+      "{1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
+      "fill=\"white\"/>\n"
       "<text x=\"{2}\" y=\"24\" font-weight=\"bold\">{3}</text>\n"
       "<text x=\"{4}\" y=\"24\" text-anchor=\"end\">t = {5:.6g} s</text>\n",
       kWidth, height, kMargin, escaped(title), kWidth - kMargin, state.time);

@@ -11,6 +11,7 @@
 namespace talus {
 
 std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate) {
+  TALUS_ASSERT(rate.size() == static_cast<size_t>(blocks.count));
   std::vector<double> points, displacement, velocity, stress;
   std::vector<int64_t> connectivity, offsets, id, kind, material, group;
   std::vector<uint8_t> types;
@@ -18,7 +19,7 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
     const auto k = static_cast<size_t>(i);
     if (blocks.removed(i)) continue;
     for (int v = 0; v < blocks.vertex_count(i); ++v) {
-      const Vec2 X = blocks.corner(i, v);
+      const Vec2 X = blocks.corner({i, v});
       connectivity.push_back(static_cast<int64_t>(connectivity.size()));
       push3(points, blocks.centroid[k] + offset_now(state, k, X));
       push3(displacement, displacement_shown(state, k, X));

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/error.h"
 #include "talus/record/fourier.h"
 
 namespace talus::record {
 
+// Eq. 11.2.
 double butterworth_gain(const Band& band, double f) {
   const auto one = [&band](double ratio) {
     return band.corner == Corner::k3dB ? 1 / std::sqrt(1 + std::pow(ratio, 2 * band.order))
@@ -21,6 +23,8 @@ double butterworth_gain(const Band& band, double f) {
 double padding_of(const Band& band) { return band.high_pass > 0 ? 1.5 * band.order / band.high_pass : 0; }
 
 std::vector<double> filter(const std::vector<double>& samples, double dt, const Band& band) {
+  TALUS_ASSERT(dt > 0 && band.order >= 1);
+  TALUS_ASSERT(band.high_pass >= 0 && (band.low_pass == 0 || band.high_pass < band.low_pass));
   const auto pad = static_cast<size_t>(std::ceil(padding_of(band) / dt));
   std::vector<double> padded(fast_length(samples.size() + 2 * pad));
   const auto begin = static_cast<std::ptrdiff_t>(pad);

@@ -1,8 +1,12 @@
 #include "talus/record/motion.h"
 
+#include "talus/base/error.h"
+
 namespace talus::record {
 
+// Eq. 11.1.
 Motion integrate(std::vector<double> acceleration, double dt) {
+  TALUS_ASSERT(dt > 0);
   Motion m{dt, std::move(acceleration), {}, {}};
   const std::vector<double>& a = m.acceleration;
   m.velocity.assign(a.size(), 0);
@@ -15,6 +19,7 @@ Motion integrate(std::vector<double> acceleration, double dt) {
 }
 
 std::vector<double> differentiate(const std::vector<double>& value, double dt) {
+  TALUS_ASSERT(value.size() >= 2 && dt > 0);
   const size_t n = value.size();
   std::vector<double> out(n);
   out[0] = (value[1] - value[0]) / dt;

@@ -1,5 +1,7 @@
 #include "talus/rows/mobility.h"
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -12,6 +14,7 @@ void invert(double a, double b, double c, double out[3]) {
 
 }  // namespace
 
+// Eq. 1.2.
 Mobility mobility_of(const BlockSet& blocks, size_t i, double share) {
   Mobility m;
   if (!blocks.moves_freely(static_cast<int>(i))) return m;
@@ -28,6 +31,7 @@ Mobility mobility_of(const BlockSet& blocks, size_t i, double share) {
   return m;
 }
 
+// Eq. 4.2.
 Mobility mobility_implicit(const BlockSet& blocks, size_t i, Vec2 rotation, double share, double time2) {
   Mobility m = mobility_of(blocks, i, share);
   if (blocks.kind[i] != BlockKind::kDeformable) return m;
@@ -46,6 +50,7 @@ std::vector<Mobility> mobilities(const BlockSet& blocks, double share) {
   return all;
 }
 
+// Eq. 1.3.
 Mat2 influence(const Mobility& m, Vec2 at, Vec2 from) {
   // columns: answers to unit impulses along the left axes
   const Vec2 x = turned_back(m.right, from), y = turned_back(m.right, at);
@@ -66,6 +71,7 @@ BlockRate accelerate(const Mobility& m, const BlockForce& impulse) {
 }
 
 void apply_impulses(const std::vector<Mobility>& mobility, const RowSet& rows, std::vector<BlockRate>& rate) {
+  TALUS_ASSERT(mobility.size() == rate.size() && rows.impulse.size() == rows.points.size());
   std::vector<BlockForce> sum(rate.size());
   for (size_t r = 0; r < rows.points.size(); ++r) {
     const PointRows& p = rows.points[r];

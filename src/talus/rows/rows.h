@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "talus/base/error.h"
 #include "talus/blocks/state.h"
 #include "talus/rows/owner.h"
 
@@ -14,7 +15,7 @@ namespace talus {
 
 /// Residual of a row: e = u + bias + compliance p (+ cross p of the partner), with u the relative velocity
 /// along it at the end of the kick. Inside the bounds of p, e = 0; at the lower bound e >= 0; at the upper
-/// bound e <= 0.
+/// bound e <= 0 (eq. 4.1).
 struct Row {
   double bias = 0;        // [m/s]
   double compliance = 0;  // [1/kg]
@@ -67,6 +68,7 @@ struct RowSet {
   /// @pre  none of a later family is there
   size_t add_more(Family family, size_t count) {
     const size_t first = next_;
+    TALUS_ASSERT(end_.back() == end_[static_cast<size_t>(family)]);
     next_ += count;
     for (size_t f = static_cast<size_t>(family); f < end_.size(); ++f) end_[f] = next_;
     if (points.size() < next_)

@@ -35,8 +35,8 @@ double closed_by_ground(const Scene& scene, const ContactPair& pair, const Conta
     return 0;
   const auto b = static_cast<size_t>(c.key.block_b);
   const int next = c.key.edge + 1 == scene.blocks.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
-  const Vec2 from = scene.blocks.corner(c.key.block_b, c.key.edge),
-             side = scene.blocks.corner(c.key.block_b, next) - from;
+  const Vec2 from = scene.blocks.corner({c.key.block_b, c.key.edge}),
+             side = scene.blocks.corner({c.key.block_b, next}) - from;
   const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, scene.blocks.centroid[b].y + from.y);
   const JointLaw law(model.joints[static_cast<size_t>(c.joint)]);
   return std::abs(law.closure(stress, turn_right(side) / norm(side)).x);
@@ -122,7 +122,7 @@ audit::Block Auditor::shape(const Instant& i, int block) const {
   if (out.hold == audit::Hold::kRemoved) return out;
   const BlockRate rate = rate_now(i.work, i.state, k);
   for (int v = 0; v < b.vertex_count(block); ++v) {
-    const Vec2 X = b.corner(block, v);
+    const Vec2 X = b.corner({block, v});
     out.polygon.push_back(b.centroid[k] + offset_now(i.state, k, X));
     const Vec2 arm = acting_arm(b, i.state, k, X);
     out.velocity.push_back(velocity_at(rate, arm));

@@ -50,7 +50,7 @@ std::vector<WaveLayer> layers_above(const Scene& scene, Vec2 foot, int axis) {
     if (std::abs(p.from - top) > 1e-3 * height || shape.kind != BlockKind::kDeformable) return {};
     top = p.to;
     std::string trouble;
-    const Ground g = ground_at(scene.model, scene.layout, p.block, shape.material, trouble);
+    const Ground g = ground_at(scene.model, scene.layout, shape, shape.material, trouble);
     if (!trouble.empty()) return {};
     layers.push_back({height, g.density, axis == 0 ? g.stiffness[2][2] : g.stiffness[1][1]});
   }
@@ -75,13 +75,13 @@ std::string base_line(const Scene& scene, const BoundaryInput& b, int axis) {
   for (const WaveLayer& l : layers) height += l.height;
   return head + fmt::format(
                     ";\n             level ground as above ({:g}, {:g}), {:.4g} m high, would move at the "
-                    "surface {:.3f} "
-                    "and at the base {:.3f} times the outcrop motion at its main {:.3g} Hz\n",
+                    "surface {:.3f} and at the base {:.3f} times the outcrop motion at its main {:.3g} Hz\n",
                     foot.x, foot.y, height, r.surface, r.base, f);
 }
 
 }  // namespace
 
+// Eq. 4.6.
 LayerResponse level_response(const std::vector<WaveLayer>& layers, double impedance, double frequency) {
   // displacement and stress of a standing wave, from 1 and 0 at the surface downwards
   const double w = 2 * std::numbers::pi * frequency;

@@ -69,7 +69,7 @@ double joint_time(const Scene& scene, const BlockSet& b) {
                                                                : scene.layout.default_joint;
       if (joint < 0) continue;
       const JointLaw& law = laws[static_cast<size_t>(joint)];
-      const double length = norm(b.corner(i, (e + 1) % corners) - b.corner(i, e));
+      const double length = norm(b.corner({i, (e + 1) % corners}) - b.corner({i, e}));
       if (!law.bonded() && law.is_soft(0)) stiffness += law.stiffness(0, length * scene.model.thickness);
     }
     // half of the sides hold it along either direction
@@ -175,8 +175,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
                      fmt::format("{:.4g} s is above the stable limit {:.4g} s, set by block \"{}\"", plan.dt,
                                  bound.dt, block_name),
                      "use \"auto\", a smaller step, elasticity = \"implicit\", or moment_clamp = true if a "
-                     "few slivers set "
-                     "the limit");
+                     "few slivers set the limit");
     }
     limit_by_column(scene, stage, column, plan, findings);
     plans.push_back(plan);

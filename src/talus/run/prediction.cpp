@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "talus/base/error.h"
 #include "talus/contact/pairs.h"
 #include "talus/run/histories.h"
 
@@ -21,6 +22,7 @@ int64_t rows_of(double duration, int64_t steps, double interval) {
 }  // namespace
 
 Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
+  TALUS_ASSERT(plans.size() == scene.model.stages.size());
   Prediction p;
   p.blocks = scene.blocks.count;
   p.bond_faces = static_cast<int>(scene.bonds.faces.size());

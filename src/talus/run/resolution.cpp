@@ -85,7 +85,8 @@ Resolution worst_block(const Scene& scene) {
     const std::pair<int, int> key{blocks.group[k], blocks.material[k]};
     if (!known.count(key)) {
       std::string trouble;
-      const Ground ground = ground_at(scene.model, scene.layout, i, blocks.material[k], trouble);
+      const Ground ground =
+          ground_at(scene.model, scene.layout, scene.layout.blocks[k], blocks.material[k], trouble);
       known[key] = {slowest_wave(ground), trouble};
     }
     const auto& [speed, trouble] = known[key];
@@ -155,9 +156,8 @@ std::string resolution_report(const Scene& scene) {
   for (const Resolution& r : resolutions(scene)) {
     const auto block = static_cast<size_t>(r.block);
     text += fmt::format(
-        "  waves      \"{}\": {:g} % of its |V(f)|^2 below {:.3g} Hz; slowest wave {:.4g} m/s through blocks "
-        "of "
-        "{:.3g} m ({}{}): {:.3g} blocks per wavelength\n",
+        "  waves      \"{}\": {:g} % of its |V(f)|^2 below {:.3g} Hz; slowest wave {:.4g} m/s through "
+        "blocks of {:.3g} m ({}{}): {:.3g} blocks per wavelength\n",
         scene.model.histories[static_cast<size_t>(r.history)].name, 100 * record::kVelocityShare, r.frequency,
         r.speed, r.size, scene.blocks.name[block],
         r.left_out.empty() ? "" : ", without the joint stiffness of " + r.left_out, r.per_wavelength);
@@ -173,8 +173,7 @@ void check_resolution(const Scene& scene, Findings& findings) {
         h.where, "history." + h.name,
         fmt::format(
             "its waves are cut short: {:.3g} blocks per wavelength at {:.3g} Hz ({:g} % of |V(f)|^2 lies "
-            "below), wanted are {:g}; "
-            "the slowest wave runs at {:.4g} m/s through block \"{}\" of {:.3g} m",
+            "below), wanted are {:g}; the slowest wave runs at {:.4g} m/s through block \"{}\" of {:.3g} m",
             r.per_wavelength, r.frequency, 100 * record::kVelocityShare, kFewestPerWavelength, r.speed,
             scene.blocks.name[static_cast<size_t>(r.block)], r.size),
         fmt::format(

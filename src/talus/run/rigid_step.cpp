@@ -58,7 +58,7 @@ double fastest_fall(const Scene& scene, double duration) {
   const auto depth_of = [&](int i) {
     double depth = -std::numeric_limits<double>::infinity();
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      depth = std::max(depth, dot(down, blocks.centroid[static_cast<size_t>(i)] + blocks.corner(i, v)));
+      depth = std::max(depth, dot(down, blocks.centroid[static_cast<size_t>(i)] + blocks.corner({i, v})));
     return depth;
   };
   const std::vector<char> held = held_blocks(scene);

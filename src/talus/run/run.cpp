@@ -229,10 +229,9 @@ class Runner {
     const double floor = solver_leaves(last_, dt);
     if (floor > 0.5 * last_.worst_force)
       return fmt::format(
-          "That is what the solver leaves: an error of {:.2g} m in a step of {:.2g} s is a force of {:.2g} N "
-          "there. "
-          "Give the joints a stiffness, a smaller solver.tolerance with more solver.max_sweeps, or a larger "
-          "stage.{}.unbalanced",
+          "That is what the solver leaves: an error of {:.2g} m in a step of {:.2g} s is a force of {:.2g} "
+          "N there. Give the joints a stiffness, a smaller solver.tolerance with more solver.max_sweeps, or "
+          "a larger stage.{}.unbalanced",
           last_.error.worst, dt, floor, stage.name);
     const double left = stage.duration - (out.end - out.begin);
     double farthest = 0;
@@ -242,14 +241,12 @@ class Runner {
     if (farthest > kFarToGo)
       return fmt::format(
           "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
-          "duration of "
-          "the stage. Look at blocks_end.svg and slips.csv; if it is on its way to rest, give "
+          "duration of the stage. Look at blocks_end.svg and slips.csv; if it is on its way to rest, give "
           "stage.{}.duration more",
           farthest, stage.name);
     return fmt::format(
         "Blocks ring against each other without going anywhere. Give stage.{0}.elasticity = \"implicit\" or "
-        "some "
-        "contact.alpha, or a larger stage.{0}.unbalanced",
+        "some contact.alpha, or a larger stage.{0}.unbalanced",
         stage.name);
   }
 
@@ -351,10 +348,9 @@ class Runner {
     if (scene_.model.solver.stop_on_failure) {
       throw NumericalError(fmt::format(
           "step {} at t = {:.9g} s: the contact equations were not solved; error {:.3g} m after {} "
-          "iterations, allowed "
-          "{:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a wider "
-          "solver.tolerance may help; "
-          "solver.on_failure = \"continue\" counts such steps instead of stopping",
+          "iterations, allowed {:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a "
+          "wider solver.tolerance may help; solver.on_failure = \"continue\" counts such steps instead of "
+          "stopping",
           state_.step, state_.time, r.error.worst, r.solve.iterations, settings_.tolerance, r.worst));
     }
   }
@@ -364,8 +360,7 @@ class Runner {
     const auto row = static_cast<size_t>(r.closed_row);
     const Contact& c = state_.contacts[work_.rows.owner[row].at()];
     const auto a = static_cast<size_t>(c.key.block_a);
-    const Vec2 at =
-        scene_.blocks.centroid[a] + offset_now(state_, a, scene_.blocks.corner(c.key.block_a, c.key.vertex));
+    const Vec2 at = scene_.blocks.centroid[a] + offset_now(state_, a, scene_.blocks.corner(c.key.corner()));
     const JointProperty* joint = c.joint < 0 ? nullptr : &scene_.model.joints[static_cast<size_t>(c.joint)];
     const std::string cure =
         joint && joint->normal_stiffness > 0
@@ -397,11 +392,13 @@ class Runner {
 
 RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
                      const Workers& workers) {
+  TALUS_ASSERT(plans.size() <= scene.model.stages.size());
   return Runner(scene, plans, state, observer, workers).run(nullptr);
 }
 
 RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, const Standing& from,
                           State& state, Observer& observer, const Workers& workers) {
+  TALUS_ASSERT(plans.size() <= scene.model.stages.size());
   return Runner(scene, plans, state, observer, workers).run(&from);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/error.h"
 #include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
 
@@ -66,9 +67,13 @@ SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties) {
                                                                                 : SolverKind::kGaussSeidel;
 }
 
+// Theory 5.7.
 Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double sharper, bool keep_guess,
                   const std::function<ContactError()>& judge, const Workers& workers, SolverSet& solvers,
                   const StepProblem& problem, std::vector<Impulse>& guess) {
+  TALUS_ASSERT(tolerance > 0 && sharper > 0 && sharper <= 1);
+  TALUS_ASSERT(problem.dt > 0 && problem.mobility.size() == problem.rate_free.size());
+  TALUS_ASSERT(problem.rows.impulse.size() == problem.rows.points.size());
   const SolverInput& options = model.solver;
   const bool smoothed = model.contact.law == ContactLaw::kSmoothed;
   const SolverKind first = chosen_solver(model, problem.rows.points.size(), hard_ties),

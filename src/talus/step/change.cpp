@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/error.h"
 #include "talus/model/joint_law.h"
 
 namespace talus {
@@ -51,6 +52,7 @@ void activate(int stage, Scene& scene) {
   for (const LoadInput& l : model.loads) scene.loads.active.push_back(l.acts_in(stage));
 }
 
+// Eq. 2.3.
 BlockForce own_force(const Scene& scene, size_t k, const Mat2& stress) {
   BlockForce force{scene.blocks.mass[k] * scene.model.gravity, {}};
   if (scene.blocks.kind[k] == BlockKind::kDeformable) force.Q += (-scene.blocks.volume[k]) * stress;
@@ -87,6 +89,7 @@ std::vector<char> excavated_blocks(const Scene& scene, int stage) {
   return out;
 }
 
+// Theory 2.7.
 std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector<char>& blocks) {
   std::vector<BlockForce> force(blocks.size());
   const RowSet& rows = work.rows;
@@ -101,8 +104,10 @@ std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector
   return force;
 }
 
+// Theory 2.7.
 void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supported_before,
                  const Scene& scene, State& state) {
+  TALUS_ASSERT(before.count == scene.blocks.count && supported_before.size() == scene.supported.size());
   const BlockSet& now = scene.blocks;
   for (int i = 0; i < now.count; ++i) {
     const auto k = static_cast<size_t>(i);
@@ -133,6 +138,7 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
   if (before.kind != now.kind) state.candidates.reach.clear();
 }
 
+// Eq. 2.3.
 double ledger_energy(const Scene& scene, const State& state) {
   const BlockSet& blocks = scene.blocks;
   double sum = 0;

@@ -11,7 +11,7 @@ namespace talus {
 
 namespace {
 
-// Moves block k; false when the result is no block any more.
+// Moves block k; false when the result is no block any more (eq. 2.1).
 bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
   const BlockRate& v = state.rate[k];
   if (!is_finite(v.a) || !is_finite(v.G)) return false;
@@ -29,6 +29,7 @@ bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
 }  // namespace
 
 void drift(const Scene& scene, double time_end, StepWork& work, State& state, StepReport& report) {
+  TALUS_ASSERT(work.rate_before.size() == state.rate.size() && time_end >= state.time);
   const Timed timed(work.profile.seconds[Profile::kIntegrate]);
   const BlockSet& blocks = scene.blocks;
   const double dt = work.clock.dt;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/model/joint_law.h"
 #include "talus/step/energy.h"
@@ -61,6 +62,7 @@ bool slivers_rule(const BlockSet& blocks) {
 }  // namespace
 
 Scene build_scene(Model model, Layout layout, Findings& findings) {
+  TALUS_ASSERT(layout.sound);
   Scene scene;
   scene.model = std::move(model);
   scene.layout = std::move(layout);

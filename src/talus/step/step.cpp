@@ -7,6 +7,8 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/blocks/validate.h"
+#include "talus/rows/validate_rows.h"
 #include "talus/step/parts.h"
 
 namespace talus {
@@ -24,8 +26,7 @@ void check_travel(const BlockSet& blocks, const State& state, double dt) {
     if (!(speed * dt <= kMostTravel * blocks.radius[i]))
       throw NumericalError(
           fmt::format("block \"{}\" moves {:.3g} times its own radius in one step at t = {:.9g} s, step {}: "
-                      "the motion has "
-                      "blown up, or the time step is far too long",
+                      "the motion has blown up, or the time step is far too long",
                       blocks.name[i], speed * dt / blocks.radius[i], state.time, state.step));
   }
 }
@@ -108,7 +109,7 @@ void remember(const Scene& scene, const StepWork& work, State& state) {
   remember_bolts(work.rows, work.clock, state);
 }
 
-// The recipe (theory 4.1).
+// The recipe (eq. 2.1).
 StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work,
                      State& state) {
   StepReport report;
@@ -145,12 +146,17 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
 }  // namespace
 
 BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
+  TALUS_ASSERT(work.rate_before.size() == state.rate.size() && i < state.rate.size());
   return state.dt_before > 0 ? mean(work.rate_before[i], state.rate[i]) : work.rate_before[i];
 }
 
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state) {
   StepReport report;
+  TALUS_ASSERT(dt > 0);
   work.workers.together([&] { report = take_kick(scene, settings, dt, work, state); });
+  TALUS_VALIDATE(scene.blocks);
+  TALUS_VALIDATE(state, scene.blocks);
+  TALUS_VALIDATE(work.rows, scene.blocks.count);
   return report;
 }
 

@@ -17,7 +17,7 @@ Polygon corners_now(const BlockSet& blocks, const State& state, size_t k, Vec2 o
   Polygon polygon;
   const int i = static_cast<int>(k);
   for (int v = 0; v < blocks.vertex_count(i); ++v)
-    polygon.push_back((blocks.centroid[k] - origin) + offset_now(state, k, blocks.corner(i, v)));
+    polygon.push_back((blocks.centroid[k] - origin) + offset_now(state, k, blocks.corner({i, v})));
   return polygon;
 }
 
@@ -53,6 +53,7 @@ void add_pieces(const Polygon& polygon, int block, Vec2 t, double length, double
 
 }  // namespace
 
+// Theory 4.21.
 BoltPath path_through(const BlockSet& blocks, const State& state, Vec2 from, Vec2 to, double least) {
   BoltPath path;
   const double length = norm(to - from);

@@ -156,7 +156,9 @@ void balance_bolts(State& state) {
   for (Bolt& bolt : state.bolts) balance(state, bolt);
 }
 
+// Theory 4.21.
 void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<BlockForce>& force) {
+  TALUS_ASSERT(force.size() == static_cast<size_t>(blocks.count));
   for (const Bolt& bolt : state.bolts) {
     if (bolt.anchored) continue;
     for (size_t j = 0; j < bolt.segments.size(); ++j) {
@@ -170,6 +172,7 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
   }
 }
 
+// Eq. 4.10.
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
                    const StepClock& clock, RowSet& rows) {
   for (size_t i = 0; i < state.bolts.size(); ++i) {
@@ -212,12 +215,14 @@ void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector
 }
 
 void remember_bolts(const RowSet& rows, const StepClock& clock, State& state) {
+  TALUS_ASSERT(clock.dt_kick > 0);
   size_t next = rows.range(Family::kBolt).begin;
   for (Bolt& bolt : state.bolts)
     for (BoltCrossing& c : bolt.crossings) {
       const Impulse& p = rows.impulse[next++];
       c.row = {p[0] / clock.dt_kick, p[1] / clock.dt_kick};
     }
+  TALUS_ASSERT(next == rows.range(Family::kBolt).end);
 }
 
 std::vector<BoltPart> bolt_parts(const BlockSet& blocks, const State& state) {

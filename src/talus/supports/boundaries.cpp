@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "talus/base/error.h"
 #include "talus/supports/medium.h"
 
 namespace talus {
@@ -148,7 +149,7 @@ class BoundaryMaker {
   std::map<std::pair<int, int>, const BoundaryInput*> owner_;  // of block edges
 };
 
-// The traction of the free field on a point: stress times normal times area [N].
+// The traction of the free field on a point: stress times normal times area [N] (theory 4.12).
 Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const State& state) {
   const FreeField& field = set.free_field;
   Vec2 force;
@@ -160,7 +161,7 @@ Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const Stat
   return force;
 }
 
-// Velocity of the medium behind the point as it would be without the blocks.
+// Velocity of the medium behind the point as it would be without the blocks (theory 4.11, 4.12).
 Vec2 medium_velocity(const Model& model, const BoundarySet& set, const BoundaryPoint& p,
                      const StepClock& clock, const std::vector<Vec2>& column_velocity) {
   if (p.column >= 0)
@@ -181,7 +182,9 @@ BoundarySet build_boundaries(const Model& model, const Layout& layout, const Blo
   return BoundaryMaker(model, layout, blocks, findings).make();
 }
 
+// Theory 4.11.
 void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State& state) {
+  TALUS_ASSERT(state.boundaries.size() == set.points.size());
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& p = set.points[i];
     if (is_static) {
@@ -197,9 +200,12 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
   std::fill(state.column_rate.begin(), state.column_rate.end(), Vec2{});
 }
 
+// Eq. 4.3.
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
                        const std::vector<BlockRate>& before, const StepClock& clock,
                        const std::vector<Vec2>& column_velocity, RowSet& rows) {
+  TALUS_ASSERT(state.boundaries.size() == set.points.size() &&
+               column_velocity.size() == state.column_rate.size());
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& point = set.points[i];
     if (!point.active) continue;

@@ -60,7 +60,8 @@ class ColumnMaker {
       const int block = block_between(nodes[i], nodes[i + 1]);
       if (failed_) return;
       std::string trouble;
-      const Ground g = ground_at(model_, layout_, block, material_behind(input_, layout_, block), trouble);
+      const Ground g =
+          ground_at(model_, layout_, shape_of(block), material_behind(input_, layout_, block), trouble);
       if (!trouble.empty())
         error(
             fmt::format("stands beside \"{}\", whose joints have stiffness but no one direction and spacing",
@@ -96,11 +97,13 @@ class ColumnMaker {
     return kept;
   }
 
+  const BlockShape& shape_of(int block) const { return layout_.blocks[static_cast<size_t>(block)]; }
+
   bool same_rock(int a, int b) const {
     if (a < 0 || b < 0) return true;  // told already
     std::string ignored;
-    const Ground p = ground_at(model_, layout_, a, material_behind(input_, layout_, a), ignored);
-    const Ground q = ground_at(model_, layout_, b, material_behind(input_, layout_, b), ignored);
+    const Ground p = ground_at(model_, layout_, shape_of(a), material_behind(input_, layout_, a), ignored);
+    const Ground q = ground_at(model_, layout_, shape_of(b), material_behind(input_, layout_, b), ignored);
     return p.density == q.density && p.stiffness == q.stiffness;
   }
 
@@ -187,6 +190,7 @@ class ColumnMaker {
 
 }  // namespace
 
+// Theory 4.12.
 void add_column(const Model& model, const Layout& layout, int boundary,
                 const std::vector<SelectedEdge>& edges, FreeField& field, Findings& findings) {
   ColumnMaker(model, layout, boundary, edges, findings).make(field);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -109,6 +111,7 @@ size_t element_at(const FreeField& field, const GroundColumn& c, double height) 
 
 }  // namespace
 
+// Theory 4.12.
 ColumnStep stable_step(const FreeField& field, bool lumped) {
   ColumnStep least;
   for (const GroundColumn& column : field.columns) {
@@ -126,8 +129,10 @@ ColumnStep stable_step(const FreeField& field, bool lumped) {
   return least;
 }
 
+// Eq. 4.4.
 void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
                   double damping_mass, bool lumped, const std::vector<Vec2>& acceleration, State& state) {
+  TALUS_ASSERT(state.column_rate.size() == field.height.size());
   for (const GroundColumn& c : field.columns) {
     const auto n = static_cast<size_t>(c.elements) + 1, first = static_cast<size_t>(c.first_node);
     std::vector<double> force[2] = {std::vector<double>(n), std::vector<double>(n)},
@@ -149,6 +154,7 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
   }
 }
 
+// Theory 4.12.
 std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,
                                     const std::vector<Vec2>& displacement) {
   const ColumnElement& e = field.elements[static_cast<size_t>(element)];

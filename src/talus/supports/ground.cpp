@@ -64,6 +64,7 @@ class JointFinder {
 
 }  // namespace
 
+// Eq. 4.5.
 Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfRock>& joints) {
   // compliance: of the rock, and (1/S) N^T Z N of each set, N from stress to traction, Z its 2 x 2 compliance
   const double d = rock.c11 * rock.c11 - rock.c12 * rock.c12;
@@ -89,10 +90,10 @@ Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfR
   return c;
 }
 
-std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, int block,
+std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, const BlockShape& block,
                                         std::string& trouble) {
   // groups are the blocks, the grids, the meshes, then what was cut, the regions first
-  const auto group = static_cast<size_t>(layout.blocks[static_cast<size_t>(block)].group);
+  const auto group = static_cast<size_t>(block.group);
   const size_t first_cut = static_cast<size_t>(layout.first_cut_group), blocks = model.blocks.size();
   JointFinder finder(model, trouble);
   if (group >= blocks && group - blocks < model.grids.size())
@@ -104,7 +105,8 @@ std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout
   return finder.sets;
 }
 
-Ground ground_at(const Model& model, const Layout& layout, int block, int material, std::string& trouble) {
+Ground ground_at(const Model& model, const Layout& layout, const BlockShape& block, int material,
+                 std::string& trouble) {
   const Material& m = model.materials[static_cast<size_t>(material)];
   return {m.density, jointed_stiffness(plane_moduli(m.young, m.poisson, model.plane),
                                        joints_around(model, layout, block, trouble))};

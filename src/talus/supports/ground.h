@@ -22,9 +22,9 @@ struct JointsOfRock {
 /// Rock with joints: compliances add up, hard joints add none.
 Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfRock>& joints);
 
-/// Joints with stiffness of the grid or region that a block belongs to.
+/// Joints with stiffness of the grid, mesh or region that a block belongs to.
 /// @param trouble  gets the name of what has such joints, but no one direction and spacing
-std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, int block,
+std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, const BlockShape& block,
                                         std::string& trouble);
 
 /// Density and moduli of the ground at a block, of another material if one is given.
@@ -32,6 +32,7 @@ struct Ground {
   double density = 0;  // [kg/m3]
   Stiffness stiffness{};
 };
-Ground ground_at(const Model& model, const Layout& layout, int block, int material, std::string& trouble);
+Ground ground_at(const Model& model, const Layout& layout, const BlockShape& block, int material,
+                 std::string& trouble);
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #include "talus/supports/loads.h"
 
+#include "talus/base/error.h"
 #include "talus/cut/selection.h"
 
 namespace talus {
@@ -39,6 +40,7 @@ void add_points(const LoadInput& load, int index, const Layout& layout, const Bl
 }  // namespace
 
 LoadSet build_loads(const Model& model, const Layout& layout, const BlockSet& blocks) {
+  TALUS_ASSERT(layout.blocks.size() == static_cast<size_t>(blocks.count));
   LoadSet set;
   for (size_t i = 0; i < model.loads.size(); ++i) {
     set.blocks.push_back(loaded_blocks(model.loads[i], layout));
@@ -59,8 +61,10 @@ std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, in
   return acceleration;
 }
 
+// Theory 4.16.
 void add_edge_and_point_loads(const BlockSet& blocks, const Model& model, const LoadSet& loads,
                               const State& state, double time, std::vector<BlockForce>& force) {
+  TALUS_ASSERT(force.size() == static_cast<size_t>(blocks.count));
   for (const LoadedPoint& p : loads.points) {
     if (!p.active) continue;
     const LoadInput& l = model.loads[static_cast<size_t>(p.load)];

@@ -1,5 +1,6 @@
 #include "talus/supports/supports.h"
 
+#include "talus/base/error.h"
 #include "talus/cut/selection.h"
 
 namespace talus {
@@ -17,8 +18,10 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
   return points;
 }
 
+// Theory 4, table of rows.
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
                       const State& state, const StepClock& clock, RowSet& rows) {
+  TALUS_ASSERT(state.supports.size() == points.size());
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].active) continue;
     const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
@@ -41,8 +44,10 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
   }
 }
 
+// Theory 4.2.
 void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
                   const StepClock& clock, std::vector<BlockRate>& rate) {
+  TALUS_ASSERT(rate.size() == static_cast<size_t>(blocks.count));
   for (size_t i = 0; i < rate.size(); ++i) {
     if (blocks.kind[i] == BlockKind::kFixed) rate[i] = {};
     if (blocks.kind[i] != BlockKind::kDriven) continue;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -102,14 +104,17 @@ class SideTier {
 
 }  // namespace
 
+// Theory 4.14.
 std::vector<TiePoint> tie_sides(const Model& model, const Layout& layout, const BlockSet& blocks,
                                 int boundary, const std::vector<SelectedEdge>& side,
                                 const std::vector<SelectedEdge>& opposite, Findings& findings) {
   return SideTier(model, layout, blocks, boundary, findings).tie(side, opposite);
 }
 
+// Theory 4.14.
 void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state,
                   const StepClock& clock, RowSet& rows) {
+  TALUS_ASSERT(state.ties.size() == ties.size());
   for (size_t i = 0; i < ties.size(); ++i) {
     const TiePoint& t = ties[i];
     if (!t.active) continue;

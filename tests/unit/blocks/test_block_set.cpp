@@ -100,7 +100,7 @@ TEST_CASE("mass properties of a block") {
     CHECK(b.inertia[0].yy == relative(mass * 1 / 12, 1e-14));
     CHECK(b.polar_inertia[0] == relative(mass * 5 / 12, 1e-14));
     CHECK(b.size[0] == relative(std::sqrt(2.0), 1e-14));
-    CHECK(b.corner(0, 2) == Vec2{1, 0.5});
+    CHECK(b.corner({0, 2}) == Vec2{1, 0.5});
     CHECK(b.vertex_count(0) == 4);
   }
   SUBCASE("lumped at the corners: three times the inertia, of deformable blocks only") {

@@ -40,8 +40,7 @@ std::vector<Contact> contacts_of(const State& state, int a, int b) {
 }
 
 bool bears_sideways(const Scene& scene, const State& state, const Contact& c) {
-  const CornerEdge over =
-      corner_over_edge(scene.blocks, state, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+  const CornerEdge over = corner_over_edge(scene.blocks, state, c.key.corner(), c.key.on());
   return std::abs(over.normal.x) > 0.1;
 }
 
@@ -112,8 +111,7 @@ TEST_CASE("an end of an interface keeps its memory when another corner comes to 
   for (Contact& c : state.contacts) {
     CHECK(c.face.side_lo >= 0);
     const auto end = static_cast<size_t>(c.face.end);
-    const CornerEdge over =
-        corner_over_edge(scene.blocks, state, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+    const CornerEdge over = corner_over_edge(scene.blocks, state, c.key.corner(), c.key.on());
     c.memory = Contact::kWhole, c.force = {1e3 + static_cast<double>(end), 10}, c.stretch = off[end];
     c.anchor = -over.along - off[end];  // edges of 1 m
   }
@@ -126,8 +124,7 @@ TEST_CASE("an end of an interface keeps its memory when another corner comes to 
                        [&](const Contact& o) { return o.key == c.key; }));
     CHECK(c.memory == Contact::kWhole);
     CHECK(c.force[0] == 1e3 + c.face.end);
-    const CornerEdge over =
-        corner_over_edge(scene.blocks, state, c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
+    const CornerEdge over = corner_over_edge(scene.blocks, state, c.key.corner(), c.key.on());
     // it moved by 2 mm to the left; along the tangent of the upper block's corners that is less, of the lower
     // one's more
     const double now = -over.along - c.anchor, moved = std::abs(now - off[static_cast<size_t>(c.face.end)]);

@@ -59,7 +59,7 @@ std::vector<std::pair<int, int>> close_now(const BlockSet& blocks, const State& 
     const auto k = static_cast<size_t>(i);
     std::vector<Vec2> corners;
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      corners.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner(i, v)));
+      corners.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner({i, v})));
     boxes.push_back(bounding_box(corners));
   }
   return close_pairs(boxes, margin);

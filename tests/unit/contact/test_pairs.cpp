@@ -102,8 +102,7 @@ std::vector<ContactKey> keys_of(const std::vector<Contact>& contacts) {
 std::vector<ContactKey> near(const Scene& scene, const State& state, const std::vector<Contact>& contacts) {
   std::vector<ContactKey> keys;
   for (const ContactKey& key : keys_of(contacts))
-    if (corner_over_edge(scene.blocks, state, key.block_a, key.vertex, key.block_b, key.edge).gap <
-        0.5 * kMargin)
+    if (corner_over_edge(scene.blocks, state, key.corner(), key.on()).gap < 0.5 * kMargin)
       keys.push_back(key);
   return keys;
 }
@@ -112,7 +111,7 @@ std::vector<Vec2> corners_now(const Scene& scene, const State& state, int i) {
   std::vector<Vec2> corners;
   const auto k = static_cast<size_t>(i);
   for (int v = 0; v < scene.blocks.vertex_count(i); ++v)
-    corners.push_back(scene.blocks.centroid[k] + offset_now(state, k, scene.blocks.corner(i, v)));
+    corners.push_back(scene.blocks.centroid[k] + offset_now(state, k, scene.blocks.corner({i, v})));
   return corners;
 }
 

@@ -126,7 +126,7 @@ TEST_CASE("joints: a named pair goes before a grid's own joint and before the de
   model.contact_pairs = {{"g", "a", 7, {}}};
   const Layout layout = layout_of(model);
   const int a = 0, b = 1, g = 2, g2 = 3, h = 4, h2 = 5;  // blocks
-  const auto joint = [&layout](int i, int j) { return layout.joint_at(i, -1, j, 0); };
+  const auto joint = [&layout](int i, int j) { return layout.joint_at({i, -1}, {j, 0}); };
   CHECK(joint(a, g) == 7);
   CHECK(joint(g, a) == 7);
   CHECK(joint(g, g2) == 5);
@@ -135,7 +135,7 @@ TEST_CASE("joints: a named pair goes before a grid's own joint and before the de
   CHECK(joint(g, h) == 3);
   CHECK(joint(b, g) == 3);
   model.default_joint = -1;
-  CHECK(layout_of(model).joint_at(a, -1, b, 0) == -1);
+  CHECK(layout_of(model).joint_at({a, -1}, {b, 0}) == -1);
 }
 
 TEST_CASE("an edge support holds the corners of edges on the segment, not lone corners") {

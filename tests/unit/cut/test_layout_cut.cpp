@@ -116,12 +116,13 @@ TEST_CASE("layout of a cut: every edge has the joint of its trace, else of its r
   // two blocks that meet: the joint of the edge, unless the pair of groups has one
   const int a = block_holding(layout, {3, 2}), b = block_holding(layout, {5, 2});
   const auto k = static_cast<int>(edge_through(layout, {3, 2}, {4, 2}));
-  CHECK(layout.joint_at(a, k, b, -1) == 3);
-  CHECK(layout.joint_at(b, -1, a, k) == 3);
-  CHECK(layout.joint_at(a, -1, b, -1) == 2);
+  CHECK(layout.joint_at({a, k}, {b, -1}) == 3);
+  CHECK(layout.joint_at({b, -1}, {a, k}) == 3);
+  CHECK(layout.joint_at({a, -1}, {b, -1}) == 2);
   model.contact_pairs.push_back({"rock", "ore", 5, {}});
   const Layout with_pair = layout_of(model);
-  CHECK(with_pair.joint_at(block_holding(with_pair, {1, 2}), 0, block_holding(with_pair, {1, 6}), 0) == 5);
+  CHECK(with_pair.joint_at({block_holding(with_pair, {1, 2}), 0}, {block_holding(with_pair, {1, 6}), 0}) ==
+        5);
 }
 
 TEST_CASE("layout of a cut: groups are regions and openings, names are theirs and the number") {
@@ -181,7 +182,7 @@ TEST_CASE("layout of a cut: removed rock leaves no glue on the walls it leaves")
   const Layout layout = layout_of(model);
   const int rock = block_holding(layout, {4, 1});
   const auto floor = static_cast<int>(edge_through(layout, {4, 1}, {4, 2}));
-  CHECK(layout.joint_at(rock, floor, 0, 0) == -1);
+  CHECK(layout.joint_at({rock, floor}, {0, 0}) == -1);
 }
 
 TEST_CASE("layout of a cut: flat corners are no corners, those where another trace begins are") {

@@ -121,7 +121,7 @@ TEST_CASE("mesh: elements are blocks, surfaces give materials and groups, curves
         if (x.polygon[ea] == y.polygon[(eb + 1) % y.polygon.size()] &&
             x.polygon[(ea + 1) % x.polygon.size()] == y.polygon[eb])
           return c.model.joints[static_cast<size_t>(
-              c.layout.joint_at(a, static_cast<int>(ea), b, static_cast<int>(eb)))];
+              c.layout.joint_at({a, static_cast<int>(ea)}, {b, static_cast<int>(eb)}))];
       }
     }
     return JointProperty{};
@@ -151,7 +151,7 @@ TEST_CASE("mesh: its outside meets other blocks by the joint of [contact], its i
   CHECK(c.findings.error_count() == 0);
   const auto name = [&c](int joint) { return c.model.joints[static_cast<size_t>(joint)].name; };
   REQUIRE(c.layout.blocks[0].name == "b");
-  CHECK(name(c.layout.joint_at(0, 0, 1, 2)) == "weak");  // floor of b on the top of the square
+  CHECK(name(c.layout.joint_at({0, 0}, {1, 2})) == "weak");  // floor of b on the top of the square
   CHECK(name(c.layout.blocks[1].edge_joint[1]) == "(glued)");
   CHECK(name(c.layout.blocks[1].edge_joint[3]) == "weak");
 }

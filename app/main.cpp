@@ -41,9 +41,8 @@ using talus::app::ModelArguments;
 void add_model_arguments(CLI::App& verb, ModelArguments& args) {
   verb.add_option("MODEL", args.file, "model file (TOML)")->required();
   verb.add_option("--set", args.overrides,
-                  "override a key, for example --set material.bar.young=\"1 GPa\"; --set new:KEY=VALUE where "
-                  "the table is "
-                  "to be made (repeatable)")
+                  "override a key, for example --set material.bar.young=\"1 GPa\"; --set new:KEY=VALUE "
+                  "where the table is to be made (repeatable)")
       ->allow_extra_args(false);
 }
 

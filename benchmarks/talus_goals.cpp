@@ -73,10 +73,8 @@ void exact(const std::string& name, int threads) {
   const Spread r = spread(ratio), k = spread(sweeps), e = spread(error), p = spread(plain_error);
   fmt::print(
       "exact {}: step to 1e-8 / step of 20 sweeps = {:.3g} ({:.3g} to {:.3g}); sweeps {:.0f} ({:.0f} to "
-      "{:.0f}); "
-      "error {:.2g} (at most {:.2g}) of the smallest block against {:.2g} ({:.2g}) with 20 sweeps; {} of 285 "
-      "steps "
-      "above 1e-8\n",
+      "{:.0f}); error {:.2g} (at most {:.2g}) of the smallest block against {:.2g} ({:.2g}) with 20 sweeps; "
+      "{} of 285 steps above 1e-8\n",
       name, r.median, r.min, r.max, k.median, k.min, k.max, e.median, e.max, p.median, p.max, missed);
 }
 
@@ -108,8 +106,7 @@ void rest(const std::string& name, int threads) {
   }
   fmt::print(
       "rest {}: unbalanced {:.2g} after {} steps, {:.1f} sweeps in the last; balance max {:.2g}, coulomb "
-      "{:.2g}, "
-      "overlap beyond slop or closure {:.2g} of the block\n",
+      "{:.2g}, overlap beyond slop or closure {:.2g} of the block\n",
       name, engine.report().unbalanced, n, static_cast<double>(engine.report().solve.iterations),
       law.balance_max, law.coulomb_max, beyond);
 }

@@ -187,8 +187,8 @@ std::string millimetres(double metres) { return fmt::format("{:.1f}", 1e3 * metr
 void print_motion(const std::vector<Run>& runs) {
   fmt::print(
       "| run | largest relative to the base: crown, right, invert, left [m] | least, most of all [m] | left "
-      "at the end: "
-      "crown, right, invert, left [mm] | largest relative to their mean [mm] | left at the end [mm] |\n"
+      "at the end: crown, right, invert, left [mm] | largest relative to their mean [mm] | left at the end "
+      "[mm] |\n"
       "|---|---|---|---|---|---|\n");
   for (const Run& run : runs) {
     std::string peaks, left, own, own_left;
@@ -215,9 +215,8 @@ void print_motion(const std::vector<Run>& runs) {
 void print_damage(const std::vector<Run>& runs) {
   fmt::print(
       "\n| run | height lost: by digging; by shaking most, left [mm] | width | largest slip [mm] before, "
-      "after the "
-      "shaking, set, at | joints that slipped; by over 0.1 mm | faces broken | bolts: tension before, after "
-      "the shaking [kN] (ruptured) |\n"
+      "after the shaking, set, at | joints that slipped; by over 0.1 mm | faces broken | bolts: tension "
+      "before, after the shaking [kN] (ruptured) |\n"
       "|---|---|---|---|---|---|---|\n");
   for (const Run& run : runs) {
     const auto closure = [&](const std::string& monitor) {
@@ -245,9 +244,8 @@ void print_damage(const std::vector<Run>& runs) {
 void print_health(const std::vector<Run>& runs, const Ground& ground) {
   fmt::print(
       "\n| run | step [ms] | blocks clamped (most) | steps | sweeps a step | wall [min] | contact error [m] "
-      "| energy left "
-      "over | fastest change after {:g} s: absolute, to base, to mean [m/s] | free field off the column [%] "
-      "|\n"
+      "| energy left over | fastest change after {:g} s: absolute, to base, to mean [m/s] | free field off "
+      "the column [%] |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n",
       kQuiet);
   for (const Run& run : runs) {

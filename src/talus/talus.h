@@ -1,11 +1,21 @@
 #pragma once
 // The public face of the library: read a model, run it, look at what happens at every step.
 //
+//   struct Fastest : talus::Observer {
+//     void at(const talus::Instant& now) override {
+//       for (size_t i = 0; i < now.state.rate.size(); ++i)
+//         speed = std::max(speed, talus::norm(talus::rate_now(now.work, now.state, i).a));  // [m/s]
+//     }
+//     double speed = 0;
+//   };
+//
 //   talus::Findings findings("model.toml", text);
-//   auto run = talus::prepare_run("model.toml", text, {}, findings);   // throws InputError with all findings
+//   talus::PreparedRun run = talus::prepare_run("model.toml", text, {}, findings);  // or InputError
 //   talus::State state = talus::start_state(run.scene);
-//   MyObserver observer;                                               // or talus::Recorder for a result
-//   folder talus::RunResult result = talus::run_stages(run.scene, run.plans, state, observer);
+//   Fastest observer;  // or a talus::Recorder, which writes a folder of results
+//   talus::RunResult result = talus::run_stages(run.scene, run.plans, state, observer);
+//
+// Compiled and run by tests/unit/test_talus_h.cpp.
 
 #include "talus/base/error.h"
 #include "talus/base/version.h"

@@ -119,9 +119,8 @@ TEST_CASE("real trace maps: live joints, short cuts, no crumbs") {
       return "[[map]]\nname = \"" + what.substr(0, 1) + "\"\nfile = \"" + base + "_" + what +
              ".geojson\"\njoint = \"j\"\nbecomes = \"" + becomes + "\"\n";
     };
-    std::ofstream(out / "m.toml") << "talus = 1\n[material.r]\ndensity = 2700\nyoung = \"10 GPa\"\npoisson = "
-                                     "0.25\n[joint.j]\nfriction_angle = "
-                                     "\"30 deg\"\n" +
+    std::ofstream(out / "m.toml") << "talus = 1\n[material.r]\ndensity = 2700\nyoung = \"10 GPa\"\npoisson "
+                                     "= 0.25\n[joint.j]\nfriction_angle = \"30 deg\"\n" +
                                          map("area", "outline") + "material = \"r\"\n" +
                                          map("traces", "joints");
     const Outcome o = shell(out, "$talus cut m.toml -o cut");

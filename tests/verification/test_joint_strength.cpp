@@ -30,8 +30,7 @@ std::string shear_text(const std::string& joint, const std::string& push, const 
   if (!push.empty())
     text += fmt::format(
         "[history.push]\n{}\n[[support]]\nname = \"push\"\nedge = [[0,0],[0,1]]\nx = {{ displacement = "
-        "\"push\" "
-        "}}\ny = \"free\"\n",
+        "\"push\" }}\ny = \"free\"\n",
         push);
   if (!pull.empty())
     text += fmt::format(

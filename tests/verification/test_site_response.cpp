@@ -295,8 +295,7 @@ TEST_CASE("free field of jointed ground: compliances of joints spread over the c
   // every face opens and slips elastically, none breaks; shear then runs at 0.79 of its speed in whole soil
   const std::string soft =
       "[joint.soft]\nnormal_stiffness = \"2 GPa/m\"\nshear_stiffness = \"200 MPa/m\"\ncohesion = \"1 "
-      "GPa\"\ntensile_strength = "
-      "\"1 GPa\"\n";
+      "GPa\"\ntensile_strength = \"1 GPa\"\n";
   for (const bool up : {false, true}) {
     std::string grid = grid_of(8, 10);
     grid.replace(grid.find("\"glue\""), 6, "\"soft\"");

@@ -518,8 +518,7 @@ class Check {
     if (frame_.step > 0)
       what += fmt::format(
           " (if the two have just hit each other, steps of {:.3g} s are too long for this stiffness: give "
-          "the "
-          "stage a smaller time_step)",
+          "the stage a smaller time_step)",
           frame_.step);
     out.findings.push_back(finding(Defect::kNormalLaw, larger > kNormalInvalid * smaller, pair.a, pair.b,
                                    place, larger / smaller, std::move(what)));

@@ -274,8 +274,7 @@ void add_closing(double closing, double friction, double largest, bool lifting, 
               {},
               closing / largest,
               fmt::format("closing contacts have given {:.4g} J by t = {:.6g} s, {:.2g} % of the largest "
-                          "term of the ledger; "
-                          "they can only take",
+                          "term of the ledger; they can only take",
                           closing, time, 100 * closing / largest)});
 }
 

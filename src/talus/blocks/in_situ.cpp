@@ -2,6 +2,7 @@
 
 namespace talus {
 
+// Eq. 1.6.
 Mat2 in_situ_stress(const InSituInput& input, Vec2 gravity, double height) {
   if (!input.with_depth) return input.stress;
   const double depth = input.level - height;

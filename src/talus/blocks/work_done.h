@@ -1,5 +1,5 @@
 #pragma once
-// Who does work on the blocks, and how much: the ledger's list of causes. Theory: docs/theory.md section 10.
+// Who does work on the blocks, and how much: the ledger's list of causes. Theory: docs/theory.md section 8.
 
 #include <array>
 #include <cstddef>

@@ -7,6 +7,7 @@ const char* state_name(JointState state) {
   return kName[static_cast<int>(state)];
 }
 
+// Theory 4.19.
 JointState joint_state(bool touched, double normal_force, double slip, double opening, double noticed) {
   if (!touched) return JointState::kApart;
   if (normal_force <= 0 && opening > noticed) return JointState::kOpen;

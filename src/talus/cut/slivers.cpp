@@ -94,12 +94,14 @@ class SliverTreatment {
     return table_.limits[static_cast<size_t>(cut_.blocks[static_cast<size_t>(i)].region)];
   }
 
+  // Theory 10.3.
   bool is_sliver(int i) const {
     const Measure& m = measures_[static_cast<size_t>(i)];
     const SliverLimits& limits = limits_of(i);
     return judged_[static_cast<size_t>(i)] && (m.area < limits.area || m.width < limits.width || is_hair(i));
   }
 
+  // Theory 10.3.
   bool is_hair(int i) const {
     const Measure& m = measures_[static_cast<size_t>(i)];
     return judged_[static_cast<size_t>(i)] &&
@@ -187,7 +189,8 @@ class SliverTreatment {
   }
 
   // Blocks that touch no free face, opening or support, and lines that reach the outline or an opening.
-  // Beyond a side with an absorbing boundary the rock goes on: it is an end of lines, but no free face.
+  // Beyond a side with an absorbing boundary the rock goes on: it is an end of lines, but no free face
+  // (theory 10.3).
   void find_inside() {
     std::vector<bool> is_free(cut_.point.size(), false), is_end(cut_.point.size(), false);
     for (size_t e = 0; e < cut_.edge.size(); ++e) {
@@ -236,6 +239,7 @@ class SliverTreatment {
 
   // -------------------------------------------------------------------------------------------- what may go
 
+  // Theory 10.3.
   bool may_open(Rule rule, int edge, int i, int facet) const {
     const Origin& from = origin(edge);
     const bool is_glued = from.joint == model_.bonded_joint;

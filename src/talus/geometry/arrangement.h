@@ -26,8 +26,7 @@ struct Arrangement {
   std::vector<Polyline> dead_ends;  // noded lines, or parts of them, that bound no face [m]
   std::vector<Polyline> cuts;       // that opened holes; as sources they are numbered after the lines
   int opened = 0;                   // faces with holes that were opened
-  std::vector<std::vector<Polyline>>
-      rings_of_holed;  // faces with holes that were not: outer ring, then holes
+  std::vector<std::vector<Polyline>> rings_of_holed;  // faces with holes that were not: outer ring, holes
 };
 
 /// Width of the grid for a model of size `extent` [m]: `wanted` rounded down to a power of two, or 2^-20 m

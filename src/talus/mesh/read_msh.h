@@ -28,9 +28,8 @@ struct MeshEdge {
 struct Mesh {
   std::vector<Vec2> node;  // in units of the file
   std::vector<MeshElement> elements;
-  std::vector<MeshEdge> edges;  // lines of physical groups
-  std::vector<std::string> surface_groups,
-      curve_groups;  // names; a group without one is called by its number
+  std::vector<MeshEdge> edges;                            // lines of physical groups
+  std::vector<std::string> surface_groups, curve_groups;  // names; a group without one has its number
 };
 
 /// Reads the text of a .msh file. Triangles and quadrilaterals become elements, turned counter-clockwise;

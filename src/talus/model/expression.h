@@ -8,8 +8,7 @@ namespace talus {
 
 /// Values of a formula in `t` at the given times [s].
 /// @param trouble  set to what is wrong with the formula, with its position, or to the first time at which
-/// its
-///                 value is not finite; the result is then empty
+///                 its value is not finite; the result is then empty
 std::vector<double> evaluate_expression(const std::string& formula, const std::vector<double>& times,
                                         std::string& trouble);
 

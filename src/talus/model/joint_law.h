@@ -51,7 +51,7 @@ class JointLaw {
   bool holds() const { return bonded_ || can_break_; }
 
   bool dilates() const { return dilation_ != 0; }
-  /// Rise after a slip of `slip`, both ways added up (4.8) [m].
+  /// Rise after a slip of `slip`, both ways added up [m] (eq. 4.8).
   double rise(double slip) const { return dilates() ? dilation_ * std::min(slip, dilation_slip_) : 0; }
 
   /// Whether it has a stiffness: k = 0 normal, 1 tangential.

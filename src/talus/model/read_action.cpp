@@ -130,8 +130,7 @@ class ActionReader : private SectionReader {
     const bool input = f.given("velocity_x") || f.given("velocity_y");
     const std::string within =
         "\"within\" is the real motion of the base, waves that come down included; a compliant base finds "
-        "that "
-        "out itself";
+        "that out itself";
     if (f.get<std::string>("motion") == "within")
       error(
           f, "motion", within,

@@ -18,8 +18,7 @@ std::vector<SectionSpec> action_sections() {
          .default_text = "\"exact\"",
          .choices = {"exact", "smoothed"},
          .doc = "`exact`: the contact law. `smoothed`: the paper's approximation (its eqs 26-29 with units "
-                "corrected), "
-                "for comparison only: its friction creeps."},
+                "corrected), for comparison only: its friction creeps."},
         {.name = "alpha",
          .range = {.min = 0, .max = 1},
          .default_text = "0.2",

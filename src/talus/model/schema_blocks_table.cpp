@@ -52,17 +52,14 @@ std::vector<SectionSpec> block_sections() {
          .type = K::kMotion,
          .default_text = "\"fixed\"",
          .doc = "Driven blocks: rotation about the centroid, counter-clockwise (velocity in rad/s, "
-                "displacement in "
-                "rad)."}}},
+                "displacement in rad)."}}},
 
       {"mesh",
        SectionShape::kList,
        "A plane mesh of Gmsh (.msh 2.2 or 4.1, ASCII) whose triangles and quadrilaterals are blocks, called "
        "NAME[i] in the order of the file from 0. A physical surface called like a material has it, and its "
-       "blocks "
-       "are the group NAME-SURFACE; a physical curve called like a joint has it, and supports, boundaries "
-       "and "
-       "loads follow it by its name (`along`).",
+       "blocks are the group NAME-SURFACE; a physical curve called like a joint has it, and supports, "
+       "boundaries and loads follow it by its name (`along`).",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -100,8 +97,7 @@ std::vector<SectionSpec> block_sections() {
       {"grid",
        SectionShape::kList,
        "A rectangle divided into equal blocks. Blocks are named NAME[column,row] or NAME[column,row,k] "
-       "(triangles: k "
-       "= 0 bottom, 1 right, 2 top, 3 left), counted from 0 at the lower left.",
+       "(triangles: k = 0 bottom, 1 right, 2 top, 3 left), counted from 0 at the lower left.",
        {{.name = "name",
          .type = K::kText,
          .required = true,

@@ -11,9 +11,8 @@ SectionSpec boundary_section() {
       "boundary",
       SectionShape::kList,
       "An edge of the model behind which the ground goes on: it lets waves out, and in. Taken are block "
-      "edges "
-      "with nothing on their other side; each gives half its length to either end corner. Give `edge` or "
-      "`along`.",
+      "edges with nothing on their other side; each gives half its length to either end corner. Give `edge` "
+      "or `along`.",
       {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
        use_key(),
        {.name = "kind",
@@ -50,16 +49,15 @@ SectionSpec boundary_section() {
         .choices = {"upgoing", "outcrop", "within"},
         .doc =
             "What the histories of velocity are. `upgoing`: the incoming wave alone. `outcrop`: the motion "
-            "of "
-            "the bare half-space, twice the upgoing wave, and halved here. `within` is refused with the way "
-            "out: the real motion of the base belongs to a support."},
+            "of the bare half-space, twice the upgoing wave, and halved here. `within` is refused with the "
+            "way out: the real motion of the base belongs to a support."},
        {.name = "static",
         .type = K::kChoice,
         .default_text = "\"fixed\"",
         .choices = {"fixed", "roller", "free"},
         .doc = "How the edge stands in static stages: `fixed`, `roller` (along its normal only) or `free`. "
-               "At the "
-               "change to a dynamic stage the reactions stay as constant forces. Not for tied sides."},
+               "At the change to a dynamic stage the reactions stay as constant forces. Not for tied "
+               "sides."},
        {.name = "to",
         .type = K::kName,
         .refers_to = "side, opening, fault or joint set",

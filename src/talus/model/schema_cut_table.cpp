@@ -9,8 +9,8 @@ std::vector<SectionSpec> cut_sections() {
       {"region",
        SectionShape::kList,
        "A piece of the section that joints, faults, masonry or a sub-division cut into blocks. Its blocks "
-       "are named "
-       "NAME[number]. Where regions overlap, the later one in the file holds, and an arch before any.",
+       "are named NAME[number]. Where regions overlap, the later one in the file holds, and an arch before "
+       "any.",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -23,8 +23,8 @@ std::vector<SectionSpec> cut_sections() {
         {.name = "sides",
          .type = K::kTexts,
          .doc = "One name per edge of the polygon, the first for the edge from the first to the second "
-                "corner; a name "
-                "may come more than once. None: NAME-1, NAME-2 ... Supports take these names (`along`)."},
+                "corner; a name may come more than once. None: NAME-1, NAME-2 ... Supports take these names "
+                "(`along`)."},
         {.name = "material",
          .type = K::kName,
          .required = true,
@@ -54,8 +54,7 @@ std::vector<SectionSpec> cut_sections() {
       {"arch",
        SectionShape::kList,
        "A ring of equal voussoirs with straight faces: a region of its own. Its sides are called "
-       "NAME-intrados, "
-       "NAME-extrados, NAME-start and NAME-end.",
+       "NAME-intrados, NAME-extrados, NAME-start and NAME-end.",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -109,12 +108,10 @@ std::vector<SectionSpec> cut_sections() {
       {"joint_set",
        SectionShape::kList,
        "Parallel joints. Give `angle`, or `dip` and `dip_direction` with `cut.section_azimuth`. Quantities "
-       "that scatter "
-       "are written `{ mean = \"3 m\", normal = \"0.5 m\" }` (standard deviation), `{ mean = \"3 m\", "
-       "uniform = \"1 m\" "
-       "}` (half width) or `{ exponential = \"3 m\" }` (mean); values that must be positive and are not are "
-       "drawn again. "
-       "Ends that stop inside a block are taken back to the last crossing.",
+       "that scatter are written `{ mean = \"3 m\", normal = \"0.5 m\" }` (standard deviation), `{ mean = "
+       "\"3 m\", uniform = \"1 m\" }` (half width) or `{ exponential = \"3 m\" }` (mean); values that must "
+       "be positive and are not are drawn again. Ends that stop inside a block are taken back to the last "
+       "crossing.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
         {.name = "angle",
          .type = K::kScattered,
@@ -137,8 +134,7 @@ std::vector<SectionSpec> cut_sections() {
          .range = kPositive,
          .required = true,
          .doc = "Distance between neighbours, across: with `angle` that of the traces, with `dip` the true "
-                "one of the "
-                "planes."},
+                "one of the planes."},
         {.name = "trace_length",
          .type = K::kScattered,
          .dimension = D::kLength,
@@ -207,16 +203,15 @@ std::vector<SectionSpec> cut_sections() {
       {"opening",
        SectionShape::kList,
        "An excavation: its boundary always becomes block edges, and its rock is taken out, or kept as a "
-       "group of its "
-       "own. Curves are drawn with equal-area segments: the polygon has the area of the curve.",
+       "group of its own. Curves are drawn with equal-area segments: the polygon has the area of the curve.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
         {.name = "shape",
          .type = K::kChoice,
          .required = true,
          .choices = {"circle", "horseshoe", "polygon"},
          .doc = "`circle`: `center`, `diameter`. `horseshoe`: half a circle over straight walls and a flat "
-                "floor: "
-                "`center` of the half circle, `width`, `height` from floor to crown. `polygon`: `polygon`."},
+                "floor: `center` of the half circle, `width`, `height` from floor to crown. `polygon`: "
+                "`polygon`."},
         {.name = "center",
          .type = K::kVector,
          .dimension = D::kLength,
@@ -238,8 +233,7 @@ std::vector<SectionSpec> cut_sections() {
          .default_text = "\"removed\"",
          .choices = {"removed", "kept"},
          .doc = "`removed`: taken out before the run. `kept`: stays, as the blocks NAME[number]. Numbers of "
-                "all other "
-                "blocks are the same either way."},
+                "all other blocks are the same either way."},
         {.name = "joint",
          .type = K::kName,
          .refers_to = "joint",
@@ -248,8 +242,7 @@ std::vector<SectionSpec> cut_sections() {
       {"masonry",
        SectionShape::kList,
        "Running bond in a region: courses of equal blocks, every second one shifted. Its joints are called "
-       "NAME-bed and "
-       "NAME-head.",
+       "NAME-bed and NAME-head.",
        {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
         {.name = "region",
          .type = K::kName,
@@ -329,8 +322,7 @@ std::vector<SectionSpec> cut_sections() {
          .range = kPositive,
          .default_text = "\"auto\"",
          .doc = "Corners lie on a grid of this width, rounded down to a power of two; `auto`: 2^-20 m, or "
-                "finer for "
-                "models below 95 m (1e-8 of their size)."},
+                "finer for models below 95 m (1e-8 of their size)."},
         {.name = "slivers",
          .type = K::kChoice,
          .default_text = "\"keep\"",
@@ -367,8 +359,7 @@ std::vector<SectionSpec> cut_sections() {
         {.name = "blocks",
          .type = K::kText,
          .doc = "A blocks file of an earlier `talus cut` of the same regions and joints, relative to the "
-                "model file: it "
-                "is read instead of cutting again."}}},
+                "model file: it is read instead of cutting again."}}},
   };
 }
 

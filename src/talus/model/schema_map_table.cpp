@@ -12,11 +12,9 @@ std::vector<SectionSpec> map_sections() {
       {"map",
        SectionShape::kList,
        "Features of a drawing or map (DXF, shapefile, GeoPackage, GeoJSON) that become sections of the "
-       "model: "
-       "`talus cut` reads it, replaces every `[[map]]` by the sections that come of it and writes the result "
-       "as "
-       "`model.toml`, which every verb takes. Features that no `[[map]]` takes are listed, with the reason. "
-       "Where several would take one, the first in the file has it.",
+       "model: `talus cut` reads it, replaces every `[[map]]` by the sections that come of it and writes "
+       "the result as `model.toml`, which every verb takes. Features that no `[[map]]` takes are listed, "
+       "with the reason. Where several would take one, the first in the file has it.",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -47,8 +45,8 @@ std::vector<SectionSpec> map_sections() {
          .doc =
              "`joints`: one `[[traces]]`. `fault`: a `[[fault]]` per line. `outline`, `opening`, `stone`: a "
              "`[[region]]`, an `[[opening]]`, a `[[block]]` per closed line or area; an area has no holes. "
-             "`bolt`: a `[[bolt]]` per line, from its first point. "
-             "`monitor`: a point monitor per point. `ignored`: nothing, without a warning."},
+             "`bolt`: a `[[bolt]]` per line, from its first point. `monitor`: a point monitor per point. "
+             "`ignored`: nothing, without a warning."},
         {.name = "joint",
          .type = K::kName,
          .refers_to = "joint",

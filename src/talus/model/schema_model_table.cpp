@@ -23,9 +23,8 @@ std::vector<SectionSpec> model_sections() {
         {.name = "folder",
          .type = K::kText,
          .default_text = "\"\"",
-         .doc = "Folder that relative paths in this file count from, itself relative to the file; \"\": that "
-                "of the "
-                "file. `talus cut` gives it to the model that it makes of one with maps."}}},
+         .doc = "Folder that relative paths in this file count from, itself relative to the file; \"\": "
+                "that of the file. `talus cut` gives it to the model that it makes of one with maps."}}},
 
       {"model",
        SectionShape::kTable,
@@ -50,10 +49,8 @@ std::vector<SectionSpec> model_sections() {
          .default_text = "\"consistent\"",
          .choices = {"consistent", "lumped"},
          .doc = "Moments of inertia of deformable blocks: exact, or three times as large (bonded continua "
-                "only: a "
-                "wave along a bar is then exact at Courant number 1, a free block bounces with e = 0.5 "
-                "instead of "
-                "0.75)."}}},
+                "only: a wave along a bar is then exact at Courant number 1, a free block bounces with e = "
+                "0.5 instead of 0.75)."}}},
 
       {"material",
        SectionShape::kNamed,
@@ -81,8 +78,7 @@ std::vector<SectionSpec> model_sections() {
          .default_text = "\"frictional\"",
          .choices = {"frictional", "bonded"},
          .doc = "`bonded`: an artificial joint that never opens or slips (sub-division of one body). "
-                "`frictional`: "
-                "opens and slips by the strengths below."},
+                "`frictional`: opens and slips by the strengths below."},
         {.name = "friction_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532, .max_open = false},
@@ -95,8 +91,7 @@ std::vector<SectionSpec> model_sections() {
          .usual = {.min = 100, .max = 1e9},
          .default_text = "\"0 Pa\"",
          .doc = "Cohesion of faces that touch at the start; lost for good, with the tensile strength, when "
-                "the face "
-                "breaks."},
+                "the face breaks."},
         {.name = "tensile_strength",
          .dimension = D::kStress,
          .range = kNonNegative,
@@ -108,9 +103,8 @@ std::vector<SectionSpec> model_sections() {
          .range = kNonNegative,
          .usual = {.min = 1e4, .max = 1e15},
          .default_text = "\"0 Pa/m\"",
-         .doc = "Elastic stiffness kn of the joint per area; 0: hard. Give it to natural rock joints: forces "
-                "are then "
-                "unique. It costs no time step."},
+         .doc = "Elastic stiffness kn of the joint per area; 0: hard. Give it to natural rock joints: "
+                "forces are then unique. It costs no time step."},
         {.name = "shear_stiffness",
          .dimension = D::kStiffness,
          .range = kNonNegative,
@@ -120,15 +114,13 @@ std::vector<SectionSpec> model_sections() {
         {.name = "restitution",
          .range = {.min = 0, .max = 1},
          .doc = "Ratio of the normal velocities after and before a touch; none: what the scheme gives "
-                "(docs/theory.md "
-                "7.1). Only for hard joints."},
+                "(docs/theory.md 7.1). Only for hard joints."},
         {.name = "dilation_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532},
          .default_text = "\"0 deg\"",
-         .doc = "Rise of the joint as it slips, either way: the faces part by tan(dilation_angle) x slip. At "
-                "most the "
-                "residual friction angle, else slip would give energy."},
+         .doc = "Rise of the joint as it slips, either way: the faces part by tan(dilation_angle) x slip. "
+                "At most the residual friction angle, else slip would give energy."},
         {.name = "dilation_slip",
          .dimension = D::kLength,
          .range = kPositive,
@@ -136,9 +128,8 @@ std::vector<SectionSpec> model_sections() {
         {.name = "residual_friction_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532},
-         .doc = "Friction angle once a face that touched at the start has slipped or opened, and of all that "
-                "comes "
-                "into touch later; none: `friction_angle`."},
+         .doc = "Friction angle once a face that touched at the start has slipped or opened, and of all "
+                "that comes into touch later; none: `friction_angle`."},
         {.name = "residual_cohesion",
          .dimension = D::kStress,
          .range = kNonNegative,
@@ -153,11 +144,9 @@ std::vector<SectionSpec> model_sections() {
 
       {"history",
        SectionShape::kNamed,
-       "A quantity over time, linear between its points, held before the first and after the last. Its clock "
-       "runs in dynamic "
-       "stages only and starts with the first of them. Give "
-       "`time` and "
-       "`value`, or `expression` with `duration`, or `file` with `column`.",
+       "A quantity over time, linear between its points, held before the first and after the last. Its "
+       "clock runs in dynamic stages only and starts with the first of them. Give `time` and `value`, or "
+       "`expression` with `duration`, or `file` with `column`.",
        {{.name = "time", .type = K::kNumbers, .dimension = D::kTime, .doc = "Rising times [s]."},
         {.name = "value",
          .type = K::kNumbers,
@@ -178,13 +167,11 @@ std::vector<SectionSpec> model_sections() {
         {.name = "file",
          .type = K::kText,
          .doc = "A table (CSV with a column \"time [s]\") or a strong-motion record (PEER, K-NET, JMA); the "
-                "path counts "
-                "from the folder of the model. Its content belongs to the hash of the model."},
+                "path counts from the folder of the model. Its content belongs to the hash of the model."},
         {.name = "column",
          .type = K::kText,
          .doc = "With `file`: title of the column, or its quantity (acceleration, velocity, displacement); "
-                "none: the "
-                "only one beside the time. Values become SI by the unit in the title."},
+                "none: the only one beside the time. Values become SI by the unit in the title."},
         {.name = "scale",
          .default_text = "1",
          .doc = "Factor on all values; -1 turns the motion of a base into the load seen from it."}}},

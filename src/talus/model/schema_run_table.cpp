@@ -32,8 +32,7 @@ std::vector<SectionSpec> run_sections() {
          .range = {.min = 0, .max = 1e-2, .min_open = true},
          .default_text = "1e-8",
          .doc = "Largest contact error of a step, as share of the size of the smallest block, or of a tenth "
-                "of the median "
-                "block's, where slivers are smaller than that."},
+                "of the median block's, where slivers are smaller than that."},
         {.name = "max_iterations",
          .type = K::kInteger,
          .range = {.min = 1, .max = 10000},
@@ -142,11 +141,10 @@ std::vector<SectionSpec> run_sections() {
 
       {"safety",
        SectionShape::kTable,
-       "How `talus safety` seeks the factor of safety: tan(friction angle), cohesion and tensile strength of "
-       "joints, "
-       "peak and residual, are divided by a factor F; the static stages before the first dynamic one are run "
-       "from "
-       "the start; the largest F at which they come to rest is found by halving. Other verbs ignore it.",
+       "How `talus safety` seeks the factor of safety: tan(friction angle), cohesion and tensile strength "
+       "of joints, peak and residual, are divided by a factor F; the static stages before the first dynamic "
+       "one are run from the start; the largest F at which they come to rest is found by halving. Other "
+       "verbs ignore it.",
        {{.name = "lowest",
          .range = kPositive,
          .default_text = "0.5",
@@ -166,11 +164,9 @@ std::vector<SectionSpec> run_sections() {
          .range = kPositive,
          .default_text = "\"auto\"",
          .doc = "A trial has failed when some block has moved this far since the start of its stage. "
-                "\"auto\": a tenth of its own size (the square root of its area), and at least of the median "
-                "block's but no more than half its own, if it still moves. Needles (below 1e-4 of the median "
-                "block's area or 0.002 "
-                "of its "
-                "thickness) do not vote then."},
+                "\"auto\": a tenth of its own size (the square root of its area), and at least of the "
+                "median block's but no more than half its own, if it still moves. Needles (below 1e-4 of "
+                "the median block's area or 0.002 of its thickness) do not vote then."},
         {.name = "accept_merged",
          .type = K::kBool,
          .default_text = "false",

@@ -70,12 +70,10 @@ SectionSpec stage_section() {
         .usual = {.min = 1e-9, .max = 0.1},
         .default_text = "\"auto\"",
         .doc = "Time step, rounded down so that the stage ends on a step. \"auto\": `safety` times the "
-               "stable limit "
-               "of the stiffest block; where no block deforms the least of 0.02 sqrt(h/g), 0.1 h/v and 1/50 "
-               "of the "
-               "shortest period of the histories, h the least thickness of a block, v the fastest motion "
-               "given, and of blocks that nothing holds the end of their fall to the lowest place of the "
-               "model."},
+               "stable limit of the stiffest block; where no block deforms the least of 0.02 sqrt(h/g), 0.1 "
+               "h/v and 1/50 of the shortest period of the histories, h the least thickness of a block, v "
+               "the fastest motion given, and of blocks that nothing holds the end of their fall to the "
+               "lowest place of the model."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",
@@ -86,15 +84,12 @@ SectionSpec stage_section() {
         .choices = {"auto", "explicit", "implicit"},
         .doc =
             "`auto`: implicit where a deformable block can slide on a hard contact with friction, and in "
-            "static "
-            "stages where a few slivers would ask for a step below a seventh of the median block's, else "
-            "explicit, and "
-            "explicit with `safety` or `moment_clamp`. "
-            "`explicit`: central differences, with a stable limit. `implicit`: each block's own elasticity "
-            "is part of its mass matrix (theory 4.9), so that no block limits the time step; \"auto\" is "
-            "then the time in which a wave crosses two blocks of median size, and at most twice (with local "
-            "damping, once) the inverse angular frequency of all but a tenth of the blocks on their elastic "
-            "joints."},
+            "static stages where a few slivers would ask for a step below a seventh of the median block's, "
+            "else explicit, and explicit with `safety` or `moment_clamp`. `explicit`: central differences, "
+            "with a stable limit. `implicit`: each block's own elasticity is part of its mass matrix "
+            "(theory 4.9), so that no block limits the time step; \"auto\" is then the time in which a wave "
+            "crosses two blocks of median size, and at most twice (with local damping, once) the inverse "
+            "angular frequency of all but a tenth of the blocks on their elastic joints."},
        {.name = "moment_clamp",
         .type = K::kBool,
         .default_text = "false",
@@ -113,23 +108,19 @@ SectionSpec stage_section() {
         .range = kNonNegative,
         .default_text = "\"0 s\"",
         .doc = "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
-               "rate, in "
-               "blocks, not in joints. An oscillation of angular frequency w gets the damping ratio "
-               "damping_stiffness x w / 2. It shortens the stable time step (`talus check` says by how "
-               "much) unless "
-               "`elasticity` is implicit."},
+               "rate, in blocks, not in joints. An oscillation of angular frequency w gets the damping "
+               "ratio damping_stiffness x w / 2. It shortens the stable time step (`talus check` says by "
+               "how much) unless `elasticity` is implicit."},
        {.name = "damping_local",
         .range = {.min = 0, .max = 1, .max_open = true},
         .doc = "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "
-               "static, "
-               "0 in dynamic stages."},
+               "static, 0 in dynamic stages."},
        {.name = "unbalanced",
         .range = {.min = 0, .max = 0.1, .min_open = true},
         .default_text = "1e-5",
         .doc = "Static stages: at rest when the largest unbalanced force of a block, as share of the mean "
                "force on blocks, and the velocity left, as share of its peak or of what the forces give in "
-               "half a "
-               "step, are below this."},
+               "half a step, are below this."},
        {.name = "excavate",
         .type = K::kTexts,
         .refers_to = "block, grid, region or kept opening",
@@ -174,9 +165,8 @@ SectionSpec change_section() {
         .doc = "With `block`: `fixed`: they stay where they are; `free`: they move again."},
        value("friction_angle", D::kAngle, {.min = 0, .max = 1.5707, .max_open = true},
              "Of the joint. What a change leaves has to be a joint that `[joint.NAME]` could give: no less "
-             "than "
-             "`dilation_angle` and `residual_friction_angle`; strengths likewise no less than the residual "
-             "ones."),
+             "than `dilation_angle` and `residual_friction_angle`; strengths likewise no less than the "
+             "residual ones."),
        value("cohesion", D::kStress, kNonNegative,
              "Of the joint; more than 0 only where it had strength at the start."),
        value("tensile_strength", D::kStress, kNonNegative, "The same."),

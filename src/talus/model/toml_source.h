@@ -18,8 +18,7 @@ struct TomlSource {
 
 /// Parses `text`; syntax errors and broken encoding become findings.
 /// @param overrides  "a.b=c" each; c is TOML, or taken as text. Entries of lists are named by their `name`,
-/// or by
-///                   their number from 0: "block.striker.kind=rigid", "contact_pair.0.joint=glue".
+///                   or by their number from 0: "block.striker.kind=rigid", "contact_pair.0.joint=glue".
 TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings);
 
 }  // namespace talus

@@ -14,8 +14,7 @@ namespace talus::plot {
 /// file cannot be drawn or written.
 /// @param layout  of the cut
 /// @note  the SVG holds one path per origin and tint, lines put end to end: 100,000 blocks cut by joints that
-/// go
-///        through take some 100 kB
+///        go through take some 100 kB
 void write_cut_picture(const Model& model, const Cut& cut, const Layout& layout,
                        const std::filesystem::path& stem);
 

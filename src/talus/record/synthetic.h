@@ -20,7 +20,7 @@ struct TargetSpectrum {
 };
 
 /// The built-in target for a peak ground acceleration `pga`: Sa = pga times
-///   1 + 1.5 T / TB for T < TB,   2.5 to TC,   2.5 TC / T to TD,   2.5 TC TD / T^2 beyond, (theory 11.6)
+///   1 + 1.5 T / TB for T < TB,   2.5 to TC,   2.5 TC / T to TD,   2.5 TC TD / T^2 beyond, (eq. 11.6)
 /// TB = 0.15 s, TC = 0.5 s, TD = 2 s: the usual shape of code spectra.
 TargetSpectrum code_spectrum(double pga);
 

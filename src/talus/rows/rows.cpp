@@ -2,6 +2,7 @@
 
 namespace talus {
 
+// Eq. 1.2.
 BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force) {
   switch (blocks.kind[i]) {
     case BlockKind::kDeformable:

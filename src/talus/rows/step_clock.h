@@ -1,6 +1,6 @@
 #pragma once
 // The one clock of a step: over which times its velocities and impulses act, how what depends on both of its
-// ends is weighted, and where the histories stand. Theory: docs/theory.md 4.2 and 4.6.
+// ends is weighted, and where the histories stand. Theory: docs/theory.md 2.1, 2.2 and 4.6.
 
 namespace talus {
 

@@ -137,8 +137,7 @@ void JointSummary::exchange(Exchange& x, const std::string& name) {
 
 std::string joint_header() {
   return "stage,time [s],id,block_a,block_b,joint,x [m],y [m],length [m],normal_force [N],shear_force "
-         "[N],slip "
-         "[m],slip_signed [m],opening [m],dilation [m],state\n";
+         "[N],slip [m],slip_signed [m],opening [m],dilation [m],state\n";
 }
 
 std::string joint_row(const Scene& scene, const JointPoint& p, const std::string& stage, double time) {

@@ -91,8 +91,7 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   if (audit) {
     out += fmt::format(
         "  audit           {}; {} frames and {} steps looked at; unexplained overlap {:.1e} of the smaller "
-        "block at "
-        "most, closure {:.2g} %\n",
+        "block at most, closure {:.2g} %\n",
         !audit->valid()              ? "NOT VALID"
         : audit->warning_kinds() > 0 ? "valid, with warnings"
                                      : "valid",
@@ -105,8 +104,7 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   if (cut.slivers_merged + cut.slivers_deleted > 0)
     out += fmt::format(
         "  slivers         {} merged, {} deleted, {} kept when the blocks were cut: a mechanism may be "
-        "hidden "
-        "there (red in cut.png of talus cut)\n",
+        "hidden there (red in cut.png of talus cut)\n",
         cut.slivers_merged, cut.slivers_deleted, cut.slivers_kept);
   for (const StageResult& s : r.stages) {
     if (s.plan.clamped > 0)
@@ -125,8 +123,7 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   if (const std::string side = free_field_side(scene, joints); !side.empty())
     out += fmt::format(
         "  WARNING         the largest slip ends at the free-field side \"{}\": the ground beyond, which "
-        "does not "
-        "slip, holds it; move the side away\n",
+        "does not slip, holds it; move the side away\n",
         side);
   out += fmt::format(
       "  results         {0}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "

@@ -21,6 +21,7 @@ void add_diagonal(const Mobility& m, Vec2 arm, Vec2 normal, double w[2]) {
 
 }  // namespace
 
+// Eq. 5.2.
 double point_error(const std::vector<Mobility>& mobility, const RowSet& set, size_t i,
                    const std::array<double, 2>& u, double known) {
   const PointRows& point = set.points[i];

@@ -28,7 +28,7 @@ struct ContactError {
 double point_error(const std::vector<Mobility>& mobility, const RowSet& set, size_t i,
                    const std::array<double, 2>& u, double known);
 
-/// Largest |p - Proj(p - e / Wii)| Wii dt over all rows (5.2); NaN, with its point, when a number is not
+/// Largest |p - Proj(p - e / Wii)| Wii dt over all rows (eq. 5.2); NaN, with its point, when a number is not
 /// finite.
 /// @param rate  rates after the impulses have acted
 /// @param dt    over which the velocities act [s]

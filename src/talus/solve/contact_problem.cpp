@@ -15,6 +15,7 @@ struct Side {
   Vec2 arm;
 };
 
+// Eq. 5.1.
 RowState row_state(const ContactProblem& problem, size_t point, int k, double e, double p, double p_n) {
   const PointRows& rows = problem.rows[point];
   const Bounds b = bounds_of(rows, k, p_n);
@@ -43,6 +44,7 @@ bool is_smoothed(const PointRows& p) { return p.lower == 0 && p.cohesion == 0; }
 
 constexpr double kTwoOverPi = 2 / 3.14159265358979323846;
 
+// Theory 5.6.
 Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::VectorXd& p,
                                   const Eigen::VectorXd& e) {
   Eigen::VectorXd h(problem.size());
@@ -68,6 +70,7 @@ Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::Ve
 
 }  // namespace
 
+// Theory 5.1.
 ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet& set,
                              const std::vector<int>& points, const std::vector<BlockRate>& rate) {
   const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
@@ -139,6 +142,7 @@ std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::Vec
   return row_states(problem, p, problem.influence * p + problem.velocity_free);
 }
 
+// Theory 5.2.
 SparseMatrix jacobian(const ContactProblem& problem, const std::vector<RowState>& states) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(static_cast<size_t>(problem.influence.nonZeros()));
@@ -157,6 +161,7 @@ SparseMatrix jacobian(const ContactProblem& problem, const std::vector<RowState>
   return j;
 }
 
+// Theory 5.6.
 SparseMatrix jacobian_smoothed(const ContactProblem& problem, const Eigen::VectorXd& p) {
   const Eigen::VectorXd e = problem.influence * p + problem.velocity_free;
   const std::vector<RowState> states = row_states(problem, p, e);
@@ -195,6 +200,7 @@ SparseMatrix jacobian_smoothed(const ContactProblem& problem, const Eigen::Vecto
   return j;
 }
 
+// Theory 5.2.
 Eigen::MatrixXd jacobian_by_differences(const ContactProblem& problem, const Eigen::VectorXd& p, double h) {
   const Eigen::VectorXd at_p = residual(problem, p);
   Eigen::MatrixXd j(problem.size(), problem.size());

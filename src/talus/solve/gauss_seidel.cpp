@@ -107,6 +107,7 @@ bool GaussSeidel::layout_holds(const RowSet& set, const Workers& workers) {
   return same;
 }
 
+// Theory 5.5.
 void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& workers) {
   const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   // couples: the two ends of a face, else neighbours in the list with the same two blocks
@@ -328,7 +329,7 @@ struct Largest {
 
 }  // namespace
 
-// Largest change of an impulse times the influence of its point on itself [m/s].
+// Largest change of an impulse times the influence of its point on itself [m/s] (theory 5.5).
 double GaussSeidel::sweep(const Workers& workers) {
   Largest all;
   for (const Colour& c : colour_) {
@@ -377,7 +378,7 @@ void GaussSeidel::keep(const Workers& workers) {
 
 // Nonlinear conjugate gradients with the sweep as the gradient: goes on along the directions of the sweeps
 // before, by the ratio of their changes; where changes grow it starts afresh. Impulses and rates go together,
-// as the rates are linear in the impulses. The next sweep puts them back within their bounds.
+// as the rates are linear in the impulses. The next sweep puts them back within their bounds (theory 5.7).
 void GaussSeidel::extrapolate(const Workers& workers, bool first) {
   const auto squared = [&](const auto& records, const std::vector<Direction>& direction) {
     return workers.sum_chunks<double>(records.size(), kRecords, [&](size_t begin, size_t end, double& sum) {

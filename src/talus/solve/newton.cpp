@@ -21,7 +21,8 @@ namespace {
 constexpr double kRegularisation = 1e-5;
 constexpr int kRefinements = 12;
 
-// Solves a x = rhs with the factor of a + diag(added); what no motion feels is left where refinement stalls.
+// Solves a x = rhs with the factor of a + diag(added); what no motion feels is left where refinement stalls
+// (theory 5.2).
 template <class Factor, class Matrix>
 Eigen::VectorXd refined(const Factor& factor, const Matrix& a, const Eigen::VectorXd& rhs) {
   Eigen::VectorXd x = factor.solve(rhs);
@@ -149,7 +150,8 @@ void settle_on_bounds(const ContactProblem& problem, Eigen::VectorXd& p) {
   }
 }
 
-// One island; returns the iterations used, negative when the residual stayed above the tolerance.
+// One island; returns the iterations used, negative when the residual stayed above the tolerance
+// (theory 5.2).
 int solve_island(const ContactProblem& problem, const SolverInput& options, double tolerance,
                  SymmetricFactor& factor, Eigen::VectorXd& p) {
   const Direction direction(problem, factor);
@@ -192,6 +194,7 @@ int solve_island(const ContactProblem& problem, const SolverInput& options, doub
 
 }  // namespace
 
+// Theory 5.2.
 std::vector<std::vector<int>> find_islands(const std::vector<Mobility>& mobility, const RowSet& set) {
   std::vector<int> parent(mobility.size());
   std::iota(parent.begin(), parent.end(), 0);

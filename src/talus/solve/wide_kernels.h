@@ -77,6 +77,7 @@ struct Four {
     v[5] += k[1] * qxx + k[2] * qyy;
   }
   // adds n . w n, n . w t, t . w t of the block's influence w of the arm on itself, t = n turned clockwise
+  // (eq. 1.3)
   void influence(Lanes x, Lanes y, Lanes nx, Lanes ny, Lanes& nn, Lanes& nt, Lanes& tt) const {
     const Lanes ex = k[6] * nx + k[7] * ny, ey = k[6] * ny - k[7] * nx;
     const Lanes wxx = v[6] + k[0] * x * x + k[3] * y * y, wxy = (k[1] + k[4]) * x * y,
@@ -94,7 +95,7 @@ inline void push_point(Four& a, Four& b, const Point& p, Lanes d_n, Lanes d_t) {
   b.push(p.bx, p.by, -fx, -fy);
 }
 
-// Impulses of a point that satisfy its laws when the residual at zero impulse is (q_n, q_t).
+// Impulses of a point that satisfy its laws when the residual at zero impulse is (q_n, q_t) (theory 5.5).
 inline void solve_point(const ContactLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
   const Lanes zero{};
   const Lanes stick_n = -(p.i_nn * q_n + p.i_nt * q_t), stick_t = -(p.i_nt * q_n + p.i_tt * q_t);

@@ -1,5 +1,5 @@
 #pragma once
-// The energy ledger, closed at every step. Theory: docs/theory.md section 10.
+// The energy ledger, closed at every step. Theory: docs/theory.md section 8.
 
 #include "talus/blocks/state.h"
 

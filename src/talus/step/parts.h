@@ -7,11 +7,11 @@
 namespace talus {
 
 /// Forces of loads, of excavated rock that is not yet gone and of bars inside blocks, and the free field's
-/// kick (theory 4.10 to 4.13, 4.21).
+/// kick (theory 2.7, 4.12, 4.16, 4.21).
 void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work, State& state);
 
 /// Weight, elastic force and mobility of each block, and its rates at the end of the kick as they would be
-/// without rows (theory 4.2), damping included.
+/// without rows (eq. 2.1), damping included.
 void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& state);
 
 /// Sums over rows.
@@ -27,10 +27,10 @@ struct RowSums {
   RowSums& operator+=(const RowSums& o);
 };
 
-/// The error of the rows as they are solved (theory 5.3), and in the same look the work they do.
+/// The error of the rows as they are solved (eq. 5.2), and in the same look the work they do.
 RowSums judge_rows(const StepWork& work, const State& state);
 
-/// Puts the work of rows and blocks into the ledger (theory 10), and what is left out of balance into the
+/// Puts the work of rows and blocks into the ledger (theory 8), and what is left out of balance into the
 /// report; writes state.row_force.
 void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,
            StepReport& report);

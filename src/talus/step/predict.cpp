@@ -10,6 +10,7 @@ namespace {
 
 BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a, u.G + v.G}; }
 
+// Theory 4.12.
 void kick_free_field(const Scene& scene, const StepSettings& settings, const std::vector<Vec2>& acceleration,
                      StepWork& work, State& state) {
   work.column_velocity = state.column_rate;
@@ -23,7 +24,7 @@ void kick_free_field(const Scene& scene, const StepSettings& settings, const std
 
 // Share of the unbalanced force, set against the motion of the whole block in the metric of its mass: the
 // same in every frame. Contact forces are those of the step before, as this step's are still unknown. It
-// never turns a motion round: like friction it stops it at most. (4.8)
+// never turns a motion round: like friction it stops it at most (theory 4.4).
 BlockForce local_damping_impulse(const Scheme& scheme, const StepWork& step, const State& state, size_t i) {
   const BlockRate& v = state.rate[i];
   const BlockForce moving = momentum(scheme.blocks, i, v);
@@ -34,7 +35,7 @@ BlockForce local_damping_impulse(const Scheme& scheme, const StepWork& step, con
   return -std::min(scheme.settings.damping_local * push * scheme.clock.dt_kick / speed, 1.0) * moving;
 }
 
-// `renew`: the mobility is not that of the step before.
+// `renew`: the mobility is not that of the step before (eq. 2.1).
 void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool renew, StepWork& work,
                    State& state) {
   const BlockSet& blocks = scene.blocks;

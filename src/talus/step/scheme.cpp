@@ -2,6 +2,7 @@
 
 namespace talus {
 
+// Theory 4.9.
 Mat2 Scheme::tangent_force(size_t i, const Mat2& G) const {
   const Mat2 r = rotation(elastic[i].rotation), e = transpose(r) * G;
   const PlaneModuli& c = blocks.moduli[i];
@@ -10,6 +11,7 @@ Mat2 Scheme::tangent_force(size_t i, const Mat2& G) const {
          (r * Mat2{c.c11 * e.xx + c.c12 * e.yy, shear, shear, c.c12 * e.xx + c.c11 * e.yy});
 }
 
+// Theory 4.5.
 BlockForce Scheme::stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const {
   return {{}, (-damping_time2()) * tangent_force(i, before.G + after.G)};
 }

@@ -1,6 +1,6 @@
 #pragma once
 // What a step's scheme makes of each block: which elasticity is implicit, what damping takes. Not for use
-// outside step/. Theory: docs/theory.md 4.2, 4.5, 4.9.
+// outside step/. Theory: docs/theory.md 4.3, 4.5, 4.9.
 
 #include "talus/step/step.h"
 
@@ -12,7 +12,7 @@ struct Scheme {
   const StepClock& clock;
   const std::vector<ElasticState>& elastic;  // of this instant
 
-  /// Half the share of its momentum that mass-proportional damping takes of a block in the step (4.5).
+  /// Half the share of its momentum that mass-proportional damping takes of a block in the step (theory 4.3).
   double damping() const { return 0.5 * settings.damping_mass * clock.dt_kick; }
   /// Factor on the inverse mass that comes of it.
   double share() const { return 1 / (1 + damping()); }
@@ -27,14 +27,14 @@ struct Scheme {
     return settings.damping_stiffness > 0 && !settings.implicit && blocks.kind[i] == BlockKind::kDeformable;
   }
 
-  /// Block-implicit elasticity (4.9): the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family
-  /// of 4.6; factor on K in the mass of the step [s2].
+  /// Block-implicit elasticity (theory 4.9): the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha
+  /// family of 4.6; factor on K in the mass of the step [s2].
   double tangent_time2() const { return clock.dt * clock.dt_kick / clock.position_factor(); }
   double damping_time2() const { return 0.5 * settings.damping_stiffness * clock.dt_kick; }
 
   /// V K : G, the elastic tangent in the frame turned with the block.
   Mat2 tangent_force(size_t i, const Mat2& G) const;
-  /// Impulse of stiffness-proportional damping (4.5).
+  /// Impulse of stiffness-proportional damping (theory 4.5).
   BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const;
   /// Impulse that gives a block this change of its rates: the effective mass times it.
   BlockForce impulse_for(size_t i, const BlockRate& change) const;

@@ -20,6 +20,7 @@ BlockRate operator-(const BlockRate& u, const BlockRate& v) { return {u.a - v.a,
 struct ImpulseWork {
   double before = 0, after = 0;
 };
+// Theory 8.
 ImpulseWork work_of(const BlockForce& impulse, const BlockRate& v0, const BlockRate& v1, double late) {
   const double later = late * work(impulse, v1);
   return {0.5 * (work(impulse, v0) + work(impulse, v1)) - later, later};
@@ -57,6 +58,7 @@ std::array<Cause, 2> causes_of(Family family, const PointRows& p, const Impulse&
           slides(p, impulse) ? Cause::kFriction : Cause::kJoints};
 }
 
+// Theory 8.
 void judge_row(const StepWork& step, const State& state, size_t r, RowSums& s) {
   const PointRows& p = step.rows.points[r];
   const Impulse& impulse = step.rows.impulse[r];
@@ -81,6 +83,7 @@ void judge_row(const StepWork& step, const State& state, size_t r, RowSums& s) {
   s.closed += contact || (is_joint(owner.family) && p.row[0].compliance + p.row[1].compliance > 0);
 }
 
+// Theory 4.8, 8.
 void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step, size_t i, State& state,
                  BlockSums& s) {
   const BlockSet& blocks = scene.blocks;

@@ -31,6 +31,7 @@ struct Law {
   double force, tangent;
 };
 
+// Eq. 4.9.
 Law law(double stiffness, double soft, double limit, double x) {
   const double f = stiffness * x;
   if (std::abs(f) <= limit) return {f, stiffness};
@@ -136,7 +137,7 @@ void go_along(const std::vector<double>& step, Chain& chain, std::vector<double>
 }
 
 // Minimises the energy of the chain: from the elastic answer Newton's steps, as far as each leads down.
-// Returns the force left out of balance, as share of the largest.
+// Returns the force left out of balance, as share of the largest (eq. 4.9).
 double solve(const std::vector<double>& rock, const Bolt& bolt, std::vector<double>& slip) {
   Chain chain(rock, bolt);
   slip.clear();
@@ -157,7 +158,8 @@ double solve(const std::vector<double>& rock, const Bolt& bolt, std::vector<doub
   return chain.scale() > 0 ? least / chain.scale() : 0;
 }
 
-// Takes over the slips; ruptures the segment that is stretched most beyond its limit: the others may unload.
+// Takes over the slips; ruptures the segment that is stretched most beyond its limit: the others may unload
+// (theory 4.21).
 bool keep(const std::vector<double>& rock, const std::vector<double>& slip, Bolt& bolt) {
   BoltSegment* worst = nullptr;
   double most = bolt.rupture_strain;
@@ -173,7 +175,7 @@ bool keep(const std::vector<double>& rock, const std::vector<double>& slip, Bolt
 }
 
 // A bar held at its ends alone: one spring, which carries no compression (its force may come out negative:
-// that far it is from being taut).
+// that far it is from being taut) (theory 4.21).
 int stretch_anchored(double rock, Bolt& bolt) {
   BoltSegment& s = bolt.segments[0];
   s.stretch = rock;
@@ -214,6 +216,7 @@ int balance_bar(const std::vector<double>& rock, Bolt& bolt) {
   return ruptured;
 }
 
+// Theory 4.21.
 std::vector<double> elastic_stiffness(const Bolt& bolt, const std::vector<int>& of) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bolt elastic = bolt;

@@ -1,7 +1,7 @@
 #pragma once
 // Level ground beside a free-field side, as a column of linear finite elements that shakes on its own: its
-// velocity and its dynamic stress are what the side is held against. Theory: docs/theory.md 4.12, after
-// Zhao et al. 2016, eq. 34.
+// velocity and its dynamic stress are what the side is held against. Theory: docs/theory.md 4.12,
+// after eq. 34 of the paper.
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The ground behind an edge: its resistance to waves. Zhao et al. 2016, eq. 33.
+// The ground behind an edge: its resistance to waves (eq. 33 of the paper).
 
 #include <cmath>
 

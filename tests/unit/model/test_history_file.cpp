@@ -121,8 +121,7 @@ TEST_CASE("history file: each kind of wrong input has its message") {
   };
   const std::string titles =
       "\"time [ms]\", \"acceleration [m/s2]\", \"v_cm_s\", \"top.x [mm]\", \"turn [rad]\", \"bare\", "
-      "\"both_m [cm]\", "
-      "\"far [mile]\"";
+      "\"both_m [cm]\", \"far [mile]\"";
   const Wrong cases[] = {
       {"file = \"no.csv\"\n",
        "model.toml:3:1: error: history.h.file: no.csv: cannot be read: No such file or directory\n"},

@@ -214,8 +214,7 @@ TEST_CASE("process: options that do not fit the record are refused") {
         "r: error: a taper of 0.6 of the record at each end\n      = give a share from 0 to 0.5");
   CHECK(message([](Processing& h) { h.band.low_pass = 25; }) ==
         "r: error: the low-pass corner of 25 Hz is not below half the sampling rate, 25 Hz\n      = give "
-        "--low-pass below "
-        "it, or 0 for none");
+        "--low-pass below it, or 0 for none");
   CHECK(message([](Processing& h) { h.band.high_pass = 20; }) ==
         "r: error: the band from 20 to 15 Hz is empty\n      = the high-pass corner is the lower one");
   CHECK(message([](Processing& h) { h.band.high_pass = 1e-6; }) ==
@@ -231,8 +230,7 @@ TEST_CASE("process: options that do not fit the record are refused") {
         "the mean of all");
   CHECK(message([](Processing& h) { h.begin = 30, h.duration = 11; }) ==
         "r: error: the window from 30 s of 11 s in a record of 40 s\n      = give --begin and --duration "
-        "inside the "
-        "record");
+        "inside the record");
   CHECK(message([](Processing& h) { h.duration = 1.5; }) ==
         "r: error: an end taper of 1 s in a window of 1.5 s\n      = give at most half the window");
   CHECK(message([](Processing& h) { h.duration = 0.1, h.end_taper = 0; }) ==

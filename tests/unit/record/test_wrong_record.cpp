@@ -272,8 +272,7 @@ TEST_CASE("wrong record: a file that is not there") {
   } catch (const FileError& e) {
     CHECK(std::string(e.what()) ==
           "no/such/file.AT2: cannot be read: No such file or directory\n      = check the path; it counts "
-          "from the "
-          "folder that talus runs in");
+          "from the folder that talus runs in");
   }
 }
 

@@ -146,8 +146,7 @@ TEST_CASE("a column stands on the driven block below, which is no part of it") {
   const std::string text =
       kGround + grid("g", 2, 6, 2, "soil") +
       "[history.v]\ntime = [0, 1]\nvalue = [0, 1]\n[[block]]\nname = \"table\"\npolygon = [[0, 0], [4, 0], "
-      "[4, 2], "
-      "[0, 2]]\nmaterial = \"rock\"\nkind = \"driven\"\nmotion_x = { velocity = \"v\" }\n";
+      "[4, 2], [0, 2]]\nmaterial = \"rock\"\nkind = \"driven\"\nmotion_x = { velocity = \"v\" }\n";
   const FreeField f = scene_of(text).boundaries.free_field;
   CHECK(f.height == std::vector<double>{2, 4, 6});
   CHECK(f.columns[0].base.motion[0].kind == Motion::kVelocity);

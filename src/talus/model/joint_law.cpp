@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "talus/model/joint_kinds.h"
 #include "talus/model/units.h"
 
 namespace talus {
@@ -28,7 +29,9 @@ JointLaw::JointLaw(const JointProperty& joint)
       dilation_(std::tan(joint.dilation_angle)),
       dilation_slip_(joint.dilation_slip),
       stiffness_{joint.normal_stiffness, joint.shear_stiffness},
-      restitution_(joint.restitution) {
+      restitution_(joint.restitution),
+      worn_(joint_kinds().at(static_cast<size_t>(joint.kind)).worn),
+      own_(joint.own) {
   can_break_ = !bonded_ &&
                (peak_.cohesion > 0 || peak_.tension > 0 || residual_.friction_angle < peak_.friction_angle);
 }
@@ -67,6 +70,8 @@ std::vector<JointDefect> JointLaw::defects(const JointProperty& joint) {
                    .bound = "",
                    .text = "has no meaning without dilation_angle",
                    .hint = "give dilation_angle, or leave it out"});
+  if (const JointKind& kind = joint_kinds().at(static_cast<size_t>(joint.kind)); kind.check)
+    kind.check(joint, out);
   return out;
 }
 

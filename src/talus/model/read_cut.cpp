@@ -7,6 +7,7 @@
 
 #include "talus/geometry/polygon_check.h"
 #include "talus/geometry/shapes.h"
+#include "talus/model/joint_kinds.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {
@@ -402,7 +403,7 @@ class CutReader : private SectionReader {
     if (model_.regions.empty() && model_.arches.empty() && model_.meshes.empty()) return;
     JointProperty glue;
     glue.name = "(glued)";
-    glue.bonded = true;
+    glue.kind = kBondedJoint, glue.bonded = true;
     model_.bonded_joint = static_cast<int>(model_.joints.size());
     model_.joints.push_back(glue);
   }

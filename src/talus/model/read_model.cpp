@@ -9,7 +9,7 @@
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
-#include "talus/model/joint_law.h"
+#include "talus/model/joint_kinds.h"
 #include "talus/model/names_used.h"
 #include "talus/model/read_action.h"
 #include "talus/model/read_bolt.h"
@@ -153,11 +153,28 @@ class ModelReader : private SectionReader {
                     fmt::format("give it in [material.{}], or make the block kind = \"rigid\"", m.name));
   }
 
+  // The kind of a joint, and the keys that it alone has.
+  void read_kind(const Fields& f, JointProperty& j) {
+    const std::vector<JointKind>& kinds = joint_kinds();
+    for (size_t k = 0; k < kinds.size(); ++k)
+      if (kinds[k].name == f.get<std::string>("kind")) j.kind = static_cast<int>(k);
+    j.bonded = kinds[static_cast<size_t>(j.kind)].bonded;
+    for (size_t k = 0; k < kinds.size(); ++k)
+      for (const KeySpec& key : kinds[k].keys) {
+        if (static_cast<int>(k) == j.kind)
+          j.own.push_back(f.get(key.name, std::numeric_limits<double>::quiet_NaN()));
+        else if (f.given(key.name))
+          findings_.error(f.where(key.name), f.path_of(key.name),
+                          fmt::format("is of joints of kind \"{}\" alone", kinds[k].name),
+                          fmt::format("leave it out, or make the joint kind = \"{}\"", kinds[k].name));
+      }
+  }
+
   void read_joints() {
     for_named("joint", [this](const std::string& name, const Fields& f) {
       JointProperty j;
       j.name = name;
-      j.bonded = f.get<std::string>("kind") == "bonded";
+      read_kind(f, j);
       j.friction_angle = f.get("friction_angle", 0.0);
       j.cohesion = f.get("cohesion", 0.0);
       j.tensile_strength = f.get("tensile_strength", 0.0);

@@ -1,10 +1,39 @@
 // What holds for the whole model: materials, joints, histories.
 
+#include <fmt/format.h>
+
+#include "talus/model/joint_kinds.h"
 #include "talus/model/schema_tables.h"
 
 namespace talus {
 
-std::vector<SectionSpec> model_sections() {
+namespace {
+
+std::vector<std::string> joint_kind_names() {
+  std::vector<std::string> names;
+  for (const JointKind& kind : joint_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+std::string_view joint_kind_doc() {
+  static const std::string doc = [] {
+    std::string text;
+    for (const JointKind& kind : joint_kinds())
+      text += fmt::format("{}`{}`: {}", text.empty() ? "" : " ", kind.name, kind.doc);
+    return text;
+  }();
+  return doc;
+}
+
+// Keys that joints of one kind alone have, behind those of all.
+void add_joint_kinds(std::vector<SectionSpec>& sections) {
+  for (SectionSpec& section : sections)
+    if (section.name == "joint")
+      for (const JointKind& kind : joint_kinds())
+        section.keys.insert(section.keys.end(), kind.keys.begin(), kind.keys.end());
+}
+
+std::vector<SectionSpec> sections_of_model() {
   return {
       {"top",
        SectionShape::kTop,
@@ -76,9 +105,8 @@ std::vector<SectionSpec> model_sections() {
        {{.name = "kind",
          .type = K::kChoice,
          .default_text = "\"frictional\"",
-         .choices = {"frictional", "bonded"},
-         .doc = "`bonded`: an artificial joint that never opens or slips (sub-division of one body). "
-                "`frictional`: opens and slips by the strengths below."},
+         .choices = joint_kind_names(),
+         .doc = joint_kind_doc()},
         {.name = "friction_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532, .max_open = false},
@@ -176,6 +204,14 @@ std::vector<SectionSpec> model_sections() {
          .default_text = "1",
          .doc = "Factor on all values; -1 turns the motion of a base into the load seen from it."}}},
   };
+}
+
+}  // namespace
+
+std::vector<SectionSpec> model_sections() {
+  std::vector<SectionSpec> sections = sections_of_model();
+  add_joint_kinds(sections);
+  return sections;
 }
 
 }  // namespace talus

@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/angle.h"
-#include "talus/model/joint_law.h"
+#include "talus/model/joint_kinds.h"
+#include "talus/model/units.h"
 #include "talus/output/text_table.h"
 
 namespace talus {
@@ -64,6 +65,11 @@ ordered_json joints(const Model& model) {
     j["shear_stiffness [Pa/m]"] = p.shear_stiffness;
     if (p.dilation_angle > 0) j["dilation_angle [deg]"] = p.dilation_angle / kDegree;
     if (p.restitution >= 0) j["restitution"] = p.restitution;
+    const JointKind& kind = joint_kinds()[static_cast<size_t>(p.kind)];
+    for (size_t k = 0; k < p.own.size(); ++k) {
+      const std::string unit(si_symbol(kind.keys[k].dimension));
+      j[std::string(kind.keys[k].name) + (unit.empty() ? "" : " [" + unit + "]")] = p.own[k];
+    }
     out.push_back(j);
   }
   return out;

@@ -10,6 +10,7 @@
 #include "talus/base/vec2.h"
 #include "talus/geometry/polygon.h"
 #include "talus/model/bolt_input.h"
+#include "talus/model/boundary_kind.h"
 #include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
 #include "talus/model/mesh_input.h"
@@ -151,8 +152,6 @@ struct SupportInput : Selection, Staged {
   Motion x, y;
   Where where;
 };
-
-enum class BoundaryKind { kViscous, kFreeField, kTied };
 
 /// How a viscous or free-field edge stands in static stages.
 enum class StaticHold { kFixed, kRoller, kFree };

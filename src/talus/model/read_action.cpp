@@ -89,9 +89,8 @@ class ActionReader : private SectionReader {
     b.where_material = f.where("material");
     b.stages = stages(f, model_.stages);
     const auto kind = f.get<std::string>("kind");
-    b.kind = kind == "free_field" ? BoundaryKind::kFreeField
-             : kind == "tied"     ? BoundaryKind::kTied
-                                  : BoundaryKind::kViscous;
+    b.kind = boundary_called(kind);
+    const BoundaryEntry& of_kind = entry(b.kind);
     read_place(f, false, b);
     read_block_name(f, b);
     b.material = refer(f, "material", model_.materials, "material");
@@ -100,15 +99,13 @@ class ActionReader : private SectionReader {
     b.outcrop = f.get<std::string>("motion") == "outcrop";
     const auto hold = f.get<std::string>("static");
     b.hold = hold == "roller" ? StaticHold::kRoller : hold == "free" ? StaticHold::kFree : StaticHold::kFixed;
-    if (kind == "viscous") {
+    if (!kind.empty() && *of_kind.no_motion == '\0') {
       check_input_motion(f);
       warn_still_moving(f, "velocity_x", b.history_x);
       warn_still_moving(f, "velocity_y", b.history_y);
     }
-    if (kind == "free_field")
-      refuse_input_motion(f, "its column takes the motion of the base that it stands on");
-    if (kind == "tied") refuse_input_motion(f, "tied sides bring none in; give it to the base");
-    if (kind == "tied")
+    if (*of_kind.no_motion != '\0') refuse_input_motion(f, of_kind.no_motion);
+    if (of_kind.two_sided)
       read_opposite(f, b);
     else if (!kind.empty())
       refuse_keys(f, {"to", "to_edge"}, "is only for kind = \"tied\"", "leave it out");

@@ -1,10 +1,22 @@
 // What lets waves in and out, and what pushes: boundaries and loads.
 
+#include "talus/model/boundary_kind.h"
 #include "talus/model/schema_tables.h"
 
 namespace talus {
 
 namespace {
+
+std::vector<std::string> boundary_kinds() {
+  std::vector<std::string> names;
+  for (const BoundaryEntry& kind : kBoundaries) names.emplace_back(kind.name);
+  return names;
+}
+
+std::string_view boundary_kinds_doc() {
+  static const std::string doc = doc_of_choices(kBoundaries);
+  return doc;
+}
 
 SectionSpec boundary_section() {
   return {
@@ -18,11 +30,8 @@ SectionSpec boundary_section() {
        {.name = "kind",
         .type = K::kChoice,
         .required = true,
-        .choices = {"viscous", "free_field", "tied"},
-        .doc =
-            "`viscous`: dashpots that absorb waves and, with `velocity_x` or `velocity_y`, a compliant base. "
-            "`free_field`: dashpots against a column of level ground that shakes beside the edge. `tied`: "
-            "moves with the opposite side, which is exact for level ground."},
+        .choices = boundary_kinds(),
+        .doc = boundary_kinds_doc()},
        {.name = "edge",
         .type = K::kPoints,
         .dimension = D::kLength,

@@ -1,7 +1,5 @@
 // What holds for the whole model: materials, joints, histories.
 
-#include <fmt/format.h>
-
 #include "talus/model/joint_kinds.h"
 #include "talus/model/schema_tables.h"
 
@@ -16,12 +14,7 @@ std::vector<std::string> joint_kind_names() {
 }
 
 std::string_view joint_kind_doc() {
-  static const std::string doc = [] {
-    std::string text;
-    for (const JointKind& kind : joint_kinds())
-      text += fmt::format("{}`{}`: {}", text.empty() ? "" : " ", kind.name, kind.doc);
-    return text;
-  }();
+  static const std::string doc = doc_of_choices(joint_kinds());
   return doc;
 }
 

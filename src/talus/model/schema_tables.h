@@ -59,6 +59,14 @@ inline KeySpec move_key() {
           .doc = "Moved by this, after it has been turned."};
 }
 
+/// What each choice of a table of { name, doc } means.
+std::string doc_of_choices(const auto& table) {
+  std::string text;
+  for (const auto& entry : table)
+    text += (text.empty() ? "`" : " `") + std::string(entry.name) + "`: " + std::string(entry.doc);
+  return text;
+}
+
 /// What a block can be without a motion of its own.
 inline std::vector<std::string> undriven_kinds() { return {"deformable", "rigid", "fixed"}; }
 

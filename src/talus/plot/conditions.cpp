@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -21,8 +22,11 @@ constexpr double kPinSize = 9, kRollerRadius = 4;    // [px]
 constexpr double kBandGap = 3, kBandWidth = 3.2;     // [px] from the edge; of the band
 constexpr std::size_t kMostNames = 5;                // of one entry in the legend
 
-constexpr Color kSupport{0.15, 0.15, 0.15}, kViscous{0.05, 0.45, 0.50}, kFreeField{0.35, 0.20, 0.65},
-    kTied{0.55, 0.40, 0.05}, kLoad{0.72, 0.10, 0.35}, kMotion{0.60, 0.05, 0.60}, kSpan{0.25, 0.25, 0.25};
+constexpr Color kSupport{0.15, 0.15, 0.15}, kViscous{0.05, 0.45, 0.50}, kLoad{0.72, 0.10, 0.35},
+    kMotion{0.60, 0.05, 0.60}, kSpan{0.25, 0.25, 0.25};
+// in the order of BoundaryKind
+constexpr std::array<Color, 5> kBoundaryColors{
+    {kViscous, {0.35, 0.20, 0.65}, {0.55, 0.40, 0.05}, {0.10, 0.50, 0.20}, {0.60, 0.15, 0.15}}};
 constexpr Color kBolts[] = {
     {0.05, 0.15, 0.60}, {0.00, 0.42, 0.15}, {0.55, 0.10, 0.10}, {0.40, 0.10, 0.55}};  // types
 
@@ -166,16 +170,15 @@ void add_supports(const Model& model, const Places& places, Collection& all) {
 
 void add_boundaries(const Model& model, const Places& places, Collection& all) {
   for (const BoundaryInput& b : model.boundaries) {
-    const auto [color, what] = b.kind == BoundaryKind::kViscous     ? std::pair{kViscous, "viscous boundary"}
-                               : b.kind == BoundaryKind::kFreeField ? std::pair{kFreeField, "free field"}
-                                                                    : std::pair{kTied, "tied sides"};
-    Condition& band = all.add(Symbol::kBand, color, what, b.name, b.stages);
+    const BoundaryEntry& kind = entry(b.kind);
+    const Color& color = kBoundaryColors.at(static_cast<size_t>(b.kind) % kBoundaryColors.size());
+    Condition& band = all.add(Symbol::kBand, color, kind.title, b.name, b.stages);
     const auto add_edges = [&](const Selection& selection) {
       for (const auto& [from, to] : places.edges(selection))
         band.marks.push_back({from, unit(to - from), norm(to - from)});
     };
     add_edges(b);
-    if (b.kind == BoundaryKind::kTied) add_edges(b.opposite);
+    if (kind.two_sided) add_edges(b.opposite);
     if (b.history_x < 0 && b.history_y < 0) continue;
     const char* along = b.history_y < 0   ? "waves along x come in"
                         : b.history_x < 0 ? "waves along y come in"

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails on the first include that goes up in the order of the folders (docs/architecture.md).
+"""Fails on an include that goes up in the order of the folders (docs/architecture.md), and on files that include each
+other in a ring, a source counted as one with its header.
 
 Usage: check_layers.py src/talus
 """
@@ -30,6 +31,28 @@ ALLOWED = {
 }
 
 
+def rings(root, files):
+    """Files that lead back to themselves, as text."""
+    uses = {}
+    for path in files:
+        name = str(path.relative_to(root).with_suffix(""))
+        found = re.findall(r'#include\s+"talus/([^"]+)\.h"', path.read_text())
+        uses.setdefault(name, set()).update(other for other in found if other != name)
+    out, done = [], set()
+
+    def visit(name, trail):
+        if name in trail:
+            out.append("ring: " + " -> ".join(trail[trail.index(name):] + [name]))
+        elif name not in done:
+            for other in sorted(uses.get(name, ())):
+                visit(other, trail + [name])
+            done.add(name)
+
+    for name in sorted(uses):
+        visit(name, [])
+    return out
+
+
 def main() -> int:
     root = pathlib.Path(sys.argv[1])
     wrong = []
@@ -52,6 +75,7 @@ def main() -> int:
                 wrong.append(f"{path}:{number}: write includes from the root: \"talus/...\"")
             elif parts[1] not in allowed:
                 wrong.append(f"{path}:{number}: {folder}/ may not include {parts[1]}/")
+    wrong += rings(root, files)
     for text in wrong:
         print(text)
     print(f"{len(files)} files, {len(wrong)} wrong includes")

@@ -12,13 +12,6 @@
 
 namespace talus {
 
-Cut::Cut() = default;
-Cut::Cut(const Cut&) = default;
-Cut::Cut(Cut&&) noexcept = default;
-Cut& Cut::operator=(const Cut&) = default;
-Cut& Cut::operator=(Cut&&) noexcept = default;
-Cut::~Cut() = default;
-
 namespace {
 
 // Noding moves lines by less than a cell of the grid: a face within this many cells of a region belongs to
@@ -160,19 +153,6 @@ class Cutter {
 };
 
 }  // namespace
-
-Polygon Cut::polygon(const CutBlock& block) const {
-  Polygon out;
-  out.reserve(block.point.size());
-  for (const int p : block.point) out.push_back(point[static_cast<size_t>(p)]);
-  return out;
-}
-
-std::string Cut::name(const CutBlock& block) const {
-  const std::string& group = block.opening >= 0 ? openings[static_cast<size_t>(block.opening)]
-                                                : regions[static_cast<size_t>(block.region)].name;
-  return fmt::format("{}[{}]", group, block.id);
-}
 
 Cut with_slivers(const Model& model, Cut cut) {
   cut.blocks = cut.whole;

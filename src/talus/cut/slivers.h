@@ -2,7 +2,7 @@
 // Blocks too small or too thin to compute with: found, merged, deleted or kept, and listed. What may be
 // merged is what hides no mechanism. Theory: docs/theory.md section 10.3.
 
-#include "talus/cut/cut.h"
+#include "talus/cut/partition.h"
 
 namespace talus {
 

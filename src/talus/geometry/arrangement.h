@@ -42,8 +42,4 @@ double grid_width(double extent, double wanted);
 Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin,
                     const std::function<bool(Vec2)>& is_solid = nullptr);
 
-/// A point well inside a simple polygon, away from the heights of its corners. Cost n^2.
-/// @pre area is not zero
-Vec2 interior_point(const Polygon& polygon);
-
 }  // namespace talus

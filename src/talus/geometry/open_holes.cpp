@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "talus/geometry/arrangement.h"
-
 namespace talus {
 
 namespace {

@@ -40,6 +40,31 @@ PolygonMoments polygon_moments(std::span<const Vec2> polygon) {
   return {area, origin + arm, second};
 }
 
+Vec2 interior_point(const Polygon& polygon) {
+  TALUS_ASSERT(signed_area(polygon) != 0);
+  // between the heights of two corners no corner is met; the roomiest of all stretches there
+  std::vector<double> height;
+  for (const Vec2 p : polygon) height.push_back(p.y);
+  std::sort(height.begin(), height.end());
+  Vec2 best = polygon[0];
+  double room = -1;
+  for (size_t h = 0; h + 1 < height.size(); ++h) {
+    const double y = 0.5 * (height[h] + height[h + 1]), tall = height[h + 1] - height[h];
+    if (!(tall > 0)) continue;
+    std::vector<double> crossing;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+      if ((a.y > y) != (b.y > y)) crossing.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+    std::sort(crossing.begin(), crossing.end());
+    for (size_t i = 0; i + 1 < crossing.size(); i += 2) {
+      const double here = std::min(tall, crossing[i + 1] - crossing[i]);
+      if (here > room) room = here, best = {0.5 * (crossing[i] + crossing[i + 1]), y};
+    }
+  }
+  return best;
+}
+
 double distance_to_segment(Vec2 point, Vec2 a, Vec2 b) {
   const Vec2 along = b - a;
   const double length2 = dot(along, along);

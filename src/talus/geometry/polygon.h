@@ -32,6 +32,10 @@ double polygon_width(const PolygonMoments& moments);
 /// Whether `point` lies inside the polygon or within `tolerance` [m] of its boundary.
 bool contains(std::span<const Vec2> polygon, Vec2 point, double tolerance = 0);
 
+/// A point well inside a simple polygon, away from the heights of its corners. Cost n^2.
+/// @pre area is not zero
+Vec2 interior_point(const Polygon& polygon);
+
 /// Distance [m] of `point` from the segment a-b.
 double distance_to_segment(Vec2 point, Vec2 a, Vec2 b);
 

@@ -1,4 +1,4 @@
-#include "talus/model/joint_kinds.h"
+#include "talus/model/joint_law.h"
 
 namespace talus {
 

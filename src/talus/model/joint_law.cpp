@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "talus/model/joint_kinds.h"
 #include "talus/model/units.h"
 
 namespace talus {

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "talus/base/vec2.h"
 #include "talus/model/model.h"
+#include "talus/model/schema.h"
 
 namespace talus {
 
@@ -93,6 +95,21 @@ class JointLaw {
   JointStrength (*worn_)(const JointLaw&, const JointWear&) = nullptr;
   std::vector<double> own_;
 };
+
+/// What a kind adds to the properties that all joints have.
+struct JointKind {
+  std::string_view name, doc;
+  bool bonded = false;             // never opens or slips
+  std::vector<KeySpec> keys = {};  // of its own, numbers; in the order of JointProperty::own
+  /// Adds what keeps them from being a law; none: nothing does.
+  void (*check)(const JointProperty& joint, std::vector<JointDefect>& out) = nullptr;
+  /// JointLaw::worn; none: the residual strength.
+  JointStrength (*worn)(const JointLaw& law, const JointWear& wear) = nullptr;
+};
+
+/// All kinds; JointProperty::kind is an index. The first is that of joints that name none, the second is bonded.
+const std::vector<JointKind>& joint_kinds();
+inline constexpr int kFrictionalJoint = 0, kBondedJoint = 1;
 
 /// Laws of all joints, in their order.
 std::vector<JointLaw> joint_laws(const std::vector<JointProperty>& joints);

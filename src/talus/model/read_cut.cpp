@@ -7,7 +7,7 @@
 
 #include "talus/geometry/polygon_check.h"
 #include "talus/geometry/shapes.h"
-#include "talus/model/joint_kinds.h"
+#include "talus/model/joint_law.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {

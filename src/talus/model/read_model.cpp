@@ -9,7 +9,7 @@
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/expression.h"
-#include "talus/model/joint_kinds.h"
+#include "talus/model/joint_law.h"
 #include "talus/model/names_used.h"
 #include "talus/model/read_action.h"
 #include "talus/model/read_bolt.h"

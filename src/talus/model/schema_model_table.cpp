@@ -1,6 +1,6 @@
 // What holds for the whole model: materials, joints, histories.
 
-#include "talus/model/joint_kinds.h"
+#include "talus/model/joint_law.h"
 #include "talus/model/schema_tables.h"
 
 namespace talus {

@@ -2,7 +2,7 @@
 // The reader of each format; read_record.h chooses. All throw InputError with file and line.
 
 #include "talus/record/lines.h"
-#include "talus/record/read_record.h"
+#include "talus/record/record.h"
 
 namespace talus::record {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/angle.h"
-#include "talus/model/joint_kinds.h"
+#include "talus/model/joint_law.h"
 #include "talus/model/units.h"
 #include "talus/output/text_table.h"
 

@@ -2,7 +2,7 @@
 // What a new stage changes in scene and state: blocks taken out, properties, what acts.
 // Theory: docs/theory.md 2.7.
 
-#include "talus/step/step.h"
+#include "talus/step/step_work.h"
 
 namespace talus {
 

@@ -2,7 +2,7 @@
 // The parts of a kick, in the order of its recipe (step.cpp). Not for use outside step/.
 
 #include "talus/step/scheme.h"
-#include "talus/step/step.h"
+#include "talus/step/step_work.h"
 
 namespace talus {
 

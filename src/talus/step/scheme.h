@@ -2,7 +2,7 @@
 // What a step's scheme makes of each block: which elasticity is implicit, what damping takes. Not for use
 // outside step/. Theory: docs/theory.md 4.3, 4.5, 4.9.
 
-#include "talus/step/step.h"
+#include "talus/step/step_work.h"
 
 namespace talus {
 

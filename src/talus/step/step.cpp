@@ -145,11 +145,6 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
 
 }  // namespace
 
-BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
-  TALUS_ASSERT(work.rate_before.size() == state.rate.size() && i < state.rate.size());
-  return state.dt_before > 0 ? mean(work.rate_before[i], state.rate[i]) : work.rate_before[i];
-}
-
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state) {
   StepReport report;
   TALUS_ASSERT(dt > 0);

@@ -3,88 +3,9 @@
 // the forces of this instant and the velocities after it, drift() moves the blocks. Theory: docs/theory.md
 // section 4.
 
-#include <array>
-#include <string>
-#include <vector>
-
-#include "talus/contact/contact_rows.h"
-#include "talus/solve/solvers.h"
-#include "talus/step/energy.h"
-#include "talus/step/scene.h"
+#include "talus/step/step_work.h"
 
 namespace talus {
-
-struct StepSettings {
-  double damping_mass = 0;       // [1/s]
-  double damping_stiffness = 0;  // [s]
-  double damping_local = 0;      // [-]
-  double tolerance = 0;          // largest contact error of a step [m]
-  double sharper = 1;            // share of it to which steps are solved where that takes few sweeps more
-  bool histories_run = true;     // false: their clock stands still (static stages)
-  bool implicit = false;         // block-implicit elasticity (theory 4.9)
-  bool keep_guess = false;       // StepWork::guess is wanted, for a problem file
-};
-
-/// Work that one kick does, half at the velocity before and half at the velocity after it: the second half
-/// belongs to the interval that follows.
-struct KickWork {
-  WorkDone before, after;
-};
-
-struct StepReport {
-  int contacts = 0;                       // contact points found
-  int closed = 0;                         // of them, with a force
-  int searched = 0;                       // pairs of blocks whose contact points were sought anew
-  SolverKind method = SolverKind::kAuto;  // whose result stands
-  SolveReport solve;
-  ContactError error;
-  std::string worst;           // name of the row with the worst error
-  bool failed = false;         // error above the tolerance
-  bool second_solver = false;  // the other solver was asked
-  double closed_share = 0;     // largest overlap of a contact, as share of the thinner block there
-  int closed_row = -1;         // its row
-  double drift = 0;            // deepest overlap of hard contacts before the step [m]
-  double unbalanced = 0;       // largest unbalanced force of a block / mean force on blocks
-  int worst_block = -1;        // whose unbalanced force is the largest
-  double worst_force = 0;      // that force [N]
-  double nudge = 0;            // kinetic energy that the forces on blocks would give them in half a step [J]
-  double speed_left = 0;       // static stages: share of the velocity that is left (set by run/)
-  Energy energy;
-  int broken_faces = 0;  // in the drift that follows
-};
-
-/// Where the time of a run goes [s].
-struct Profile {
-  enum Part { kDetect, kSetUp, kSolve, kIntegrate, kOutput, kParts };
-  static constexpr std::array<const char*, kParts> kName{"detect", "set-up", "sweep", "integrate", "output"};
-  std::array<double, kParts> seconds{};
-};
-
-/// Memory reused from step to step, and what the step found at this instant.
-struct StepWork {
-  Workers workers;
-  Profile profile;
-  SolverSet solvers;
-  StepClock clock;                   // of this step
-  std::vector<Mobility> mobility;    // of this step
-  double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
-  std::vector<ContactPlace> places;  // of state.contacts
-  RowSet rows;                       // of all families
-  std::vector<BlockRate> rate_before;
-  std::vector<Vec2> column_velocity;  // [n_column_nodes] of the free field at this instant [m/s]
-  KickWork work;
-  std::vector<BlockRate> rate_free;     // rates as they would be without rows
-  std::vector<Impulse> guess;           // of all rows; empty unless it is wanted
-  std::vector<BlockForce> load;         // by loads and kept rock, on each block
-  std::vector<BlockForce> forces;       // weight, loads, elasticity and bars inside, on each block
-  std::vector<BlockForce> bolt_forces;  // of them, the bars; empty without bolts
-  std::vector<BlockForce> local_damping;
-  std::vector<ElasticState> elastic;
-};
-
-/// Velocities of block i at this instant: the mean of those before and after the kick; at the start the
-/// initial ones. @pre  between kick() and drift()
-BlockRate rate_now(const StepWork& work, const State& state, size_t i);
 
 /// Forces at state.time and rates after it, for a step of length dt. Updates rates, row forces and contacts.
 StepReport kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work, State& state);
@@ -92,8 +13,5 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 /// Moves the blocks with the rates of the kick, for as long as its clock says, to `time_end`; breaks faces.
 /// Throws NumericalError naming time and block when a block is inverted or its motion is not finite.
 void drift(const Scene& scene, double time_end, StepWork& work, State& state, StepReport& report);
-
-/// "striker corner 1 on bar[0,0] edge 3", for messages.
-std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row);
 
 }  // namespace talus

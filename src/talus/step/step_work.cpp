@@ -1,8 +1,15 @@
+#include "talus/step/step_work.h"
+
 #include <fmt/format.h>
 
-#include "talus/step/step.h"
+#include "talus/base/error.h"
 
 namespace talus {
+
+BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
+  TALUS_ASSERT(work.rate_before.size() == state.rate.size() && i < state.rate.size());
+  return state.dt_before > 0 ? mean(work.rate_before[i], state.rate[i]) : work.rate_before[i];
+}
 
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {
   const PointRows& p = work.rows.points[row];

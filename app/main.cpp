@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <optional>
 
@@ -213,12 +214,14 @@ int run_command(int argc, char** argv) {
   std::string problem, method = "newton";
   double tolerance = 1e-9;
   CLI::App* replay_verb = app.add_subcommand(
-      "replay", "solve the contact equations of one step again, with any solver, or as a run would");
+      "replay", "solve the contact equations of one step again, with any solver, or by the choice of a run");
   replay_verb->add_option("FILE", problem, "step_N.json from a result folder")->required();
   replay_verb->add_option("--method", method, "solver")
       ->check(CLI::IsMember(std::vector<std::string>(talus::kSolverName.begin(), talus::kSolverName.end())))
       ->capture_default_str();
-  replay_verb->add_option("--tolerance", tolerance, "largest contact error [m]")->capture_default_str();
+  replay_verb->add_option("--tolerance", tolerance, "largest contact error [m]")
+      ->check([](const std::string& text) { return std::atof(text.c_str()) > 0 ? "" : "must be > 0"; })
+      ->capture_default_str();
   replay_verb->footer(
       "Example: talus run model.toml -o out/m --dump-step 100 && talus replay out/m/step_100.json --method "
       "gauss_seidel");

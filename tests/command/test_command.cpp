@@ -261,6 +261,15 @@ TEST_CASE("command: one step is dumped and replayed by either solver") {
   const Outcome wrong = shell(f, fmt::format("$talus replay {}/summary.json", out));
   CHECK(wrong.code == 4);
   has(wrong.text, "is no step written by talus run --dump-step");
+  const Outcome hopeless = shell(f, fmt::format("$talus replay {}/step_20.json --tolerance 0", out));
+  CHECK(hopeless.code == 2);
+  has(hopeless.text, "--tolerance: must be > 0");
+  const Outcome still =
+      shell(f, fmt::format("sed 's/\"dt .s.\": .*/\"dt [s]\": 0,/' {0}/step_20.json > {0}/still.json; "
+                           "$talus replay {0}/still.json",
+                           out));
+  CHECK(still.code == 4);
+  has(still.text, "its time step is not positive");
 }
 
 TEST_CASE("command: a failed step is named, written and can be replayed") {

@@ -10,6 +10,7 @@
 #include "support/command.h"
 #include "talus/base/clock.h"
 #include "talus/base/random.h"
+#include "talus/output/archive.h"
 #include "talus/output/files.h"
 
 namespace test_saved_state {
@@ -395,6 +396,13 @@ TEST_CASE("command run --from: what cannot go on is refused") {
       "head -c 5000 r/saved/stage_02.h5 > r/saved/short.h5; $talus run model.toml --from r/saved/short.h5", 4,
       "cut short");
   refused("echo nothing > r/saved/text.h5; $talus run model.toml --from r/saved/text.h5", 4, "no HDF5 file");
+  // numbers that no run leaves: a pair of a block with itself
+  Archive forged = read_archive(folder / "r/saved/stage_02.h5");
+  std::vector<double>& pairs = forged.numbers.at("state.pairs.b");
+  REQUIRE(!pairs.empty());
+  pairs[0] = forged.numbers.at("state.pairs.a")[0];
+  write_archive(folder / "r/saved/forged.h5", forged);
+  refused("$talus run model.toml --from r/saved/forged.h5", 3, "the state is damaged");
   // 4 kB in the middle of the file: single bytes may lie in room that HDF5 has left between its tables
   refused(
       "cp r/saved/stage_02.h5 r/saved/bad.h5; s=$(stat -c %s r/saved/bad.h5); head -c 4096 /dev/zero | tr "

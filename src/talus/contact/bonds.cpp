@@ -222,7 +222,6 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
                    const Workers& workers, RowSet& rows) {
   TALUS_ASSERT(state.face.size() == bonds.faces.size() && state.bond_force.size() == 2 * bonds.faces.size());
   TALUS_ASSERT(rows.size() == 0 && before.size() == static_cast<size_t>(blocks.count));
-  const size_t first = rows.size();
   for (size_t f = 0; f < bonds.faces.size(); ++f) {
     const BondFace& face = bonds.faces[f];
     if (state.face[f].broken || !blocks.interact(face.block_a, face.block_b)) continue;
@@ -265,8 +264,8 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     }
     guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});
   };
-  workers.for_chunks((rows.size() - first) / 2, kFaceGrain, [&](size_t begin, size_t end) {
-    for (size_t at = first + 2 * begin; at < first + 2 * end; at += 2) add(rows.owner[at].at() / 2, at);
+  workers.for_chunks(rows.size() / 2, kFaceGrain, [&](size_t begin, size_t end) {
+    for (size_t at = 2 * begin; at < 2 * end; at += 2) add(rows.owner[at].at() / 2, at);
   });
 }
 

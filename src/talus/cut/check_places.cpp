@@ -182,7 +182,7 @@ void check_places(const Model& model, const Layout& layout, Findings& findings) 
   for (const BoundaryInput& b : model.boundaries) {
     const std::string path = "boundary." + b.name;
     check_edges(layout, b, b.where, path, "along", findings);
-    if (b.kind == BoundaryKind::kTied)
+    if (entry(b.kind).two_sided)
       check_edges(layout, b.opposite, b.where_opposite, path, b.opposite.along.empty() ? "to_edge" : "to",
                   findings);
   }

@@ -113,7 +113,6 @@ class Estimate {
 
 std::vector<ExpectedPart> expected_blocks(const Model& model) { return Estimate(model).all(); }
 
-// Theory 10.1.
 void check_expected(const Model& model, double memory, Findings& findings) {
   const std::vector<ExpectedPart> parts = expected_blocks(model);
   double blocks = 0;

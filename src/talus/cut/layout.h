@@ -1,13 +1,13 @@
 #pragma once
-// From the model's blocks, grids, meshes and cut regions to the list of block polygons, and the checks that
-// need them all: simple, apart from each other, monitors and supports on a block.
+// From the model's blocks, grids, meshes and cut regions to the list of block polygons: simple, apart from
+// each other.
 
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "talus/cut/cut.h"
+#include "talus/cut/partition.h"
 #include "talus/model/model.h"
 
 namespace talus {

@@ -220,7 +220,7 @@ class SliverTreatment {
 
   bool rock_goes_on(const std::string& side) const {
     return std::any_of(model_.boundaries.begin(), model_.boundaries.end(), [&side](const BoundaryInput& b) {
-      return b.along == side || (b.kind == BoundaryKind::kTied && b.opposite.along == side);
+      return b.along == side || (entry(b.kind).two_sided && b.opposite.along == side);
     });
   }
 

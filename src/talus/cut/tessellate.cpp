@@ -34,7 +34,6 @@ std::vector<Vec2> lattice(const Box& box, double pitch, double irregularity, Ran
 
 }  // namespace
 
-// Theory 10.
 std::vector<std::pair<Vec2, Vec2>> tessellate(const TessellationInput& input, const Polygon& polygon,
                                               uint64_t seed) {
   Random random(stream_seed(seed, input.name));

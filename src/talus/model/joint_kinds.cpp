@@ -2,7 +2,10 @@
 
 namespace talus {
 
-// A new kind is a file of its own that defines it as a function, and that function's name here, twice.
+// A kind with keys or a strength of its own is a file of its own: a function that returns it, declared here and
+// called in the list. What else asks for the strength of a joint, and takes it to be Coulomb's of the
+// properties that all joints have: the audit (run/auditor.cpp), the factor of safety (reduced()), `auto` of
+// elasticity (step/scene.cpp). Pressure is known at the ends of faces alone. Kinds share no key.
 
 const std::vector<JointKind>& joint_kinds() {
   static const std::vector<JointKind> kinds{

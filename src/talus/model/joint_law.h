@@ -109,7 +109,7 @@ struct JointKind {
 
 /// All kinds; JointProperty::kind is an index. The first is that of joints that name none, the second is bonded.
 const std::vector<JointKind>& joint_kinds();
-inline constexpr int kFrictionalJoint = 0, kBondedJoint = 1;
+inline constexpr int kBondedJoint = 1;
 
 /// Laws of all joints, in their order.
 std::vector<JointLaw> joint_laws(const std::vector<JointProperty>& joints);

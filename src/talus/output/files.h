@@ -17,7 +17,7 @@ void write_file(const std::filesystem::path& path, const std::string& content);
 void check_result_folder(const std::filesystem::path& folder, bool force);
 
 /// Prepares the folder for results, checked as above.
-/// Of an earlier run, cut, record or picture only the files of the same kind are removed.
+/// Of an earlier run, cut, record, safety or picture only the files of the same kind are removed.
 enum class ResultKind { kRun, kCut, kRecord, kSafety, kPicture };
 void open_result_folder(const std::filesystem::path& folder, bool force, ResultKind kind = ResultKind::kRun);
 

@@ -107,6 +107,9 @@ inline bool slides(const PointRows& p, const Impulse& impulse) {
   return std::abs(impulse[1]) >= limit * (1 - 1e-8);
 }
 
+/// Points of faces that are tied without any give: what `auto` chooses a solver by.
+size_t hard_ties(const RowSet& rows);
+
 /// M^-1 times a generalised force or impulse. Zero for blocks whose motion is prescribed.
 BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force);
 

@@ -76,10 +76,9 @@ ordered_json joints(const Model& model) {
 }
 
 ordered_json boundaries(const Model& model) {
-  static constexpr const char* kKind[] = {"viscous", "free-field", "tied"};
   ordered_json out = ordered_json::array();
   for (const BoundaryInput& b : model.boundaries) {
-    ordered_json j = {{"name", b.name}, {"kind", kKind[static_cast<int>(b.kind)]}};
+    ordered_json j = {{"name", b.name}, {"kind", entry(b.kind).name}};
     const auto motion = [&](const char* key, int history) {
       if (history >= 0) j[key] = model.histories[static_cast<size_t>(history)].name;
     };

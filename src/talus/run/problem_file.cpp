@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 
 // JSON knows no infinity: an open bound is null.
 ordered_json bound(double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); }
@@ -85,6 +85,7 @@ std::string problem_text(const Instant& i) {
                            {"velocity", vec(i.work.rate_free[k].a)},
                            {"gradient_rate", mat(i.work.rate_free[k].G)}});
   }
+  j["hard_ties"] = hard_ties(i.work.rows);
   j["points"] = ordered_json::array();
   for (size_t r = 0; r < i.work.rows.points.size(); ++r)
     j["points"].push_back(point_json(i.work.rows.points[r], i.work.guess[r]));
@@ -108,9 +109,6 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     for (const ordered_json& p : j.at("points"))
       replay.rows.add(read_point(p), {p.at("guess").at(0), p.at("guess").at(1)});
     const auto points = static_cast<int>(replay.rows.points.size());
-    size_t hard_ties = 0;  // as the step counts them
-    for (const PointRows& p : replay.rows.points)
-      hard_ties += std::isinf(p.lower) && p.block_b >= 0 && p.row[0].compliance == 0;
     for (const PointRows& p : replay.rows.points)
       if (p.block_a < 0 || p.block_a >= blocks || p.block_b >= blocks || p.partner >= points)
         throw std::runtime_error("a point names a block or partner that is not there");
@@ -120,6 +118,8 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
         throw std::runtime_error(fmt::format("point {} is not the partner of its partner", i));
     }
     const double dt = j.at("dt [s]");
+    if (!(dt > 0)) throw std::runtime_error("its time step is not positive");
+    const size_t hard_ties = j.at("hard_ties");
     replay.points = points, replay.blocks = blocks;
     Model model;
     model.solver = options;

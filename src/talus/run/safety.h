@@ -1,7 +1,7 @@
 #pragma once
 // Factor of safety by reduction of joint strength: which factor F leaves a model just standing when
 // tan(friction), cohesion and tensile strength of its joints are divided by it. Theory: docs/theory.md
-// section 4.18.
+// section 4.20.
 
 #include <functional>
 

@@ -5,6 +5,7 @@
 #include "talus/base/error.h"
 #include "talus/base/version.h"
 #include "talus/blocks/state_fields.h"
+#include "talus/blocks/validate.h"
 
 namespace talus {
 
@@ -134,11 +135,21 @@ SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
   const State fresh = start_state(scene);
   if (saved.state.displacement.size() != fresh.displacement.size() ||
       saved.state.face.size() != fresh.face.size() || saved.state.supports.size() != fresh.supports.size() ||
-      saved.state.boundaries.size() != fresh.boundaries.size() || saved.standing.result.stages.empty())
+      saved.state.boundaries.size() != fresh.boundaries.size() ||
+      saved.state.ties.size() != fresh.ties.size() ||
+      saved.state.column_rate.size() != fresh.column_rate.size() || saved.standing.result.stages.empty())
     throw InputError(fmt::format(
         "{}: error: the state does not fit the model, which this program cuts or supports otherwise ({} "
         "blocks now, {} then). Run the model anew\n",
         path.string(), fresh.displacement.size(), saved.state.displacement.size()));
+  try {
+    validate(saved.state, scene.blocks);
+  } catch (const std::logic_error& e) {
+    throw InputError(
+        fmt::format("{}: error: the state is damaged ({}). Go on from another one, or run the "
+                    "model anew\n",
+                    path.string(), e.what()));
+  }
   return saved;
 }
 

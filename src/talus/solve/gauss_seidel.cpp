@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "talus/solve/contact_error.h"
+
 namespace talus {
 
 namespace {

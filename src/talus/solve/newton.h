@@ -2,9 +2,8 @@
 // Newton's method for the contact constraint equations, island by island.
 // Semismooth: the Jacobian of the exact law, with a line search. Theory: docs/theory.md section 5.
 
-#include <vector>
-
 #include <memory>
+#include <vector>
 
 #include "talus/solve/solver.h"
 
@@ -27,7 +26,7 @@ class Newton : public Solver {
   std::unique_ptr<Kept> kept_;
 };
 
-/// The same of bare rows: solves for the impulses of `set` (first guess in, solution out), which do not act.
+/// The same of bare rows, for tests: solves for the impulses of `set` (first guess in, solution out), which do not act.
 /// @param rate       v*, rates without the rows
 /// @param tolerance  residual at which to stop [m/s]
 /// @param smoothing  of the law, off by default

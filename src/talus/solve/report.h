@@ -1,8 +1,6 @@
 #pragma once
 // What a solver says of its work, whichever it was.
 
-#include "talus/solve/contact_error.h"
-
 namespace talus {
 
 struct SolveReport {

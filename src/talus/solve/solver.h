@@ -41,6 +41,7 @@ class Solver {
 
   /// Solves for the impulses and lets them act: same bits for any number of threads, whatever was solved
   /// before.
+  /// @pre  the blocks that move are those of the call before, or this is the first (SolverSet::forget)
   /// @param limits  most iterations and sweeps, kind of the Jacobian
   virtual SolveReport solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
                             const Workers& workers) = 0;

@@ -37,6 +37,9 @@ constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
                                           .goes_on = true,
                                           .most_points = kAny}};
 static_assert(kSolvers.size() + 1 == kSolverName.size());
+static_assert(std::ranges::all_of(kSolvers, [](const SolverEntry& e) {
+  return static_cast<size_t>(e.kind) == static_cast<size_t>(&e - kSolvers.data()) + 1;
+}));
 
 // Up to so many points `auto` takes Newton: it is as fast there and reaches round-off. Where bodies are tied
 // together the equations are nearly linear, and sweeps are slow along them.
@@ -80,6 +83,7 @@ Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double
                    second = entry(first).mended;
   const bool again =
       options.second_solver && !smoothed && problem.rows.points.size() <= entry(second).most_points;
+  TALUS_ASSERT(!smoothed || entry(first).smoothed);
   guess.clear();
   if (again || keep_guess) guess = problem.rows.impulse;
 
@@ -117,7 +121,7 @@ Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double
   attempt(second, few, entry(first).far_off);
   if (best.solved.failed && few < options.max_sweeps)
     for (const SolverEntry& e : kSolvers)
-      if (e.goes_on) attempt(e.kind, options.max_sweeps, false);
+      if (e.goes_on && best.solved.failed) attempt(e.kind, options.max_sweeps, false);
   if (!best_stands) {
     problem.rows.impulse = std::move(best.impulse);
     problem.rate = std::move(best.rate);
@@ -125,6 +129,7 @@ Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double
     judged();
   }
   now.second_solver = true;
+  solvers.drop(second);  // what it keeps is for steps that are all its own
   return now;
 }
 

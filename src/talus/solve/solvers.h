@@ -28,6 +28,7 @@ const SolverEntry& entry(SolverKind kind);
 class SolverSet {
  public:
   Solver& of(SolverKind kind);
+  void drop(SolverKind kind) { made_[static_cast<size_t>(kind)].reset(); }
   /// Blocks are no longer the same.
   void forget() { made_ = {}; }
 

@@ -14,7 +14,6 @@ double Energy::largest() const {
   return most;
 }
 
-// Theory 8.
 double kinetic_energy(const BlockSet& blocks, const std::vector<BlockRate>& rate) {
   double sum = 0;
   for (int i = 0; i < blocks.count; ++i) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "talus/base/clock.h"
@@ -31,7 +30,7 @@ void check_travel(const BlockSet& blocks, const State& state, double dt) {
   }
 }
 
-void find_contacts(const Scene& scene, StepWork& work, State& state, StepReport& report) {
+void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport& report) {
   check_travel(scene.blocks, state, work.clock.dt);
   const LookAhead ahead{work.clock, work.rate_before};
   renew_pairs(scene.blocks, scene.bonds, scene.laws, ahead, work.workers, state);
@@ -56,14 +55,6 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   add_tie_rows(blocks, scene.boundaries.ties, state, clock, rows);
   add_bolt_rows(blocks, state, before, clock, rows);
   rows.finish();
-}
-
-// Points of faces that are tied without any give.
-size_t hard_ties(const RowSet& rows) {
-  size_t count = 0;
-  const RowRange faces = rows.range(Family::kFace);
-  for (size_t r = faces.begin; r < faces.end; ++r) count += rows.points[r].row[0].compliance == 0;
-  return count;
 }
 
 Smoothing smoothing(const ContactInput& contact, const StepClock& clock) {
@@ -126,7 +117,7 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   }
   {
     const Timed t = timed(Profile::kDetect);
-    find_contacts(scene, work, state, report);
+    seek_contacts(scene, work, state, report);
   }
   {
     const Timed t = timed(Profile::kSetUp);

@@ -24,7 +24,7 @@ class BoundaryMaker {
       const BoundaryInput& input = model_.boundaries[i];
       const std::vector<SelectedEdge> edges = outer_edges(layout_, input).edges;
       if (edges.empty() || !claim(input, edges)) continue;
-      if (input.kind == BoundaryKind::kTied)
+      if (entry(input.kind).two_sided)
         add_ties(static_cast<int>(i), edges);
       else
         add_edges(static_cast<int>(i), edges);
@@ -129,7 +129,7 @@ class BoundaryMaker {
     if (held.empty()) return;
     for (size_t i = 0; i < model_.boundaries.size(); ++i) {
       const BoundaryInput& b = model_.boundaries[i];
-      if (b.kind == BoundaryKind::kTied) continue;
+      if (entry(b.kind).two_sided) continue;
       const std::vector<SelectedEdge> edges = outer_edges(layout_, b).edges;
       const bool all = std::all_of(edges.begin(), edges.end(), [&held](const SelectedEdge& e) {
         return held.count({e.block, {e.from.x, e.from.y}}) && held.count({e.block, {e.to.x, e.to.y}});

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "talus/solve/contact_error.h"
 #include "talus/solve/newton.h"
 
 namespace test_gauss_seidel {

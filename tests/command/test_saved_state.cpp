@@ -402,7 +402,7 @@ TEST_CASE("command run --from: what cannot go on is refused") {
   REQUIRE(!pairs.empty());
   pairs[0] = forged.numbers.at("state.pairs.a")[0];
   write_archive(folder / "r/saved/forged.h5", forged);
-  refused("$talus run model.toml --from r/saved/forged.h5", 3, "the state is damaged");
+  refused("$talus run model.toml --from r/saved/forged.h5", 3, "the state is damaged: blocks");
   // 4 kB in the middle of the file: single bytes may lie in room that HDF5 has left between its tables
   refused(
       "cp r/saved/stage_02.h5 r/saved/bad.h5; s=$(stat -c %s r/saved/bad.h5); head -c 4096 /dev/zero | tr "

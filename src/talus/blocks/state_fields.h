@@ -1,7 +1,7 @@
 #pragma once
 // Every field of a State by name, the one list that saving, restoring and tests go through. A field that is
-// added to a struct does not compile until it is bound here; that it is handed on too, the test of saved states
-// counts in bytes.
+// added to a struct does not compile until it is bound here; that it is handed on too, the test of saved
+// states counts in bytes.
 
 #include "talus/blocks/state.h"
 

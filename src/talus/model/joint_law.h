@@ -107,7 +107,8 @@ struct JointKind {
   JointStrength (*worn)(const JointLaw& law, const JointWear& wear) = nullptr;
 };
 
-/// All kinds; JointProperty::kind is an index. The first is that of joints that name none, the second is bonded.
+/// All kinds; JointProperty::kind is an index. The first is that of joints that name none, the second is
+/// bonded.
 const std::vector<JointKind>& joint_kinds();
 inline constexpr int kBondedJoint = 1;
 

@@ -19,8 +19,8 @@ struct Replay {
 };
 
 /// Solves a problem written by problem_text(). Throws FileError naming file and cause.
-/// @param options    method (kAuto: what a run with these options would choose), second solver, Jacobian, most
-///                   iterations and sweeps
+/// @param options    method (kAuto: what a run with these options would choose), second solver, Jacobian,
+///                   most iterations and sweeps
 /// @param tolerance  largest contact error [m]
 Replay replay_problem(const std::filesystem::path& file, const SolverInput& options, double tolerance);
 

@@ -26,7 +26,8 @@ class Newton : public Solver {
   std::unique_ptr<Kept> kept_;
 };
 
-/// The same of bare rows, for tests: solves for the impulses of `set` (first guess in, solution out), which do not act.
+/// The same of bare rows, for tests: solves for the impulses of `set` (first guess in, solution out),
+/// which do not act.
 /// @param rate       v*, rates without the rows
 /// @param tolerance  residual at which to stop [m/s]
 /// @param smoothing  of the law, off by default

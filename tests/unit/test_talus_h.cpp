@@ -51,13 +51,26 @@ duration = 1
 time_step = 1e-3
 )";
 
-// Lines of a source without indentation and without the marks of comments.
-std::vector<std::string> lines_of(const std::string& source) {
+// Lines of code without indentation: of the header those in its comment, which stand three blanks after the
+// slashes, of this file those between two marks.
+std::vector<std::string> shown(const std::string& header) {
+  std::vector<std::string> lines;
+  std::istringstream in(header);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("//   ")) lines.push_back(line.substr(line.find_first_not_of(" /")));
+  return lines;
+}
+std::vector<std::string> compiled(const std::string& source) {
   std::vector<std::string> lines;
   std::istringstream in(source);
+  bool within = false;
   for (std::string line; std::getline(in, line);) {
-    const size_t begin = line.find_first_not_of(" /");
-    if (begin != std::string::npos) lines.push_back(line.substr(begin));
+    const size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos) continue;
+    line = line.substr(begin);
+    const bool mark = line.starts_with("// the words of the header, ");
+    if (mark) within = line.ends_with("begin");
+    if (within && !mark) lines.push_back(line);
   }
   return lines;
 }
@@ -78,21 +91,9 @@ TEST_CASE("talus.h: its example compiles and runs") {
 }
 
 TEST_CASE("talus.h: its example is the one above, word by word") {
-  const std::string source = read_text_file(TALUS_SOURCE_DIR "/tests/unit/test_talus_h.cpp");
-  const std::vector<std::string> header = lines_of(read_text_file(TALUS_SOURCE_DIR "/src/talus/talus.h"));
-  int found = 0;
-  bool within = false;
-  for (const std::string& line : lines_of(source)) {
-    if (line.starts_with("the words of the header")) {
-      within = line.ends_with("begin");
-      continue;
-    }
-    if (!within) continue;
-    INFO(line);
-    CHECK(std::find(header.begin(), header.end(), line) != header.end());
-    ++found;
-  }
-  CHECK(found == 12);
+  const std::vector<std::string> example = shown(read_text_file(TALUS_SOURCE_DIR "/src/talus/talus.h"));
+  CHECK(!example.empty());
+  CHECK(compiled(read_text_file(TALUS_SOURCE_DIR "/tests/unit/test_talus_h.cpp")) == example);
 }
 
 }  // namespace test_talus_h

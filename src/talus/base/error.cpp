@@ -3,8 +3,7 @@
 namespace talus {
 
 void fail_assertion(const char* condition, const char* file, int line) {
-  throw std::logic_error(std::string("talus internal error: ") + condition + " does not hold at " + file +
-                         ":" + std::to_string(line));
+  throw std::logic_error(std::string(condition) + " does not hold at " + file + ":" + std::to_string(line));
 }
 
 }  // namespace talus

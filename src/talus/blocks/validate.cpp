@@ -12,8 +12,7 @@ namespace {
 
 template <class... Args>
 void promise(bool kept, fmt::format_string<Args...> what, Args&&... args) {
-  if (!kept)
-    throw std::logic_error("talus internal error: " + fmt::format(what, std::forward<Args>(args)...));
+  if (!kept) throw std::logic_error(fmt::format(what, std::forward<Args>(args)...));
 }
 
 void promise_length(const auto& array, size_t length, const char* name) {

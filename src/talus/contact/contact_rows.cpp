@@ -164,15 +164,15 @@ class ContactRows {
     p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.corner()));
     p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
     p.normal = q.over.normal;
-    const double area = c.length * blocks_.thickness;
-    const JointStrength bears = law.worn({c.slip, area > 0 ? c.force[0] / area : 0});
+    const JointStrength bears = law.worn(c.slip);
     p.friction = bears.friction;
     p.lower = 0, p.cohesion = 0;
     const bool soft = law.is_soft(0), springs = law.is_soft();
     const double size = size_of(pair), slop = model_.contact.slop * size;
     p.row[0].bias = soft ? (q.gap + q.closure.x) / clock_.dt : hard_bias(q.gap + c.allowed, slop, clock_.dt);
     // what a broken face keeps, end by end, while it is in touch
-    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b)) bound(bears.over(area * clock_.dt_kick), p);
+    if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b))
+      bound(bears.over(c.length * blocks_.thickness * clock_.dt_kick), p);
 
     Impulse guess{};
     if (c.memory == Contact::kNone) {

@@ -13,10 +13,10 @@ enum class BoundaryKind { kViscous, kFreeField, kTied };
 struct BoundaryEntry {
   BoundaryKind kind;
   std::string_view name;
-  const char* title;       // in pictures
-  std::string_view doc;    // of the key
-  const char* no_motion;   // why it takes no motion, and what does instead; "": it brings one in
-  bool two_sided = false;  // has an opposite side
+  const char* title;           // in pictures
+  std::string_view doc;        // of the key
+  std::string_view no_motion;  // why it takes no motion, and what does instead; "": it brings one in
+  bool two_sided = false;      // has an opposite side
 };
 
 /// In the order of the enumeration. A new kind is a line here, and its rows.

@@ -5,7 +5,7 @@ namespace talus {
 // A kind with keys or a strength of its own is a file of its own: a function that returns it, declared here
 // and called in the list. What else asks for the strength of a joint, and takes it to be Coulomb's of the
 // properties that all joints have: the audit (run/auditor.cpp), the factor of safety (reduced()), `auto` of
-// elasticity (step/scene.cpp). Pressure is known at the ends of faces alone. Kinds share no key.
+// elasticity (step/scene.cpp). Kinds share no key.
 
 const std::vector<JointKind>& joint_kinds() {
   static const std::vector<JointKind> kinds{

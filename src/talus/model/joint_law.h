@@ -27,12 +27,6 @@ struct JointStrength {
   double limit(double normal) const { return std::max(0.0, cohesion + friction * normal); }
 };
 
-/// What a place on a joint has been through, and bears.
-struct JointWear {
-  double slip = 0;      // both ways added up [m]
-  double pressure = 0;  // > 0 pressing, in the step before [Pa]
-};
-
 /// Why properties are no law.
 struct JointDefect {
   const char* key = "";    // of the joint, to be mended
@@ -53,8 +47,9 @@ class JointLaw {
   bool bonded() const { return bonded_; }
   const JointStrength& peak() const { return peak_; }          // of a face that is whole
   const JointStrength& residual() const { return residual_; }  // once it has slipped or opened
-  /// Of a place where two blocks touch that are no face held together; of most kinds the residual one.
-  JointStrength worn(const JointWear& wear) const { return worn_ ? worn_(*this, wear) : residual_; }
+  /// Of a place where two blocks touch that are no face held together, after a slip, both ways added up
+  /// [m]; of most kinds the residual one.
+  JointStrength worn(double slip) const { return worn_ ? worn_(*this, slip) : residual_; }
   /// Value of key `k` of those that its kind alone has [SI].
   double own(size_t k) const { return own_.at(k); }
   /// Whether a face that touches at the start has anything to lose.
@@ -92,7 +87,7 @@ class JointLaw {
   double dilation_ = 0, dilation_slip_ = 0;  // rise per slip; [m]
   double stiffness_[2] = {0, 0};             // [Pa/m]
   double restitution_ = -1;
-  JointStrength (*worn_)(const JointLaw&, const JointWear&) = nullptr;
+  JointStrength (*worn_)(const JointLaw&, double) = nullptr;
   std::vector<double> own_;
 };
 
@@ -104,7 +99,7 @@ struct JointKind {
   /// Adds what keeps them from being a law; none: nothing does.
   void (*check)(const JointProperty& joint, std::vector<JointDefect>& out) = nullptr;
   /// JointLaw::worn; none: the residual strength.
-  JointStrength (*worn)(const JointLaw& law, const JointWear& wear) = nullptr;
+  JointStrength (*worn)(const JointLaw& law, double slip) = nullptr;
 };
 
 /// All kinds; JointProperty::kind is an index. The first is that of joints that name none, the second is

@@ -99,12 +99,12 @@ class ActionReader : private SectionReader {
     b.outcrop = f.get<std::string>("motion") == "outcrop";
     const auto hold = f.get<std::string>("static");
     b.hold = hold == "roller" ? StaticHold::kRoller : hold == "free" ? StaticHold::kFree : StaticHold::kFixed;
-    if (!kind.empty() && *of_kind.no_motion == '\0') {
+    if (!kind.empty() && of_kind.no_motion.empty()) {
       check_input_motion(f);
       warn_still_moving(f, "velocity_x", b.history_x);
       warn_still_moving(f, "velocity_y", b.history_y);
     }
-    if (*of_kind.no_motion != '\0') refuse_input_motion(f, of_kind.no_motion);
+    if (!of_kind.no_motion.empty()) refuse_input_motion(f, std::string(of_kind.no_motion));
     if (of_kind.two_sided)
       read_opposite(f, b);
     else if (!kind.empty())

@@ -7,12 +7,6 @@ namespace talus {
 
 namespace {
 
-std::vector<std::string> boundary_kinds() {
-  std::vector<std::string> names;
-  for (const BoundaryEntry& kind : kBoundaries) names.emplace_back(kind.name);
-  return names;
-}
-
 std::string_view boundary_kinds_doc() {
   static const std::string doc = doc_of_choices(kBoundaries);
   return doc;
@@ -30,7 +24,7 @@ SectionSpec boundary_section() {
        {.name = "kind",
         .type = K::kChoice,
         .required = true,
-        .choices = boundary_kinds(),
+        .choices = names_of_choices(kBoundaries),
         .doc = boundary_kinds_doc()},
        {.name = "edge",
         .type = K::kPoints,

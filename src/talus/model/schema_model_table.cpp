@@ -7,12 +7,6 @@ namespace talus {
 
 namespace {
 
-std::vector<std::string> joint_kind_names() {
-  std::vector<std::string> names;
-  for (const JointKind& kind : joint_kinds()) names.emplace_back(kind.name);
-  return names;
-}
-
 std::string_view joint_kind_doc() {
   static const std::string doc = doc_of_choices(joint_kinds());
   return doc;
@@ -98,7 +92,7 @@ std::vector<SectionSpec> sections_of_model() {
        {{.name = "kind",
          .type = K::kChoice,
          .default_text = "\"frictional\"",
-         .choices = joint_kind_names(),
+         .choices = names_of_choices(joint_kinds()),
          .doc = joint_kind_doc()},
         {.name = "friction_angle",
          .dimension = D::kAngle,

@@ -59,6 +59,13 @@ inline KeySpec move_key() {
           .doc = "Moved by this, after it has been turned."};
 }
 
+/// The choices of a table of { name, doc }.
+std::vector<std::string> names_of_choices(const auto& table) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(entry.name);
+  return names;
+}
+
 /// What each choice of a table of { name, doc } means.
 std::string doc_of_choices(const auto& table) {
   std::string text;

@@ -16,8 +16,7 @@ void validate_point(const RowSet& rows, size_t r, int blocks) {
   const RowRange family = rows.range(rows.owner[r].family);
   const auto promise = [&](bool kept, const char* what) {
     if (!kept)
-      throw std::logic_error(
-          fmt::format("talus internal error: row {} ({}): {}", r, entry(rows.owner[r].family).name, what));
+      throw std::logic_error(fmt::format("row {} ({}): {}", r, entry(rows.owner[r].family).name, what));
   };
   promise(r >= family.begin && r < family.end && rows.owner[r].index >= 0,
           "stands among those of another family");
@@ -40,7 +39,7 @@ void validate_point(const RowSet& rows, size_t r, int blocks) {
 void validate(const RowSet& rows, int blocks) {
   if (rows.points.size() != rows.size() || rows.impulse.size() != rows.size() ||
       rows.owner.size() != rows.size())
-    throw std::logic_error("talus internal error: rows without an impulse or an owner");
+    throw std::logic_error("rows without an impulse or an owner");
   for (size_t r = 0; r < rows.size(); ++r) validate_point(rows, r, blocks);
 }
 

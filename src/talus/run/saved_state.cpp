@@ -145,10 +145,9 @@ SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
   try {
     validate(saved.state, scene.blocks);
   } catch (const std::logic_error& e) {
-    const std::string what = e.what();  // "talus internal error: WHAT"
     throw InputError(
         fmt::format("{}: error: the state is damaged: {}. Go on from another one, or run the model anew\n",
-                    path.string(), what.substr(what.find(": ") + 2)));
+                    path.string(), e.what()));
   }
   return saved;
 }

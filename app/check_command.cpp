@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -42,7 +41,7 @@ void print_time(const PreparedRun& run) {
 }  // namespace
 
 int check_command(const ModelArguments& args, const std::string& folder, bool force) {
-  if (!folder.empty()) check_result_folder(folder, force);
+  if (!folder.empty()) check_result_folder(folder, force, ResultKind::kPicture);
   Cut cut;
   const auto& [findings, run] = prepare_model(args, &cut);
   const Prediction p = predict(run.scene, run.plans);
@@ -87,8 +86,8 @@ int check_command(const ModelArguments& args, const std::string& folder, bool fo
              at_most ? "at most " : "about ", readable_bytes(p.output), p.history_rows, p.step_rows,
              p.frames);
   if (!folder.empty()) {
-    open_result_folder(folder, force, ResultKind::kPicture);
-    const auto stem = std::filesystem::path(folder) / "cut";
+    ResultFolder out(folder, force, ResultKind::kPicture);
+    const auto stem = out.note_picture("cut");
     plot::write_cut_picture(run.scene.model, cut, run.scene.layout, stem);
     fmt::print("  picture    {0}.png, {0}.svg: blocks, joints and what acts on them\n", stem.string());
   }

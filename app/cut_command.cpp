@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
@@ -13,7 +12,7 @@
 #include "talus/maps/vector_module.h"
 #include "talus/model/read_model.h"
 #include "talus/output/cut_report.h"
-#include "talus/output/files.h"
+#include "talus/output/result_folder.h"
 #include "talus/plot/cut_picture.h"
 #include "talus/plot/map_picture.h"
 #include "talus/run/check_monitors.h"
@@ -22,7 +21,7 @@ namespace talus::app {
 
 int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
                 bool force) {
-  check_result_folder(folder, force);
+  check_result_folder(folder, force, ResultKind::kCut);
   const std::string text_of_file = read_text_file(file);
   Findings map_findings(file, text_of_file);
   const maps::ExpandedModel expanded =
@@ -46,19 +45,18 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   findings.throw_if_errors();
   if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
 
-  open_result_folder(folder, force, ResultKind::kCut);
+  ResultFolder out(folder, force, ResultKind::kCut);
   const CutStatistics statistics = cut_statistics(model, cut);
   const std::string report = map_report_text(expanded.report) + cut_report(model, cut, statistics);
-  const std::filesystem::path out(folder);
-  write_file(out / "cut.json", cut_summary(model, cut, statistics));
-  write_file(out / "model.toml",
-             expanded.has_maps ? maps::with_folder(model.text, expanded.folder, out) : model.text);
-  write_file(out / "blocks.json", blocks_file_text(model, cut));
-  write_file(out / "blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
-  write_file(out / "slivers.csv", slivers_csv(cut));
-  write_file(out / "report.txt", report);
-  plot::write_cut_picture(model, cut, layout, out / "cut");
-  if (expanded.has_maps) plot::write_map_picture(expanded.report, out / "map");
+  out.write("cut.json", cut_summary(model, cut, statistics));
+  out.write("model.toml",
+            expanded.has_maps ? maps::with_folder(model.text, expanded.folder, out.path()) : model.text);
+  out.write("blocks.json", blocks_file_text(model, cut));
+  out.write("blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
+  out.write("slivers.csv", slivers_csv(cut));
+  out.write("report.txt", report);
+  plot::write_cut_picture(model, cut, layout, out.note_picture("cut"));
+  if (expanded.has_maps) plot::write_map_picture(expanded.report, out.note_picture("map"));
   fmt::print(
       "{}\nwritten to {}: cut.png and cut.svg (picture), {}blocks.json (for cut.blocks), blocks.csv, "
       "slivers.csv, report.txt, cut.json, model.toml{}\n",

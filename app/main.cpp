@@ -1,16 +1,18 @@
 // The `talus` command: argument parsing and nothing else.
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <iostream>
-#include <optional>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include "audit_command.h"
 #include "check_command.h"
@@ -21,21 +23,17 @@
 #include "plot_command.h"
 #include "prepare_model.h"
 #include "record_command.h"
+#include "replay_command.h"
 #include "report_command.h"
+#include "run_command.h"
 #include "safety_command.h"
+#include "signals.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
-#include "talus/run/base_report.h"
-#include "talus/run/problem_file.h"
-#include "talus/run/progress.h"
-#include "talus/run/resolution.h"
 #include "talus/talus.h"
 #include "verify_command.h"
 
 namespace {
-
-volatile std::sig_atomic_t stop_requested = 0;
-extern "C" void request_stop(int) { stop_requested = 1; }
 
 using talus::app::ModelArguments;
 
@@ -51,106 +49,25 @@ void add_strict(CLI::App& verb, ModelArguments& args) {
   verb.add_flag("--strict", args.strict, "take warnings of the model for errors");
 }
 
-struct RunArguments {
-  std::string folder, from;
-  bool force = false, quiet = false, profile = false;
-  int64_t dump_step = -1;
-  int threads = 0;  // 0: as many as pay
-};
-
-int run(const ModelArguments& args, const RunArguments& how) {
-  const auto& [output, from, force, quiet, profile, dump_step, threads] = how;
-  if (from.empty()) talus::check_result_folder(output, force);
-  auto [findings, prepared] = talus::app::prepare_model(args);
-  talus::SavedRun saved;
-  const std::string folder = from.empty() ? output : talus::folder_of_saved(from, output);
-  if (!from.empty())
-    saved = talus::read_saved_run(from, prepared.scene);
-  else
-    talus::open_result_folder(folder, force);
-
-  std::optional<talus::Recorder> recorder;
-  if (from.empty())
-    recorder.emplace(prepared.scene, folder);
-  else
-    recorder.emplace(prepared.scene, folder, saved.archive);
-  recorder->dump_step(dump_step);
-  talus::State state = from.empty() ? talus::start_state(prepared.scene) : std::move(saved.state);
-  std::FILE* out = quiet ? std::fopen("/dev/null", "w") : stdout;
-  talus::Progress progress(*recorder, out, isatty(fileno(out)) != 0);
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  progress.stop_when(&stop_requested);
-  fmt::print(out, "{}{}", talus::base_report(prepared.scene), talus::resolution_report(prepared.scene));
-  const talus::Workers workers(threads > 0 ? threads : talus::threads_for(prepared.scene.blocks.count));
-  if (!from.empty())
-    fmt::print(out, "goes on from {}: t = {:.6g} s, step {}\n", from, state.time, state.step);
-  const talus::RunResult result =
-      from.empty()
-          ? talus::run_stages(prepared.scene, prepared.plans, state, progress, workers)
-          : talus::continue_stages(prepared.scene, prepared.plans, saved.standing, state, progress, workers);
-  progress.finish();
-  recorder->finish(result, args.overrides, findings);
-  fmt::print(out, "{}",
-             talus::closing_text(prepared.scene, result, recorder->joints(), folder, recorder->audit()));
-  if (profile) fmt::print(out, "{}", talus::profile_text(result.profile, result.threads, result.steps));
-  if (!result.failure.empty())
-    throw talus::NumericalError(result.failure + fmt::format("\nresults up to then are in {}", folder));
-  if (result.interrupted) return talus::kExitInterrupted;
-  const auto audit = recorder->audit();
-  return audit && !audit->valid() ? talus::kExitNotValid : talus::kExitOk;
-}
-
-int replay(const std::string& file, const std::string& method, double tolerance) {
-  talus::SolverInput options;
-  options.method = talus::solver_called(method);
-  options.second_solver = options.method == talus::SolverKind::kAuto;  // one that is named is seen alone
-  const talus::Replay r = talus::replay_problem(file, options, tolerance);
-  fmt::print("{}: {} points on {} blocks, {} islands (largest {})\n", file, r.points, r.blocks,
-             r.solved.report.islands, r.solved.report.largest_island);
-  fmt::print("  {:<14} {} iterations, contact error {:.3e} m{}\n", talus::name_of(r.solved.method),
-             r.solved.report.iterations, r.solved.error.worst,
-             r.solved.second_solver ? "; the first solver failed" : "");
-  double normal = 0, shear = 0;
-  for (const talus::Impulse& p : r.rows.impulse) normal += p[0], shear += std::abs(p[1]);
-  fmt::print("  impulses       normal {:.12g} N s in all, tangential {:.12g} N s in magnitude\n", normal,
-             shear);
-  return r.solved.error.worst <= tolerance ? talus::kExitOk : talus::kExitNumerical;
-}
-
-int run_command(int argc, char** argv) {
+int verb_of_line(int argc, char** argv) {
   CLI::App app(
       "talus: blocks that move, slip and break under dynamic load, with contact forces found exactly");
   app.set_version_flag("--version",
                        fmt::format("talus {} (model format {})", talus::kVersion, talus::kModelFormat));
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 8 not "
-      "valid by its audit, 130 interrupted.\nHelp on a verb: talus VERB --help");
+      "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 7 no memory "
+      "or threads, 8 not valid by its audit, 128 + N ended by signal N (130: Ctrl-C).\nHelp on a verb: talus VERB "
+      "--help");
 
   ModelArguments model;
-  RunArguments how;
+  talus::app::RunArguments how;
   std::string folder;
   bool force = false, json = false;
   CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
   add_model_arguments(*run_verb, model);
   add_strict(*run_verb, model);
-  CLI::Option* output = run_verb->add_option("-o,--output", how.folder, "folder for the results");
-  CLI::Option* from = run_verb->add_option(
-      "--from", how.from, "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in");
-  run_verb->add_flag("--force", how.force, "replace the results of an earlier run in that folder");
-  run_verb->add_flag("-q,--quiet", how.quiet, "say nothing but errors");
-  run_verb
-      ->add_option("--threads", how.threads,
-                   "threads inside a step, 0: as many as pay; results are the same for any number")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  run_verb->add_flag("--profile", how.profile,
-                     "print the share of each part of a step in the time of the run");
-  run_verb->add_option("--dump-step", how.dump_step,
-                       "also write the contact equations of this step, as step_N.json, for talus replay");
-  run_verb->footer(
-      "Example: talus run examples/impact_bar/impact_bar.toml -o out/bar --set grid.bar.cells=[20,1]");
+  talus::app::add_run_arguments(*run_verb, how);
 
   CLI::App* check_verb =
       app.add_subcommand("check", "check a model and predict its steps, memory and output; runs nothing");
@@ -211,20 +128,10 @@ int run_command(int argc, char** argv) {
       "make a strong-motion record, or a synthetic motion, ready for a model: measures, figures, CSV");
   talus::app::add_record_arguments(*record_verb, record);
 
-  std::string problem, method = "newton";
-  double tolerance = 1e-9;
+  talus::app::ReplayArguments problem;
   CLI::App* replay_verb = app.add_subcommand(
       "replay", "solve the contact equations of one step again, with any solver, or by the choice of a run");
-  replay_verb->add_option("FILE", problem, "step_N.json from a result folder")->required();
-  replay_verb->add_option("--method", method, "solver")
-      ->check(CLI::IsMember(std::vector<std::string>(talus::kSolverName.begin(), talus::kSolverName.end())))
-      ->capture_default_str();
-  replay_verb->add_option("--tolerance", tolerance, "largest contact error [m]")
-      ->check([](const std::string& text) { return std::atof(text.c_str()) > 0 ? "" : "must be > 0"; })
-      ->capture_default_str();
-  replay_verb->footer(
-      "Example: talus run model.toml -o out/m --dump-step 100 && talus replay out/m/step_100.json --method "
-      "gauss_seidel");
+  talus::app::add_replay_arguments(*replay_verb, problem);
 
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
@@ -263,17 +170,13 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? talus::kExitOk : talus::kExitUsage;
   }
-  if (*run_verb && output->count() + from->count() == 0) {
-    fmt::print(stderr, "talus: run needs -o FOLDER for the results, or --from STATE to go on\n");
-    return talus::kExitUsage;
-  }
-  if (*run_verb) return run(model, how);
+  if (*run_verb) return talus::app::run_command(model, how);
   if (*check_verb) return talus::app::check_command(model, folder, force);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
   if (*safety_verb) return talus::app::safety_command(model, folder, force, how.threads);
-  if (*replay_verb) return replay(problem, method, tolerance);
+  if (*replay_verb) return talus::app::replay_command(problem);
   if (*record_verb) return talus::app::record_command(record);
   if (*report_verb) return talus::app::report_command(report);
   if (*audit_verb) return talus::app::audit_command(folder, how.threads);
@@ -287,24 +190,71 @@ int run_command(int argc, char** argv) {
   return talus::kExitOk;
 }
 
-}  // namespace
+// Descriptors 0 to 2 are there: else the first files that are opened would be taken for them, and progress
+// would be written into a table of results. What was closed stays of no use: to read from an output, to write
+// to an input.
+void open_standard_descriptors() {
+  for (const int number : {0, 1, 2}) {
+    if (fcntl(number, F_GETFD) != -1 || errno != EBADF) continue;
+    if (open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY) != number) _exit(talus::kExitFile);
+  }
+}
 
-int main(int argc, char** argv) {
-  // factorisations allocate and release the same megabyte every step: keep it instead of asking the system
-  // anew
-  mallopt(M_MMAP_THRESHOLD, 1 << 28);
-  mallopt(M_TRIM_THRESHOLD, 1 << 28);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit shows as a write error with its own message
+// Why standard output failed, when printing told; 0: it did not.
+int output_error = 0;
+
+// What was printed has arrived; else says why not. A code that tells of something worse stays.
+int with_output_checked(int code) {
+  if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno;
+  if (std::ferror(stdout) == 0 && output_error == 0) return code;
+  std::fprintf(stderr, "talus: standard output cannot be written%s%s\n", output_error != 0 ? ": " : "",
+               output_error != 0 ? std::strerror(output_error) : "");
+  return code == talus::kExitOk ? talus::kExitFile : code;
+}
+
+int code_of(int argc, char** argv) {
   try {
-    return run_command(argc, argv);
+    return verb_of_line(argc, argv);
   } catch (const talus::Error& e) {
     fmt::print(stderr, "{}{}\n", e.code() == talus::kExitInput ? "" : "talus: ", e.what());
     return e.code();
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "talus: not enough memory; talus check predicts what a model needs\n");
-    return talus::kExitNumerical;
+    return talus::kExitResources;
+  } catch (const std::length_error&) {
+    fmt::print(stderr, "talus: not enough memory: something would be larger than memory can be\n");
+    return talus::kExitResources;
+  } catch (const std::filesystem::filesystem_error& e) {
+    fmt::print(stderr, "talus: {}: {}\n", e.path1().string(), e.code().message());
+    return talus::kExitFile;
+  } catch (const std::system_error& e) {
+    if (std::ferror(stdout)) {
+      output_error = e.code().value();
+      return talus::kExitOk;  // with_output_checked() judges it
+    }
+    if (e.code() != std::errc::resource_unavailable_try_again) throw;
+    fmt::print(stderr,
+               "talus: no more threads can be started: {}. Give --threads 1, or raise the limit of "
+               "processes (ulimit -u)\n",
+               e.code().message());
+    return talus::kExitResources;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_standard_descriptors();
+  // factorisations allocate and release the same megabyte every step: keep it instead of asking the system
+  // anew
+  mallopt(M_MMAP_THRESHOLD, 1 << 28);
+  mallopt(M_TRIM_THRESHOLD, 1 << 28);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit shows as a write error with its own message
+  talus::app::end_on_signals();
+  try {
+    return with_output_checked(code_of(argc, argv));
   } catch (const std::exception& e) {
-    fmt::print(stderr, "talus: internal error: {}\n", e.what());
+    std::fprintf(stderr, "talus: internal error: %s\n", e.what());
     return talus::kExitInternal;
   }
 }

@@ -64,13 +64,7 @@ plot::BlockPicture picture_of(const Series& s, size_t frame, const std::string& 
 }
 
 void write(const plot::BlockPicture& picture, const fs::path& stem) {
-  try {
-    plot::write_block_picture(picture, stem);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::runtime_error& e) {
-    throw FileError(e.what());
-  }
+  plot::write_block_picture(picture, stem);
   fmt::print("{0}.svg\n{0}.png\n", stem.string());
 }
 

@@ -10,7 +10,8 @@
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
+#include "talus/output/result_folder.h"
 #include "talus/plot/block_picture.h"
 #include "talus/plot/figure.h"
 
@@ -117,7 +118,7 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
             {label + " (each step)", t, tables[i].column(args.raw), color, plot::Style::kThin, false});
       figure.curves.push_back({label, t, tables[i].column(columns[c]), color, plot::Style::kSolid, true});
       if (i >= args.references.size()) continue;
-      const CsvTable reference = read_csv(args.references[i]);
+      const CsvTable reference = read_csv(args.references[i], LastLine::kMayEnd);
       figure.curves.push_back({"dashed: " + args.reference_label, in_unit(reference.values[0], scale),
                                reference_values(reference, titles[c]), color, plot::Style::kDashed,
                                i + c == 0});
@@ -125,11 +126,7 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
   }
   if (args.limit_y.size() == 2) figure.y_min = args.limit_y[0], figure.y_max = args.limit_y[1];
   if (args.limit_t.size() == 2) figure.x_min = args.limit_t[0], figure.x_max = args.limit_t[1];
-  try {
-    plot::write_figure(figure, stem);
-  } catch (const std::runtime_error& e) {
-    throw FileError(e.what());
-  }
+  plot::write_figure(figure, stem);
   fmt::print("{0}.svg\n{0}.png\n", stem.string());
 }
 
@@ -204,7 +201,9 @@ int plot_command(const PlotArguments& args) {
     if (!fs::is_directory(folder, ec)) throw FileError(fmt::format("{}: there is no such folder", folder));
     if (!fs::exists(fs::path(folder) / "histories.csv", ec))
       throw FileError(fmt::format("{}: holds no results of talus run: histories.csv is missing", folder));
-    tables.push_back(read_csv(fs::path(folder) / "histories.csv"));
+    tables.push_back(read_csv(fs::path(folder) / "histories.csv", LastLine::kMustEnd));
+    if (tables.back().cut_short)
+      fmt::print(stderr, "talus: note: {}/histories.csv: its last row is not whole, and left out\n", folder);
     if (!args.stage.empty()) tables.back() = only_stage(std::move(tables.back()), folder, args.stage);
   }
   if (!args.columns.empty()) {

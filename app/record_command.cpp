@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "talus/base/error.h"
 #include "talus/base/text.h"
-#include "talus/output/files.h"
+#include "talus/output/result_folder.h"
 #include "talus/plot/record_figures.h"
 #include "talus/record/measures.h"
 #include "talus/record/motion_file.h"
@@ -187,11 +186,12 @@ int record_command(const RecordArguments& args) {
   curves.push_back({made, &out.motion});
   fmt::print("{}", record::measures_table(columns));
 
-  open_result_folder(args.folder, args.force, ResultKind::kRecord);
-  const std::filesystem::path folder(args.folder);
-  write_file(folder / "record.json", record::record_json(account));  // first: it marks the folder as ours
-  write_file(folder / "motion.csv", record::motion_csv(out.motion));
-  plot::write_record_figures(out.title, curves, out.target ? &*out.target : nullptr, folder);
+  ResultFolder folder(args.folder, args.force, ResultKind::kRecord);
+  folder.write("record.json", record::record_json(account));
+  folder.write("motion.csv", record::motion_csv(out.motion));
+  for (const char* figure : {"acceleration", "velocity", "displacement", "spectrum"})
+    folder.note_picture(figure);
+  plot::write_record_figures(out.title, curves, out.target ? &*out.target : nullptr, folder.path());
   fmt::print(
       "written to {}: motion.csv (for [history.NAME] file and column), record.json, acceleration, velocity, "
       "displacement and spectrum as .svg and .png\n",

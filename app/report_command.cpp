@@ -49,7 +49,11 @@ void add_report_arguments(CLI::App& verb, ReportArguments& args) {
 int report_command(const ReportArguments& args) {
   const std::string page = page_text();
   std::vector<report::RunFolder> runs;
-  for (const std::string& folder : args.folders) runs.push_back(report::read_run_folder(folder));
+  for (const std::string& folder : args.folders) {
+    runs.push_back(report::read_run_folder(folder));
+    for (const std::string& note : runs.back().notes)
+      fmt::print(stderr, "talus: note: {}: {}\n", folder, note);
+  }
   report::PageNotes notes;
   const std::string html =
       report::report_page(page, runs, {.frames = args.frames, .megabytes = args.megabytes}, notes);

@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 
 #include "talus/talus.h"
 
 namespace talus::app {
 
 int safety_command(const ModelArguments& args, const std::string& folder, bool force, int threads) {
-  check_result_folder(folder, force);
+  check_result_folder(folder, force, ResultKind::kSafety);
   const PreparedRun prepared = prepare_model(args).run;
-  open_result_folder(folder, force, ResultKind::kSafety);
-  const std::filesystem::path out(folder);
-  write_file(out / "model.toml", prepared.scene.model.text);
+  ResultFolder out(folder, force, ResultKind::kSafety);
+  out.write("model.toml", prepared.scene.model.text);
   fmt::print("  {:>9}  {:<6}  {:<18}  {:>9}  {:>8}  {:>10}  {:>10}  {}\n", "factor", "", "ended by",
              "time [s]", "steps", "unbalanced", "moved [m]", "block");
   const Workers workers(threads > 0 ? threads : threads_for(prepared.scene.blocks.count));
@@ -22,8 +20,8 @@ int safety_command(const ModelArguments& args, const std::string& folder, bool f
     fmt::print("{}", safety_line(t));
     std::fflush(stdout);
   });
-  write_file(out / "safety.csv", safety_csv(result));
-  write_file(out / "safety.json", safety_json(prepared.scene.model, result));
+  out.write("safety.csv", safety_csv(result));
+  out.write("safety.json", safety_json(prepared.scene.model, result));
   fmt::print("{}written to {}: safety.csv, safety.json\n", safety_text(result), folder);
   return kExitOk;
 }

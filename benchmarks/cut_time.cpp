@@ -14,7 +14,7 @@
 
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
 #include "talus/plot/figure.h"
 
 namespace {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "talus/base/text_file.h"
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
 #include "talus/talus.h"
 
 namespace {

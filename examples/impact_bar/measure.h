@@ -8,7 +8,7 @@
 #include <string>
 
 #include "exact.h"
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
 
 namespace talus::example {
 

@@ -10,6 +10,7 @@
 #include "exact.h"
 #include "measure.h"
 #include "talus/base/error.h"
+#include "talus/output/files.h"
 
 namespace {
 

@@ -12,6 +12,7 @@
 
 #include "support/command.h"
 #include "talus/base/text_file.h"
+#include "talus/output/csv.h"
 #include "talus/output/files.h"
 
 namespace test_cut_command {
@@ -119,14 +120,14 @@ Outcome check_changed(const std::function<void(nlohmann::json&)>& change) {
 
 }  // namespace
 
-TEST_CASE("command: check -o takes nothing of an earlier cut away but its picture") {
+TEST_CASE("command: check -o takes nothing of an earlier cut away") {
   const Folder f;
   REQUIRE(shell(f, fmt::format("$talus cut {} -o out", kSettle)).code == 0);
-  const auto old = fs::last_write_time(f / "out" / "cut.png");
-  CHECK(shell(f, fmt::format("$talus check {} -o out --force", kSettle)).code == 0);
-  for (const char* name : {"cut.json", "blocks.json", "blocks.csv", "report.txt"})
+  const Outcome o = shell(f, fmt::format("$talus check {} -o out --force", kSettle));
+  CHECK(o.code == 4);
+  has(o.text, "out: holds results of talus cut, which --force of talus check does not replace");
+  for (const char* name : {"cut.json", "cut.png", "blocks.json", "blocks.csv", "report.txt"})
     CHECK(fs::exists(f / "out" / name));
-  CHECK(fs::last_write_time(f / "out" / "cut.png") > old);
 }
 
 TEST_CASE("command: cut writes every file and runs nothing, with a stage or without") {
@@ -137,7 +138,7 @@ TEST_CASE("command: cut writes every file and runs nothing, with a stage or with
     std::set<std::string> files;
     for (const auto& e : fs::directory_iterator(f / "out")) files.insert(e.path().filename().string());
     CHECK(files == std::set<std::string>{"blocks.csv", "blocks.json", "cut.json", "cut.png", "cut.svg",
-                                         "model.toml", "report.txt", "slivers.csv"});
+                                         "model.toml", "report.txt", "slivers.csv", "talus_manifest.txt"});
     CHECK(read_text_file(f / "out/model.toml") == read_text_file(model));
     has(o.text, read_text_file(f / "out/report.txt"));
     has(o.text, "written to out:");
@@ -179,13 +180,16 @@ TEST_CASE("command: cut replaces its own results only") {
   CHECK(again.code == 4);
   has(again.text, "out: exists already; nothing was run. Give another folder with -o, or --force");
   CHECK(shell(f, cut + "out --force").code == 0);
-  // results of a run are results of ours
+  // results of a run are none of a cut, and the other way round
   CHECK(shell(f, fmt::format("$talus run {} -o run -q {}", kSettle, kShort)).code == 0);
   CHECK(shell(f, cut + "run").code == 4);
-  CHECK(shell(f, cut + "run --force").code == 0);
-  CHECK(fs::exists(f / "run/histories.csv"));  // a cut leaves what a run has written, and the other way round
-  CHECK(shell(f, fmt::format("$talus run {} -o run -q --force {}", kSettle, kShort)).code == 0);
-  CHECK(fs::exists(f / "run/blocks.json"));
+  const Outcome over_run = shell(f, cut + "run --force");
+  CHECK(over_run.code == 4);
+  has(over_run.text, "run: holds results of talus run, which --force of talus cut does not replace");
+  CHECK(fs::exists(f / "run/histories.csv"));
+  CHECK(!fs::exists(f / "run/blocks.json"));
+  CHECK(shell(f, fmt::format("$talus run {} -o out -q --force {}", kSettle, kShort)).code == 4);
+  CHECK(fs::exists(f / "out/blocks.json"));
   // a folder of somebody else stays as it is
   const Outcome foreign = shell(f, "mkdir mine && echo x > mine/x && " + cut + "mine --force");
   CHECK(foreign.code == 4);

@@ -11,7 +11,7 @@
 #include "support/command.h"
 #include "support/record_text.h"
 #include "talus/base/text_file.h"
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
 
 namespace test_record_command {
 

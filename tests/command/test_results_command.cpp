@@ -9,6 +9,7 @@
 
 #include "support/command.h"
 #include "talus/base/text_file.h"
+#include "talus/output/csv.h"
 #include "talus/output/files.h"
 #include "talus/output/text_table.h"
 

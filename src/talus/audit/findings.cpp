@@ -20,7 +20,7 @@ constexpr std::array<const char*, kDefects> kTitle{
     "force across a gap",           "force without a joint",    "normal force off the joint's law",
     "force beyond the joint's law", "work of closing contacts", "failed steps"};
 
-void exchange_finding(Exchange& x, const std::string& name, Finding& f) {
+void exchange_finding(auto& x, const std::string& name, auto& f) {
   x(name + ".defect", f.defect), x(name + ".invalid", f.invalid);
   x(name + ".block_a", f.block_a), x(name + ".block_b", f.block_b);
   x(name + ".time", f.time), x(name + ".place", f.place);
@@ -81,16 +81,31 @@ std::vector<std::string> Report::lines(const std::vector<std::string>& names) co
   return out;
 }
 
-void Report::exchange(Exchange& x, const std::string& name) {
-  x(name + ".frames", frames), x(name + ".steps", steps);
-  x(name + ".unexplained_share", unexplained_share), x(name + ".unexplained_area", unexplained_area);
-  x(name + ".closure_share", closure_share), x(name + ".slack", slack);
+template <class X, class Self>
+void Report::exchange(X& x, Self& self, const std::string& name) {
+  x(name + ".frames", self.frames), x(name + ".steps", self.steps);
+  x(name + ".unexplained_share", self.unexplained_share),
+      x(name + ".unexplained_area", self.unexplained_area);
+  x(name + ".closure_share", self.closure_share), x(name + ".slack", self.slack);
   for (size_t d = 0; d < kDefects; ++d) {
     const std::string entry = name + "." + kKey[d];
-    x(entry + ".count", entries_[d].count), x(entry + ".invalid", entries_[d].invalid);
-    exchange_finding(x, entry + ".worst", entries_[d].worst);
-    exchange_finding(x, entry + ".first", entries_[d].first);
+    x(entry + ".count", self.entries_[d].count), x(entry + ".invalid", self.entries_[d].invalid);
+    exchange_finding(x, entry + ".worst", self.entries_[d].worst);
+    exchange_finding(x, entry + ".first", self.entries_[d].first);
   }
+}
+
+void Report::save(Saver& to, const std::string& name) const { exchange(to, *this, name); }
+void Report::load(Loader& from, const std::string& name) { exchange(from, *this, name); }
+
+bool Report::fits(int blocks) const {
+  const auto known = [blocks](int i) { return i >= -1 && i < blocks; };
+  const auto right = [&](const Finding& f) {
+    return f.defect != Defect::kCount && known(f.block_a) && known(f.block_b);
+  };
+  return std::all_of(entries_.begin(), entries_.end(), [&](const Entry& e) {
+    return e.count == 0 || (e.count > 0 && right(e.worst) && right(e.first));
+  });
 }
 
 }  // namespace talus::audit

@@ -28,6 +28,7 @@ enum class Defect {
   kCount
 };
 inline constexpr size_t kDefects = static_cast<size_t>(Defect::kCount);
+constexpr Defect last_of(Defect) { return Defect::kCount; }  // of an entry without finding
 
 /// "force_vanished": as in summary.json.
 const char* key_of(Defect defect);
@@ -69,10 +70,16 @@ class Report {
   double slack = 0;          // [J] what all forces may do within slop and tolerance: less work is round-off
   double closure_share = 0;  // largest closure, of the smaller mean thickness
 
-  /// Saves or loads it, under names that begin with `name`.
-  void exchange(Exchange& exchange, const std::string& name);
+  /// Under names that begin with `name`.
+  void save(Saver& to, const std::string& name) const;
+  void load(Loader& from, const std::string& name);
+  /// Whether its findings are of this program, and of no block beyond so many.
+  bool fits(int blocks) const;
 
  private:
+  template <class X, class Self>
+  static void exchange(X& x, Self& self, const std::string& name);
+
   std::array<Entry, kDefects> entries_;
 };
 

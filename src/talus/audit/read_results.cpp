@@ -11,7 +11,7 @@
 #include "talus/audit/check_frame.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
 #include "talus/output/read_vtk.h"
 #include "talus/output/text_table.h"
 
@@ -149,7 +149,7 @@ class Reader {
   void read_steps() {
     std::error_code ec;
     if (!fs::exists(folder_ / "steps.csv", ec)) return;
-    const CsvTable table = read_csv(folder_ / "steps.csv");
+    const CsvTable table = read_csv(folder_ / "steps.csv", LastLine::kMustEnd);
     if (table.rows() == 0) return;
     const auto &t = table.column("t [s]"), &failed = table.column("failed steps"),
                &closing = table.column("contact closing work [J]"),

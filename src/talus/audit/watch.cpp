@@ -181,15 +181,30 @@ bool Watch::went_through(const Step& step, int i, int j, Vec2& at) const {
   return false;
 }
 
-void Watch::exchange(Exchange& x, const std::string& name) {
-  x(name + ".known", known_);
-  x.each(name + ".before", before_, [](auto& field, StepPoint& p) {
+template <class X, class Self>
+void Watch::exchange(X& x, Self& self, const std::string& name) {
+  x(name + ".known", self.known_);
+  x.each(name + ".before", self.before_, [](auto& field, auto& p) {
     field("block_a", p.block_a), field("corner", p.corner), field("block_b", p.block_b),
         field("edge", p.edge);
     field("normal_force", p.normal_force), field("gap", p.gap);
     field("hard", p.hard);
   });
-  x(name + ".centroid_before", centroid_before_);
+  x(name + ".centroid_before", self.centroid_before_);
+}
+
+void Watch::save(Saver& to, const std::string& name) const { exchange(to, *this, name); }
+void Watch::load(Loader& from, const std::string& name) { exchange(from, *this, name); }
+
+bool Watch::fits(const std::vector<int>& corners) const {
+  const auto is_corner = [&corners](int block, int corner) {
+    return block >= 0 && static_cast<size_t>(block) < corners.size() && corner >= 0 &&
+           corner < corners[static_cast<size_t>(block)];
+  };
+  return (!known_ || centroid_before_.size() == corners.size()) &&
+         std::all_of(before_.begin(), before_.end(), [&](const StepPoint& p) {
+           return is_corner(p.block_a, p.corner) && is_corner(p.block_b, p.edge);
+         });
 }
 
 }  // namespace talus::audit

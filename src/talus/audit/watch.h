@@ -46,10 +46,15 @@ class Watch {
   /// At the start of a stage: blocks may have gone.
   void forget() { known_ = false; }
 
-  /// Saves or loads it, under names that begin with `name`.
-  void exchange(Exchange& exchange, const std::string& name);
+  /// Under names that begin with `name`.
+  void save(Saver& to, const std::string& name) const;
+  void load(Loader& from, const std::string& name);
+  /// Whether what it remembers is of blocks with these numbers of corners.
+  bool fits(const std::vector<int>& corners) const;
 
  private:
+  template <class X, class Self>
+  static void exchange(X& x, Self& self, const std::string& name);
   void forces_gone(const Step& step, Report& report) const;
   void judge(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
              Report& report) const;

@@ -11,13 +11,14 @@ namespace talus {
 /// Exit codes of the `talus` command.
 enum ExitCode : int {
   kExitOk = 0,
-  kExitInternal = 1,      // our own mistake
-  kExitUsage = 2,         // wrong command line
-  kExitInput = 3,         // the model file
-  kExitFile = 4,          // a file or disk
-  kExitNumerical = 5,     // no convergence, non-finite numbers, an inverted block
-  kExitNotValid = 8,      // the run ended, and the audit says that its results are not valid
-  kExitInterrupted = 130  // Ctrl-C; results up to then are valid
+  kExitInternal = 1,   // our own mistake
+  kExitUsage = 2,      // wrong command line
+  kExitInput = 3,      // the model file
+  kExitFile = 4,       // a file or disk
+  kExitNumerical = 5,  // no convergence, non-finite numbers, an inverted block
+  kExitResources = 7,  // no memory, or no threads
+  kExitNotValid = 8,   // the run ended, and the audit says that its results are not valid
+  kExitSignal = 128    // and the number of the signal that ended it; results up to then are valid
 };
 
 class Error : public std::runtime_error {

@@ -1,25 +1,45 @@
 #include "talus/base/text_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
+#include "talus/base/descriptor.h"
 #include "talus/base/error.h"
 
 namespace talus {
 
-std::string read_text_file(const std::filesystem::path& path) {
-  std::error_code ec;
-  if (std::filesystem::is_directory(path, ec))
-    throw FileError(fmt::format("{}: is a folder, not a file", path.string()));
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (in.bad()) throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  return text;
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw FileError(fmt::format("{}: {}", path.string(), why));
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path, size_t most) {
+  // a pipe would be waited for
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (file < 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+  struct stat there {};
+  if (fstat(file, &there) != 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+  if (const std::string kind = special_kind(there.st_mode); !kind.empty())
+    refuse(path, fmt::format("is {}, not a file", kind));
+  std::string text;
+  text.reserve(std::min(static_cast<size_t>(there.st_size), most));
+  // up to its end, wherever that is: some grow meanwhile, and those of /proc say that they have no size
+  for (std::string part(1 << 16, '\0');;) {
+    const ssize_t n = read(file, part.data(), part.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (n == 0) return text;
+    text.append(part, 0, static_cast<size_t>(n));
+    if (text.size() > most)
+      refuse(path, fmt::format("is longer than {} MiB, the most that is read", most >> 20));
+  }
 }
 
 }  // namespace talus

@@ -1,12 +1,19 @@
 #pragma once
 // Reading a whole file as text.
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
 namespace talus {
 
-/// Reads a whole text file. Throws FileError naming the path and the cause.
-std::string read_text_file(const std::filesystem::path& path);
+/// Largest file that is read as text [bytes].
+inline constexpr size_t kMostText = size_t{4} << 30;
+/// Largest that people write: models, records, tables of histories [bytes].
+inline constexpr size_t kMostModelText = size_t{256} << 20;
+
+/// Reads a whole regular file. Throws FileError naming the path and the cause: there is none, it is a folder,
+/// a pipe or a device (which may have no end), or longer than `most` bytes.
+std::string read_text_file(const std::filesystem::path& path, size_t most = kMostText);
 
 }  // namespace talus

@@ -67,6 +67,7 @@ struct FaceEnd {
 struct Contact {
   ContactKey key;
   enum Memory : char { kNone, kPassed, kWhole };
+  friend constexpr Memory last_of(Memory) { return kWhole; }
 
   int joint = -1;        // -1: hard and frictionless
   int16_t partner = -1;  // the other end of its face: its place in the list of the pair, -1: none

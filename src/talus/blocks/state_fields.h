@@ -3,13 +3,20 @@
 // added to a struct does not compile until it is bound here; that it is handed on too, the test of saved
 // states counts in bytes.
 
+#include <concepts>
+
 #include "talus/blocks/state.h"
 
 namespace talus {
 
-// each_field(value, f) calls f("name", field) for each field of the value.
+/// A type, or the same that may only be read.
+template <class T, class Of>
+concept Is = std::same_as<std::remove_const_t<T>, Of>;
 
-void each_field(Contact& c, auto&& f) {
+// each_field(value, f) calls f("name", field) for each field of the value; of one that may only be read, the
+// fields may only be read.
+
+void each_field(Is<Contact> auto& c, auto&& f) {
   auto& [key, joint, partner, memory, touched, toes, face, allowed, length, force, stretch, anchor, slip,
          slip_signed] = c;
   auto& [block_a, vertex, block_b, edge] = key;
@@ -21,7 +28,7 @@ void each_field(Contact& c, auto&& f) {
   f("slip", slip), f("slip_signed", slip_signed);
 }
 
-void each_field(ContactPair& p, auto&& f) {
+void each_field(Is<ContactPair> auto& p, auto&& f) {
   auto& [a, b, begin, count, face, from_start, shares_face, reuse, margin, arm, turn, cover, cover_place,
          cover_turn] = p;
   f("a", a), f("b", b), f("begin", begin), f("count", count), f("face", face);
@@ -30,42 +37,42 @@ void each_field(ContactPair& p, auto&& f) {
   f("cover_place", cover_place), f("cover_turn", cover_turn);
 }
 
-void each_field(Neighbours& n, auto&& f) {
+void each_field(Is<Neighbours> auto& n, auto&& f) {
   auto& [begin, block] = n;
   f("begin", begin), f("block", block);
 }
 
-void each_field(CandidateList& c, auto&& f) {
+void each_field(Is<CandidateList> auto& c, auto&& f) {
   auto& [displacement, strain_part, skin, reach, neighbours, rebuilds] = c;
   f("displacement", displacement), f("strain_part", strain_part), f("skin", skin), f("reach", reach);
   f("neighbours", neighbours), f("rebuilds", rebuilds);
 }
 
-void each_field(FaceState& s, auto&& f) {
+void each_field(Is<FaceState> auto& s, auto&& f) {
   auto& [broken, broken_step, offset, mean_force, slip] = s;
   f("broken", broken), f("broken_step", broken_step), f("offset", offset), f("mean_force", mean_force);
   f("slip", slip);
 }
 
-void each_field(HeldPoint& p, auto&& f) {
+void each_field(Is<HeldPoint> auto& p, auto&& f) {
   auto& [force, hold, kept] = p;
   f("force", force), f("hold", hold), f("kept", kept);
 }
 
-void each_field(BoltNode& n, auto&& f) {
+void each_field(Is<BoltNode> auto& n, auto&& f) {
   auto& [block, arm, stiffness, limit, plastic, slip] = n;
   f("block", block), f("arm", arm), f("stiffness", stiffness), f("limit", limit), f("plastic", plastic);
   f("slip", slip);
 }
 
-void each_field(BoltSegment& s, auto&& f) {
+void each_field(Is<BoltSegment> auto& s, auto&& f) {
   auto& [length, stiffness, gauge, yield, start, plastic, stretch, force, crossing, yielded, ruptured] = s;
   f("length", length), f("stiffness", stiffness), f("gauge", gauge), f("yield", yield), f("start", start);
   f("plastic", plastic), f("stretch", stretch), f("force", force), f("crossing", crossing);
   f("yielded", yielded), f("ruptured", ruptured);
 }
 
-void each_field(BoltCrossing& c, auto&& f) {
+void each_field(Is<BoltCrossing> auto& c, auto&& f) {
   auto& [segment, direction, apart, row_stiffness, most, shear_stiffness, shear_yield, shear_plastic, shear,
          row] = c;
   f("segment", segment), f("direction", direction), f("apart", apart), f("row_stiffness", row_stiffness);
@@ -73,18 +80,18 @@ void each_field(BoltCrossing& c, auto&& f) {
   f("shear_plastic", shear_plastic), f("shear", shear), f("row", row);
 }
 
-void each_field(Bolt& b, auto&& f) {
+void each_field(Is<Bolt> auto& b, auto&& f) {
   auto& [input, anchored, share, rupture_strain, nodes, segments, crossings] = b;
   f("input", input), f("anchored", anchored), f("share", share), f("rupture_strain", rupture_strain);
   f("nodes", nodes), f("segments", segments), f("crossings", crossings);
 }
 
-void each_field(RestWatch& r, auto&& f) {
+void each_field(Is<RestWatch> auto& r, auto&& f) {
   auto& [steps, best, before, sharper, stuck] = r;
   f("steps", steps), f("best", best), f("before", before), f("sharper", sharper), f("stuck", stuck);
 }
 
-void each_field(State& s, auto&& f) {
+void each_field(Is<State> auto& s, auto&& f) {
   auto& [time, step, history_time, dt_before, displacement, strain_part, angle, rate, row_force, bond_force,
          face, supports, boundaries, ties, bolts, column_displacement, column_rate, candidates, pairs,
          contacts, initial_stress, kept_force, relaxed, displacement_start, strain_part_start, work,

@@ -194,6 +194,7 @@ struct SolverInput {
 };
 
 enum class StageKind { kStatic, kDynamic };
+constexpr StageKind last_of(StageKind) { return StageKind::kDynamic; }
 
 struct StageInput {
   std::string name;

@@ -1,14 +1,16 @@
 #include "talus/output/archive.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstring>
 
 #include "talus/base/error.h"
 #include "talus/base/text.h"
+#include "talus/base/text_file.h"
+#include "talus/output/files.h"
 
 namespace talus {
 
@@ -16,7 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kSum = "content_sum";
+// Programs of HDF5 look for their content at 512 bytes, too, and skip what comes before.
+constexpr size_t kHeader = 512;
+constexpr std::string_view kMagic = "talus state ";
+constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n";
 
 // An HDF5 object that is closed when it goes out of use.
 class Handle {
@@ -29,152 +34,212 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
   operator hid_t() const { return id_; }
   bool ok() const { return id_ >= 0; }
-  /// Closes now; false when that fails, as when buffers cannot be written.
-  bool done() {
-    const hid_t id = id_;
-    id_ = -1;
-    return close_(id) >= 0;
-  }
 
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
 
-// A sum over all names and bytes, to tell a damaged file.
-std::string sum_of(const Archive& a) {
-  std::string all;
-  for (const auto& [name, values] : a.numbers)
-    all += name + text_hash({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
-  for (const auto& [name, text] : a.texts)
-    if (name != kSum) all += name + text_hash(text);
-  return text_hash(all);
+// HDF5's own messages are for programmers; ours follow.
+void keep_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+// A file that is memory alone.
+hid_t in_memory(size_t grow_by) {
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  constexpr hbool_t kNoFile = 0;
+  if (access >= 0) H5Pset_fapl_core(access, grow_by, kNoFile);
+  return access;
 }
 
-bool put(hid_t file, const std::string& name, const std::vector<double>& values) {
+// The same content has the same bytes at any time.
+hid_t without_times() {
+  const hid_t create = H5Pcreate(H5P_DATASET_CREATE);
+  if (create >= 0) H5Pset_obj_track_times(create, 0);
+  return create;
+}
+
+bool put(hid_t file, hid_t create, const std::string& name, const std::vector<double>& values) {
   const hsize_t size = values.size();
   const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  Handle set(H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-             H5Dclose);
+  const Handle set(H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, create, H5P_DEFAULT),
+                   H5Dclose);
   if (!set.ok()) return false;
-  if (size > 0 && H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    return false;
-  return set.done();
+  return size == 0 || H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
 }
 
-bool put(hid_t file, const std::string& name, const std::string& text) {
+bool put(hid_t file, hid_t create, const std::string& name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, text.size() + 1);  // with the closing zero
   H5Tset_cset(type, H5T_CSET_UTF8);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  Handle set(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
-  return set.ok() && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0 && set.done();
+  const Handle set(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, create, H5P_DEFAULT), H5Dclose);
+  return set.ok() && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0;
 }
 
-bool get(hid_t file, const std::string& name, Archive& a) {
+bool put_all(hid_t file, const Archive& archive) {
+  const Handle create(without_times(), H5Pclose);
+  for (const auto& [name, values] : archive.numbers)
+    if (!put(file, create, name, values)) return false;
+  for (const auto& [name, text] : archive.texts)
+    if (!put(file, create, name, text)) return false;
+  return H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+// The image of an HDF5 file; "" when the library fails.
+std::string image_of(const Archive& archive) {
+  constexpr size_t kGrowBy = 1 << 20;
+  const Handle access(in_memory(kGrowBy), H5Pclose);
+  const Handle file(H5Fcreate("state", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  if (!file.ok() || !put_all(file, archive)) return "";
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size <= 0) return "";
+  std::string image(static_cast<size_t>(size), '\0');
+  return H5Fget_file_image(file, image.data(), image.size()) == size ? image : "";
+}
+
+// A plain array in the file itself: no other file, no filter, no type of another program.
+bool is_plain(hid_t set) {
+  const Handle create(H5Dget_create_plist(set), H5Pclose);
+  if (!create.ok() || H5Pget_external_count(create) != 0 || H5Pget_nfilters(create) != 0) return false;
+  const H5D_layout_t layout = H5Pget_layout(create);
+  return layout == H5D_CONTIGUOUS || layout == H5D_COMPACT;
+}
+
+bool get(hid_t file, const std::string& name, size_t most, Archive& a) {
   const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.ok()) return false;
+  if (!set.ok() || !is_plain(set)) return false;
   const Handle type(H5Dget_type(set), H5Tclose), space(H5Dget_space(set), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  const size_t size = H5Tget_size(type);
+  if (count < 0 || size == 0 || static_cast<size_t>(count) > most / size) return false;
   if (H5Tget_class(type) == H5T_STRING) {
-    std::string text(H5Tget_size(type), '\0');
+    if (H5Tis_variable_str(type) != 0 || count != 1) return false;
+    std::string text(size, '\0');
     if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return false;
-    text.resize(std::strlen(text.c_str()));
+    text.resize(strnlen(text.c_str(), text.size()));
     a.texts[name] = text;
     return true;
   }
-  const hssize_t size = H5Sget_simple_extent_npoints(space);
-  if (size < 0) return false;
+  if (H5Tequal(type, H5T_IEEE_F64LE) <= 0) return false;
   std::vector<double>& values = a.numbers[name];
-  values.resize(static_cast<size_t>(size));
-  return size == 0 || H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+  values.resize(static_cast<size_t>(count));
+  return count == 0 || H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
 }
 
-herr_t note_name(hid_t, const char* name, const H5L_info_t*, void* list) {
+// Names of the file's own datasets; fails on links that lead elsewhere.
+herr_t note_name(hid_t, const char* name, const H5L_info_t* info, void* list) {
+  if (info->type != H5L_TYPE_HARD) return -1;
   static_cast<std::vector<std::string>*>(list)->emplace_back(name);
   return 0;
 }
 
-// HDF5's own messages are for programmers; ours follow.
-void keep_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
-bool write_all(const fs::path& path, const Archive& archive) {
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  if (!file.ok()) return false;
-  for (const auto& [name, values] : archive.numbers)
-    if (!put(file, name, values)) return false;
-  for (const auto& [name, text] : archive.texts)
-    if (name != kSum && !put(file, name, text)) return false;
-  return put(file, kSum, sum_of(archive)) && file.done();
+[[noreturn]] void unusable(const std::string& name, const std::string& why) {
+  throw FileError(fmt::format("{}: is no saved state that can be used: {}", name, why));
 }
 
-bool reach_disk(const fs::path& path) {
-  const int file = open(path.c_str(), O_RDONLY);
-  if (file < 0) return false;
-  const bool done = fsync(file) == 0;
-  return close(file) == 0 && done;
+// The number or word behind a key at the begin of a line of the header; "" when it is missing.
+std::string_view value_of(std::string_view header, std::string_view key) {
+  const size_t at = header.find(key);
+  if (at == std::string_view::npos) return "";
+  const std::string_view rest = header.substr(at + key.size());
+  return rest.substr(0, rest.find_first_of(" \n"));
 }
 
-[[noreturn]] void damaged(const fs::path& path, const std::string& why) {
-  throw FileError(fmt::format("{}: is no saved state that can be used: {}", path.string(), why));
+template <class T>
+T number_in(std::string_view text, T otherwise) {
+  T value{};
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return status == std::errc{} && end == text.data() + text.size() ? value : otherwise;
+}
+
+// Checks header, size and digest before anything else looks at the rest.
+void check_header(const std::string& name, std::string_view bytes) {
+  if (bytes.substr(0, kHdf5Signature.size()) == kHdf5Signature)
+    unusable(name,
+             fmt::format("a talus older than format {} wrote it. Go on with the program that did, or run "
+                         "the model anew",
+                         kStateFormat));
+  if (bytes.substr(0, kMagic.size()) != kMagic) unusable(name, "another program has written it");
+  if (bytes.size() < kHeader) unusable(name, "it is cut short");
+  const std::string_view header = bytes.substr(0, kHeader), rest = bytes.substr(kHeader);
+  const int format = number_in(value_of(header, kMagic), -1);
+  if (format != kStateFormat)
+    unusable(name, fmt::format("it is in format {}, and this program reads format {}. Go on with the program "
+                               "that wrote it, or run the model anew",
+                               format, kStateFormat));
+  const size_t size = number_in(value_of(header, "\nbytes "), size_t{0});
+  if (rest.size() < size) unusable(name, fmt::format("it is cut short: {} of {} bytes", rest.size(), size));
+  if (rest.size() > size || value_of(header, "\ndigest ") != text_hash(rest))
+    unusable(name, "its content is damaged: it has another digest than its header says");
 }
 
 }  // namespace
 
-void write_archive(const fs::path& path, const Archive& archive) {
+std::string archive_bytes(const Archive& archive) {
   keep_quiet();
-  const fs::path part = path.string() + ".part";
-  std::error_code ec;
-  if (!write_all(part, archive) || !reach_disk(part)) {
-    fs::remove(part, ec);
-    throw FileError(fmt::format("{}: the state cannot be written; is the disk full?", path.string()));
-  }
-  fs::rename(part, path, ec);
-  if (ec) throw FileError(fmt::format("{}: cannot be renamed into place: {}", path.string(), ec.message()));
+  const std::string image = image_of(archive);
+  if (image.empty()) throw std::bad_alloc();  // there is no file that could fail
+  std::string header = fmt::format(
+      "{}{}\nbytes {}\ndigest {}\nThese {} bytes come before the content, which is HDF5; programs of HDF5 skip "
+      "them.\n",
+      kMagic, kStateFormat, image.size(), text_hash(image), kHeader);
+  header.resize(kHeader - 1, ' ');
+  return header + '\n' + image;
 }
 
-Archive read_archive(const fs::path& path) {
+void write_archive(const fs::path& path, const Archive& archive) {
+  write_file(path, archive_bytes(archive), Reach::kDisk);
+}
+
+Archive parse_archive(const std::string& name, const std::string& bytes) {
   keep_quiet();
-  std::error_code ec;
-  if (!fs::exists(path, ec)) throw FileError(fmt::format("{}: there is no such file", path.string()));
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.ok()) damaged(path, "it is no HDF5 file, or cut short");
+  check_header(name, bytes);
+  const size_t size = bytes.size() - kHeader;
+  std::string image = bytes.substr(kHeader);
+  const Handle access(in_memory(1 << 16), H5Pclose);
+  if (!access.ok() || H5Pset_file_image(access, image.data(), image.size()) < 0) throw std::bad_alloc();
+  const Handle file(H5Fopen("state", H5F_ACC_RDONLY, access), H5Fclose);
+  if (!file.ok()) unusable(name, "its content is no HDF5 file");
   std::vector<std::string> names;
   Archive archive;
   bool good = H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, nullptr, note_name, &names) >= 0;
-  for (const std::string& name : names) good = good && get(file, name, archive);
-  const auto sum = archive.texts.find(kSum);
-  if (sum == archive.texts.end()) damaged(path, "another program has written it, or it is cut short");
-  if (!good || sum->second != sum_of(archive)) damaged(path, "its content is damaged");
+  for (const std::string& one : names) good = good && get(file, one, size, archive);
+  if (!good) unusable(name, "it holds something else than plain arrays");
   return archive;
 }
 
-void Exchange::operator()(const std::string& name, std::string& text) {
-  if (saving_) {
-    archive_.texts[name] = text;
-    return;
-  }
-  const auto it = archive_.texts.find(name);
-  if (it == archive_.texts.end()) throw FileError(fmt::format("the saved state has no \"{}\"", name));
-  text = it->second;
+Archive read_archive(const fs::path& path) { return parse_archive(path.string(), read_text_file(path)); }
+
+namespace archive_detail {
+
+void wrong_value(const std::string& name, double value, const char* wanted) {
+  throw FileError(fmt::format("\"{}\" of the saved state is {:g}, not {}", name, value, wanted));
 }
 
-const std::vector<double>& Exchange::numbers(const std::string& name) const {
-  const auto it = archive_.numbers.find(name);
-  if (it == archive_.numbers.end()) throw FileError(fmt::format("the saved state has no \"{}\"", name));
+void wrong_width(const std::string& name, size_t size, size_t width) {
+  throw FileError(
+      fmt::format("the saved state has {} values of \"{}\", no multiple of {}", size, name, width));
+}
+
+const std::vector<double>& numbers(const Archive& archive, const std::string& name) {
+  const auto it = archive.numbers.find(name);
+  if (it == archive.numbers.end()) throw FileError(fmt::format("the saved state has no \"{}\"", name));
   return it->second;
 }
 
-const std::vector<double>& Exchange::numbers(const std::string& name, size_t count) const {
-  const std::vector<double>& list = numbers(name);
+const std::vector<double>& numbers(const Archive& archive, const std::string& name, size_t count) {
+  const std::vector<double>& list = numbers(archive, name);
   if (list.size() != count)
     throw FileError(fmt::format("the saved state has {} values of \"{}\", not {}", list.size(), name, count));
   return list;
 }
 
-void Exchange::check_width(const std::string& name, size_t size, size_t width) {
-  if (size % width != 0)
-    throw FileError(
-        fmt::format("the saved state has {} values of \"{}\", no multiple of {}", size, name, width));
+}  // namespace archive_detail
+
+void Loader::operator()(const std::string& name, std::string& text) const {
+  const auto it = archive_.texts.find(name);
+  if (it == archive_.texts.end()) throw FileError(fmt::format("the saved state has no \"{}\"", name));
+  text = it->second;
 }
 
 }  // namespace talus

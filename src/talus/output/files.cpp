@@ -1,16 +1,17 @@
 #include "talus/output/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <cmath>
 #include <cstring>
-#include <fstream>
 
+#include "talus/base/descriptor.h"
 #include "talus/base/error.h"
-#include "talus/base/text.h"
+#include "talus/base/unfinished.h"
 
 namespace talus {
 
@@ -18,188 +19,100 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const fs::path& path, const std::string& doing, int error) {
-  const std::string cause = error != 0 ? std::strerror(error) : "unknown cause";
-  const std::string hint = error == ENOSPC ? "; free some space and run again" : "";
-  throw FileError(fmt::format("{}: cannot be {}: {}{}", path.string(), doing, cause, hint));
+constexpr std::string_view kUnfinishedBegin = ".talus-", kUnfinishedEnd = ".part";
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// Files and folders that a result of this kind may consist of.
-std::vector<const char*> names_of(ResultKind kind) {
-  switch (kind) {
-    case ResultKind::kCut:
-      return {"cut.json",    "cut.svg",    "cut.png", "blocks.json", "blocks.csv",
-              "slivers.csv", "report.txt", "map.svg", "map.png"};
-    case ResultKind::kPicture:
-      return {"cut.svg", "cut.png"};
-    case ResultKind::kRecord:
-      return {"motion.csv",   "record.json",      "acceleration.svg", "acceleration.png", "velocity.svg",
-              "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg",     "spectrum.png"};
-    case ResultKind::kSafety:
-      return {"safety.json", "safety.csv", "model.toml"};
-    case ResultKind::kRun:
-      return {"summary.json",     "model.toml",     "histories.csv", "steps.csv",
-              "joints.csv",       "run.log",        "report.html",   "blocks.csv",
-              "blocks_start.svg", "blocks_end.svg", "bolts.csv",     "slips.csv",
-              "fields",           "plots",          "saved"};
+// A file of a name that no other has, whatever the process or the thread.
+std::pair<int, fs::path> open_unfinished(const fs::path& folder) {
+  static std::atomic<unsigned> count{0};
+  constexpr int kTries = 1000;
+  for (int i = 0; i < kTries; ++i) {
+    const fs::path path =
+        folder / fmt::format("{}{}-{}{}", kUnfinishedBegin, getpid(), count++, kUnfinishedEnd);
+    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file >= 0 || errno != EEXIST) return {file, path};
   }
-  return {};
+  return {-1, {}};
+}
+
+// 0 or an error number.
+int fill(int number, std::string_view content, const struct stat* older, Reach reach) {
+  Descriptor file(number);
+  size_t done = 0;
+  if (const int error = write_all(file, content, done); error != 0) return error;
+  if (older && fchmod(file, older->st_mode & 07777) != 0) return errno;
+  if (reach == Reach::kDisk && fsync(file) != 0) return errno;
+  return file.done();
 }
 
 }  // namespace
 
-void write_file(const fs::path& path, const std::string& content) {
-  const fs::path part = path.string() + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (!file) fail(path, "written", errno);
-  const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size();
-  int error = written ? 0 : errno;
-  if (std::fclose(file) != 0 && error == 0) error = errno;
-  std::error_code ec;
-  if (error != 0 || !written) {
-    fs::remove(part, ec);
-    fail(path, "written", error);
-  }
-  fs::rename(part, path, ec);
-  if (ec) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    fail(path, "renamed into place", ec.value());
-  }
+void fail_file(const fs::path& path, const std::string& doing, int error) {
+  const std::string cause = error != 0 ? std::strerror(error) : "unknown cause";
+  const bool full = error == ENOSPC || error == EDQUOT;
+  throw FileError(fmt::format("{}: cannot be {}: {}{}", path.string(), doing, cause,
+                              full ? "; free some space and run again" : ""));
 }
 
-void check_result_folder(const fs::path& folder, bool force) {
-  std::error_code ec;
-  if (!fs::exists(folder, ec)) return;
-  if (!fs::is_directory(folder, ec))
-    throw FileError(fmt::format("{}: is a file, not a folder", folder.string()));
-  const bool empty = fs::is_empty(folder, ec);
-  if (!empty && !force)
+int write_all(int descriptor, std::string_view bytes, size_t& done) {
+  for (done = 0; done < bytes.size();) {
+    const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
+    if (n > 0)
+      done += static_cast<size_t>(n);
+    else if (n == 0)
+      return EIO;
+    else if (errno != EINTR)
+      return errno;
+  }
+  return 0;
+}
+
+std::string unfit_target(const fs::path& path) {
+  struct stat there {};
+  return lstat(path.c_str(), &there) == 0 ? special_kind(there.st_mode) : "";
+}
+
+void write_file(const fs::path& path, std::string_view content, Reach reach) {
+  struct stat there {};
+  const bool older = lstat(path.c_str(), &there) == 0;
+  if (const std::string kind = older ? special_kind(there.st_mode) : ""; !kind.empty())
     throw FileError(
-        fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
-                    "replace the results in it",
-                    folder.string()));
-  const bool ours = fs::exists(folder / "summary.json", ec) || fs::exists(folder / "cut.json", ec) ||
-                    fs::exists(folder / "record.json", ec) || fs::exists(folder / "safety.json", ec) ||
-                    (fs::exists(folder / "cut.svg", ec) && fs::exists(folder / "cut.png", ec)) ||
-                    (fs::exists(folder / "model.toml", ec) && fs::exists(folder / "steps.csv", ec));
-  if (!empty && !ours)
-    throw FileError(
-        fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
-                    "Give another folder",
-                    folder.string()));
-}
-
-void open_result_folder(const fs::path& folder, bool force, ResultKind kind) {
-  check_result_folder(folder, force);
-  std::error_code ec;
-  if (fs::exists(folder, ec)) {
-    for (const char* name : names_of(kind)) fs::remove_all(folder / name, ec);
-    if (kind == ResultKind::kRun)
-      for (const auto& entry : fs::directory_iterator(folder, ec))
-        if (entry.path().filename().string().rfind("step_", 0) == 0) fs::remove(entry.path(), ec);
+        fmt::format("{}: is {}; only a regular file is replaced, so nothing was written. Give another name",
+                    path.string(), kind));
+  const auto [file, part] = open_unfinished(folder_of(path));
+  if (file < 0) fail_file(path, "written", errno);
+  const Unfinished noted(part.string());
+  if (const int error = fill(file, content, older ? &there : nullptr, reach); error != 0) {
+    unlink(part.c_str());
+    fail_file(path, "written", error);
   }
-  fs::create_directories(folder, ec);
-  if (ec) fail(folder, "created", ec.value());
-}
-
-CsvWriter::CsvWriter(fs::path path, const std::vector<std::string>& columns) : path_(std::move(path)) {
-  file_ = std::fopen(path_.c_str(), "wb");
-  if (!file_) fail(path_, "written", errno);
-  for (size_t i = 0; i < columns.size(); ++i) line_ += (i ? "," : "") + columns[i];
-  line_ += '\n';
-  check(std::fwrite(line_.data(), 1, line_.size(), file_) == line_.size());
-  flush();
-}
-
-CsvWriter::CsvWriter(fs::path path, int64_t size) : path_(std::move(path)) {
-  std::error_code ec;
-  const auto there = fs::file_size(path_, ec);
-  if (ec) fail(path_, "continued", ec.value());
-  if (static_cast<int64_t>(there) < size)
-    throw FileError(
-        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
-                    path_.string(), there, size));
-  fs::resize_file(path_, static_cast<uintmax_t>(size), ec);
-  if (ec) fail(path_, "cut back", ec.value());
-  file_ = std::fopen(path_.c_str(), "ab");
-  if (!file_) fail(path_, "continued", errno);
-  std::fseek(file_, 0, SEEK_END);
-}
-
-int64_t CsvWriter::size() const { return std::ftell(file_); }
-
-CsvWriter::~CsvWriter() {
-  if (file_) std::fclose(file_);
-}
-
-void CsvWriter::append(const std::vector<double>& row) {
-  line_.clear();
-  for (size_t i = 0; i < row.size(); ++i)
-    fmt::format_to(std::back_inserter(line_), "{}{:.17g}", i ? "," : "", row[i]);
-  line_ += '\n';
-  check(std::fwrite(line_.data(), 1, line_.size(), file_) == line_.size());
-}
-
-void CsvWriter::flush() { check(std::fflush(file_) == 0); }
-
-void CsvWriter::check(bool ok) const {
-  if (!ok) fail(path_, "written", errno);
-}
-
-const std::vector<double>& CsvTable::column(const std::string& name) const {
-  const auto exact = std::find(columns.begin(), columns.end(), name);
-  if (exact != columns.end()) return values[static_cast<size_t>(exact - columns.begin())];
-  std::vector<std::string> matches;
-  size_t at = 0;
-  for (size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].rfind(name, 0) != 0) continue;
-    matches.push_back(columns[i]);
-    at = i;
+  if (rename(part.c_str(), path.c_str()) != 0) {
+    const int error = errno;
+    unlink(part.c_str());
+    fail_file(path, "renamed into place", error);
   }
-  if (matches.size() > 1)
-    throw FileError(fmt::format("more than one column begins with \"{}\": {}", name, join_or(matches)));
-  if (matches.empty())
-    throw FileError(fmt::format("there is no column \"{}\"; there is {}", name, join_or(columns)));
-  return values[at];
+  if (reach == Reach::kDisk) sync_folder(folder_of(path));
 }
 
-CsvTable read_csv(const fs::path& path) {
-  errno = 0;
-  std::ifstream in(path);
-  if (!in) fail(path, "read", errno);
-  CsvTable table;
-  std::string line;
-  int number = 0;
-  while (std::getline(in, line)) {
-    ++number;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty() || line[0] == '#') continue;
-    std::vector<std::string_view> cells;
-    std::string_view rest = line;
-    for (size_t comma = 0; comma != std::string_view::npos;) {
-      comma = rest.find(',');
-      cells.push_back(rest.substr(0, comma));
-      if (comma != std::string_view::npos) rest.remove_prefix(comma + 1);
-    }
-    if (table.columns.empty()) {
-      for (const auto c : cells) table.columns.emplace_back(c);
-      table.values.resize(cells.size());
-      continue;
-    }
-    if (cells.size() != table.columns.size())
-      throw FileError(fmt::format("{}:{}: has {} cells, the header {}", path.string(), number, cells.size(),
-                                  table.columns.size()));
-    for (size_t i = 0; i < cells.size(); ++i) {
-      double v = 0;
-      const auto [end, status] = std::from_chars(cells[i].data(), cells[i].data() + cells[i].size(), v);
-      if (status != std::errc{} || end != cells[i].data() + cells[i].size())
-        throw FileError(fmt::format("{}:{}: \"{}\" is not a number", path.string(), number, cells[i]));
-      table.values[i].push_back(v);
-    }
-  }
-  if (table.columns.empty()) throw FileError(fmt::format("{}: is empty", path.string()));
-  return table;
+void sync_folder(const fs::path& folder) {
+  const Descriptor file(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // some network file systems cannot, and need not
+  if (file < 0 || (fsync(file) != 0 && errno != EINVAL)) fail_file(folder, "brought to the disk", errno);
+}
+
+void sync_files_of(const fs::path& folder) {
+  const Descriptor file(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (file < 0 || syncfs(file) != 0) fail_file(folder, "brought to the disk", errno);
+}
+
+bool is_unfinished_file(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.size() > kUnfinishedBegin.size() + kUnfinishedEnd.size() &&
+         name.compare(0, kUnfinishedBegin.size(), kUnfinishedBegin) == 0 &&
+         name.compare(name.size() - kUnfinishedEnd.size(), std::string::npos, kUnfinishedEnd) == 0;
 }
 
 }  // namespace talus

@@ -1,63 +1,41 @@
 #pragma once
-// Writing result files so that a reader never meets half a file, and every failure is reported.
+// Writing result files so that a reader never meets half a file, nothing but a regular file is replaced, and
+// every failure is reported.
 
-#include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <string>
-#include <vector>
+#include <string_view>
 
 namespace talus {
 
-/// Writes a whole file under a temporary name and renames it into place. Throws FileError (path, cause).
-void write_file(const std::filesystem::path& path, const std::string& content);
+/// How far a file has to come before its writing counts as done: to the system, which outlives the process,
+/// or to the disk, which outlives a power cut.
+enum class Reach { kSystem, kDisk };
 
-/// Throws FileError when the folder holds anything and `force` is false, or when what it holds is no (even
-/// unfinished) result of talus: then even `force` would remove nothing. Changes nothing.
-void check_result_folder(const std::filesystem::path& folder, bool force);
+/// Writes a whole file under a name of its own beside `path` and renames it into place; an older file's
+/// permissions stay. Throws FileError (path, cause) when what is there is no regular file (links are none),
+/// or on any failure; then the older file is untouched and nothing is left.
+void write_file(const std::filesystem::path& path, std::string_view content, Reach reach = Reach::kSystem);
 
-/// Prepares the folder for results, checked as above.
-/// Of an earlier run, cut, record, safety or picture only the files of the same kind are removed.
-enum class ResultKind { kRun, kCut, kRecord, kSafety, kPicture };
-void open_result_folder(const std::filesystem::path& folder, bool force, ResultKind kind = ResultKind::kRun);
+/// Makes sure that what was done to a folder (files made, renamed, removed) has reached the disk. Throws
+/// FileError.
+void sync_folder(const std::filesystem::path& folder);
 
-/// A table written row by row; every row is complete in the file when append() returns after flush().
-class CsvWriter {
- public:
-  /// Writes the header: columns joined by commas.
-  CsvWriter(std::filesystem::path path, const std::vector<std::string>& columns);
-  /// Goes on behind the first `size` bytes of a table; what follows them is cut off. Throws FileError when
-  /// there are fewer.
-  CsvWriter(std::filesystem::path path, int64_t size);
-  ~CsvWriter();
-  CsvWriter(const CsvWriter&) = delete;
-  CsvWriter& operator=(const CsvWriter&) = delete;
+/// Makes sure that all files of the file system of this folder have reached the disk. Throws FileError.
+void sync_files_of(const std::filesystem::path& folder);
 
-  /// One row, numbers with 17 significant digits. Throws FileError.
-  void append(const std::vector<double>& row);
-  void flush();
-  /// Bytes written so far, the waiting ones included.
-  int64_t size() const;
+/// Whether it is the name under which write_file() writes before it renames: of a process that was killed.
+bool is_unfinished_file(const std::filesystem::path& path);
 
- private:
-  void check(bool ok) const;
+/// What is at the path and is no regular file ("a folder", "a link", "a device", ...); "" for a regular file
+/// and where there is nothing.
+std::string unfit_target(const std::filesystem::path& path);
 
-  std::filesystem::path path_;
-  std::FILE* file_ = nullptr;
-  std::string line_;
-};
+/// Throws FileError: "PATH: cannot be DOING: cause", with what helps when the disk is full.
+[[noreturn]] void fail_file(const std::filesystem::path& path, const std::string& doing, int error);
 
-struct CsvTable {
-  std::vector<std::string> columns;
-  std::vector<std::vector<double>> values;  // [column][row]
-
-  /// The column called `name`, or the only one that begins with it. Throws FileError naming the columns there
-  /// are.
-  const std::vector<double>& column(const std::string& name) const;
-  size_t rows() const { return values.empty() ? 0 : values[0].size(); }
-};
-
-/// Reads a table of numbers. Throws FileError with path and line.
-CsvTable read_csv(const std::filesystem::path& path);
+/// Writes all bytes to a descriptor, going on where a signal interrupted. 0 or an error number; `done` is how
+/// many bytes were written.
+int write_all(int descriptor, std::string_view bytes, size_t& done);
 
 }  // namespace talus

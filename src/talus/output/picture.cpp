@@ -34,6 +34,8 @@ std::string escaped(const std::string& text) {
       out += "&lt;";
     else if (c == '&')
       out += "&amp;";
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      out += ' ';  // XML knows no control characters
     else
       out += c;
   }

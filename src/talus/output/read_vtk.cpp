@@ -146,24 +146,33 @@ VtkFrame parse_vtk(const std::string& name, const std::string& text) {
 
 VtkFrame read_vtk(const fs::path& path) { return parse_vtk(path.string(), read_text_file(path)); }
 
-std::vector<SeriesEntry> read_series(const fs::path& pvd) {
-  std::error_code ec;
+std::vector<SeriesEntry> parse_series(const fs::path& pvd, std::string_view all, bool* cut_short) {
   std::vector<SeriesEntry> out;
-  if (!fs::exists(pvd, ec)) return out;
-  const std::string text = read_text_file(pvd);
-  const std::string_view all = text;
+  all = all.substr(0, all.find('\0'));  // zeros: what a power cut has left
+  const size_t tail = all.find("</Collection>");
+  if (cut_short) *cut_short = tail == std::string_view::npos;
+  all = all.substr(0, tail);
   constexpr std::string_view kBegin = "<DataSet";
   for (size_t at = all.find(kBegin); at != std::string_view::npos; at = all.find(kBegin, at + 1)) {
     const size_t close = all.find('>', at);
+    if (close == std::string_view::npos && tail == std::string_view::npos) break;  // being written
     if (close == std::string_view::npos) refuse(pvd.string(), "has an entry without end");
     const std::string_view head = all.substr(at, close - at);
     SeriesEntry entry;
     if (!parse_number(attribute(head, "timestep"), entry.time) || !std::isfinite(entry.time))
       refuse(pvd.string(), "has an entry without time");
-    entry.file = pvd.parent_path() / fs::path(std::string(attribute(head, "file")));
+    const fs::path name(std::string(attribute(head, "file")));
+    if (name.empty() || name.has_parent_path() || name == "..")
+      refuse(pvd.string(), "has an entry that names no file beside it");
+    entry.file = pvd.parent_path() / name;
     out.push_back(std::move(entry));
   }
   return out;
+}
+
+std::vector<SeriesEntry> read_series(const fs::path& pvd, bool* cut_short) {
+  std::error_code ec;
+  return fs::exists(pvd, ec) ? parse_series(pvd, read_text_file(pvd), cut_short) : std::vector<SeriesEntry>();
 }
 
 }  // namespace talus

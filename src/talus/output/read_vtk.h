@@ -37,7 +37,11 @@ struct SeriesEntry {
   std::filesystem::path file;
 };
 
-/// The frames that a collection (.pvd) names, in its order; none when there is no such file.
-std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd);
+/// The frames that a collection (.pvd) names, in its order; none when there is no such file. One that a kill
+/// or a power cut has cut short is read up to its last whole entry, and `cut_short`, when given, set. Throws
+/// FileError when it is no collection.
+std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd, bool* cut_short = nullptr);
+std::vector<SeriesEntry> parse_series(const std::filesystem::path& pvd, std::string_view text,
+                                      bool* cut_short = nullptr);
 
 }  // namespace talus

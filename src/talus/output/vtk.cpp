@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "talus/base/error.h"
-#include "talus/output/files.h"
 #include "talus/output/vtk_arrays.h"
 
 namespace talus {
@@ -73,39 +72,6 @@ std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time)
          data_array("Int32", "corner", 1, corner) + data_array("Int32", "edge", 1, edge) +
          data_array("Int32", "partner", 1, partner) + "</PointData>\n";
   return out + "</Piece>\n</PolyData>\n</VTKFile>\n";
-}
-
-FrameSeries::FrameSeries(std::filesystem::path folder, std::string name, std::string extension)
-    : folder_(std::move(folder)), name_(std::move(name)), extension_(std::move(extension)) {}
-
-std::string FrameSeries::file(size_t i) const { return fmt::format("{}_{:06}.{}", name_, i, extension_); }
-
-void FrameSeries::add(double time, const std::string& content) {
-  write_file(folder_ / file(times_.size()), content);
-  times_.push_back(time);
-  write_collection();
-}
-
-void FrameSeries::write_collection() const {
-  std::string pvd =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-      "byte_order=\"LittleEndian\">\n<Collection>\n";
-  for (size_t i = 0; i < times_.size(); ++i)
-    pvd += fmt::format("<DataSet timestep=\"{:.17g}\" group=\"\" part=\"0\" file=\"{}\"/>\n", times_[i],
-                       file(i));
-  write_file(folder_ / (name_ + ".pvd"), pvd + "</Collection>\n</VTKFile>\n");
-}
-
-void FrameSeries::go_on(const std::vector<double>& times) {
-  for (size_t i = 0; i < times.size(); ++i)
-    if (std::error_code ec; !std::filesystem::exists(folder_ / file(i), ec))
-      throw FileError(
-          fmt::format("{}: is missing: the frames cannot be continued", (folder_ / file(i)).string()));
-  times_ = times;
-  if (!times_.empty()) write_collection();
-  std::error_code ec;
-  for (size_t i = times_.size(); std::filesystem::remove(folder_ / file(i), ec); ++i) {
-  }
 }
 
 }  // namespace talus

@@ -1,7 +1,6 @@
 #pragma once
-// Frames for ParaView: polygons of the blocks (.vtu), contact points (.vtp), and the time series (.pvd).
+// Frames for ParaView: polygons of the blocks (.vtu), contact points (.vtp).
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,25 +29,5 @@ struct ContactFrame {
 std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate);
 
 std::string contacts_vtp(const std::vector<ContactFrame>& contacts, double time);
-
-/// A ParaView collection that always names the frames written so far.
-class FrameSeries {
- public:
-  /// Frames are folder/NAME_000000.EXT; the collection is folder/NAME.pvd.
-  FrameSeries(std::filesystem::path folder, std::string name, std::string extension);
-  void add(double time, const std::string& content);
-  /// Goes on behind frames written before; later ones are removed.
-  void go_on(const std::vector<double>& times);
-  const std::vector<double>& times() const { return times_; }
-  int count() const { return static_cast<int>(times_.size()); }
-
- private:
-  std::string file(size_t i) const;
-  void write_collection() const;
-
-  std::filesystem::path folder_;
-  std::string name_, extension_;
-  std::vector<double> times_;
-};
 
 }  // namespace talus

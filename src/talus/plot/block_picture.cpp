@@ -8,7 +8,6 @@
 
 #include "talus/base/error.h"
 #include "talus/output/block_quantity.h"
-#include "talus/output/files.h"
 #include "talus/plot/axes.h"
 #include "talus/plot/sheet.h"
 
@@ -384,12 +383,7 @@ void write_block_picture(const BlockPicture& picture, const std::filesystem::pat
               title_y, 0);
     draw_foot(cr, sheet, scenery);
   };
-  const std::string svg_content = svg_bytes(sheet.width, sheet.height, draw_all);
-  const std::string png_content = png_bytes(sheet.width, sheet.height, draw_all);
-  std::filesystem::path svg = stem, png = stem;
-  svg += ".svg", png += ".png";
-  write_file(svg, svg_content);
-  write_file(png, png_content);
+  write_picture(stem, sheet.width, sheet.height, draw_all);
 }
 
 }  // namespace talus::plot

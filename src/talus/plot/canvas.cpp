@@ -1,9 +1,13 @@
 #include "talus/plot/canvas.h"
 
 #include <cairo-svg.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <stdexcept>
+
+#include "talus/base/error.h"
+#include "talus/output/files.h"
 
 namespace talus::plot {
 namespace {
@@ -97,6 +101,8 @@ std::string fit_text(cairo_t* cr, const std::string& raw, double available) {
   return text + kEllipsis;
 }
 
+namespace {
+
 std::string svg_bytes(double width, double height, const std::function<void(cairo_t*)>& draw) {
   std::string bytes;
   const Surface surface(cairo_svg_surface_create_for_stream(append_bytes, &bytes, width, height));
@@ -114,6 +120,23 @@ std::string png_bytes(double width, double height, const std::function<void(cair
   std::string bytes;
   check(cairo_surface_write_to_png_stream(surface.get(), append_bytes, &bytes));
   return bytes;
+}
+
+}  // namespace
+
+void write_picture(const std::filesystem::path& stem, double width, double height,
+                   const std::function<void(cairo_t*)>& draw) {
+  std::filesystem::path svg = stem, png = stem;
+  svg += ".svg", png += ".png";
+  std::string svg_content, png_content;
+  try {
+    svg_content = svg_bytes(width, height, draw);
+    png_content = png_bytes(width, height, draw);
+  } catch (const std::runtime_error& error) {
+    throw FileError(fmt::format("{}: cannot be drawn: {}", stem.string(), error.what()));
+  }
+  write_file(svg, svg_content);
+  write_file(png, png_content);
 }
 
 }  // namespace talus::plot

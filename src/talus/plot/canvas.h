@@ -4,6 +4,7 @@
 
 #include <cairo.h>
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -36,11 +37,10 @@ void draw_text(cairo_t* cr, const std::string& text, double x, double y, double 
 /// The text with what is not UTF-8 replaced and its end cut off as far as needed for `available` px.
 std::string fit_text(cairo_t* cr, const std::string& text, double available);
 
-/// Content of an SVG file of width x height px that `draw` fills; throws std::runtime_error when cairo fails.
-std::string svg_bytes(double width, double height, const std::function<void(cairo_t*)>& draw);
-
-/// Content of a PNG file of width x height px, kPixelDensity times finer, that `draw` fills; throws
-/// std::runtime_error when cairo fails.
-std::string png_bytes(double width, double height, const std::function<void(cairo_t*)>& draw);
+/// The drawing as STEM.svg, width x height px, and as STEM.png, kPixelDensity times finer; a dot in the stem is
+/// no ending. Throws FileError when it cannot
+/// be drawn, or a file cannot be written.
+void write_picture(const std::filesystem::path& stem, double width, double height,
+                   const std::function<void(cairo_t*)>& draw);
 
 }  // namespace talus::plot

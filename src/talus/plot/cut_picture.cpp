@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "talus/output/files.h"
 #include "talus/plot/axes.h"
 #include "talus/plot/canvas.h"
 #include "talus/plot/conditions.h"
@@ -200,20 +199,8 @@ void draw(cairo_t* cr, const Picture& picture) {
 
 void write_cut_picture(const Model& model, const Cut& cut, const Layout& layout,
                        const std::filesystem::path& stem) {
-  std::filesystem::path svg = stem, png = stem;
-  svg += ".svg";
-  png += ".png";
-  std::string svg_content, png_content;
-  try {
-    const Picture picture = make_picture(make_measuring_context().get(), model, cut, layout);
-    const auto draw_all = [&picture](cairo_t* cr) { draw(cr, picture); };
-    svg_content = svg_bytes(picture.width, picture.height, draw_all);
-    png_content = png_bytes(picture.width, picture.height, draw_all);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("cannot draw '" + stem.string() + "': " + error.what());
-  }
-  write_file(svg, svg_content);
-  write_file(png, png_content);
+  const Picture picture = make_picture(make_measuring_context().get(), model, cut, layout);
+  write_picture(stem, picture.width, picture.height, [&picture](cairo_t* cr) { draw(cr, picture); });
 }
 
 }  // namespace talus::plot

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <system_error>
 
 #include "talus/plot/canvas.h"
 #include "talus/plot/scale.h"
@@ -421,25 +418,6 @@ void draw(cairo_t* cr, const Figure& figure, const Layout& layout) {
   draw_text(cr, layout.title, layout.plot.x, kMargin + kTitleSize / 2, 0);
 }
 
-// ------------------------------------------------------------------------------------------------- files
-
-void write_file(const std::filesystem::path& path, const std::string& bytes) {
-  std::filesystem::path part = path;
-  part += ".part";
-  errno = 0;
-  std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  const bool opened = file.is_open();
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code cause;
-  if (!file) cause.assign(errno != 0 ? errno : EIO, std::generic_category());
-  if (!cause) std::filesystem::rename(part, path, cause);
-  if (!cause) return;
-  std::error_code ignored;
-  if (opened) std::filesystem::remove(part, ignored);
-  throw std::runtime_error("cannot write '" + path.string() + "': " + cause.message());
-}
-
 }  // namespace
 
 void write_figure(const Figure& figure, const std::filesystem::path& stem) {
@@ -448,20 +426,8 @@ void write_figure(const Figure& figure, const std::filesystem::path& stem) {
     throw std::invalid_argument("curve '" + curve.label + "': " + std::to_string(curve.x.size()) +
                                 " values of x but " + std::to_string(curve.y.size()) + " of y");
   }
-  std::filesystem::path svg = stem, png = stem;
-  svg += ".svg";
-  png += ".png";
-  std::string svg_content, png_content;
-  try {
-    const Layout layout = make_layout(make_measuring_context().get(), figure);
-    const auto draw_all = [&](cairo_t* cr) { draw(cr, figure, layout); };
-    svg_content = svg_bytes(layout.width, layout.height, draw_all);
-    png_content = png_bytes(layout.width, layout.height, draw_all);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("cannot draw '" + stem.string() + "': " + error.what());
-  }
-  write_file(svg, svg_content);
-  write_file(png, png_content);
+  const Layout layout = make_layout(make_measuring_context().get(), figure);
+  write_picture(stem, layout.width, layout.height, [&](cairo_t* cr) { draw(cr, figure, layout); });
 }
 
 }  // namespace talus::plot

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "talus/output/files.h"
 #include "talus/plot/axes.h"
 #include "talus/plot/sheet.h"
 
@@ -127,15 +126,8 @@ void draw(cairo_t* cr, const Sheet& s, const maps::MapReport& report) {
 }  // namespace
 
 void write_map_picture(const maps::MapReport& report, const std::filesystem::path& stem) {
-  std::filesystem::path svg = stem, png = stem;
-  svg += ".svg";
-  png += ".png";
   const Sheet sheet = make_sheet(make_measuring_context().get(), report);
-  const auto draw_all = [&](cairo_t* cr) { draw(cr, sheet, report); };
-  const std::string svg_content = svg_bytes(sheet.width, sheet.height, draw_all);
-  const std::string png_content = png_bytes(sheet.width, sheet.height, draw_all);
-  write_file(svg, svg_content);
-  write_file(png, png_content);
+  write_picture(stem, sheet.width, sheet.height, [&](cairo_t* cr) { draw(cr, sheet, report); });
 }
 
 }  // namespace talus::plot

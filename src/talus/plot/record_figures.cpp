@@ -20,14 +20,6 @@ std::vector<double> times_of(const record::Motion& m) {
 // A record before its processing lies thin below what became of it.
 Style style_of(size_t i, size_t count) { return i + 1 < count ? Style::kThin : Style::kSolid; }
 
-void write(const Figure& figure, const std::filesystem::path& stem) {
-  try {
-    write_figure(figure, stem);
-  } catch (const std::runtime_error& e) {
-    throw FileError(e.what());
-  }
-}
-
 void write_over_time(const std::string& title, const std::string& label,
                      std::vector<double> record::Motion::*quantity, const std::vector<MotionCurve>& curves,
                      const std::filesystem::path& stem) {
@@ -42,7 +34,7 @@ void write_over_time(const std::string& title, const std::string& label,
     figure.curves.push_back(
         {curves[i].label, times_of(m), m.*quantity, color, style_of(i, curves.size()), curves.size() > 1});
   }
-  write(figure, stem);
+  write_figure(figure, stem);
 }
 
 }  // namespace
@@ -72,7 +64,7 @@ void write_record_figures(const std::string& title, const std::vector<MotionCurv
     figure.curves.push_back(dashed);
   }
   figure.x_min = 0, figure.y_min = 0;
-  write(figure, folder / "spectrum");
+  write_figure(figure, folder / "spectrum");
 }
 
 }  // namespace talus::plot

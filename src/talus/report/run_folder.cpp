@@ -28,15 +28,30 @@ RunFolder read_run_folder(const fs::path& folder) {
   if (!run.summary.is_object() || !run.summary.contains("status"))
     throw FileError(fmt::format("{}: is no summary of a run", (folder / "summary.json").string()));
   const auto there = [&](const char* name) { return fs::exists(folder / name, ec); };
+  const auto unless_missing = [&](const char* name) {
+    if (!there(name)) return CsvTable();
+    CsvTable table = read_csv(folder / name, LastLine::kMustEnd);
+    if (table.cut_short)
+      run.notes.push_back(fmt::format("{}: its last row is not whole, and left out", name));
+    return table;
+  };
+  const auto series = [&](const std::string& name) {
+    bool cut_short = false;
+    std::vector<SeriesEntry> frames = read_series(folder / "fields" / name, &cut_short);
+    if (cut_short && !frames.empty())
+      run.notes.push_back(
+          fmt::format("fields/{}: its end is missing; read up to {} frames", name, frames.size()));
+    return frames;
+  };
   if (there("model.toml")) run.model = read_text_file(folder / "model.toml");
-  if (there("histories.csv")) run.histories = read_csv(folder / "histories.csv");
-  if (there("steps.csv")) run.steps = read_csv(folder / "steps.csv");
+  run.histories = unless_missing("histories.csv");
+  run.steps = unless_missing("steps.csv");
   if (there("slips.csv")) run.slips = read_text_table(folder / "slips.csv");
   if (there("bolts.csv")) run.bolts = read_text_table(folder / "bolts.csv");
   if (there("blocks.csv")) run.blocks = read_text_table(folder / "blocks.csv");
-  run.block_frames = read_series(folder / "fields" / "blocks.pvd");
-  run.contact_frames = read_series(folder / "fields" / "contacts.pvd");
-  run.bolt_frames = read_series(folder / "fields" / "bolts.pvd");
+  run.block_frames = series("blocks.pvd");
+  run.contact_frames = series("contacts.pvd");
+  run.bolt_frames = series("bolts.pvd");
   return run;
 }
 

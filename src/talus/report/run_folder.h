@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/output/files.h"
+#include "talus/output/csv.h"
 #include "talus/output/read_vtk.h"
 #include "talus/output/text_table.h"
 
@@ -21,9 +21,11 @@ struct RunFolder {
   TextTable slips, bolts;     // the same
   TextTable blocks;           // blocks.csv
   std::vector<SeriesEntry> block_frames, contact_frames, bolt_frames;
+  std::vector<std::string> notes;  // what was left out, of a run that was killed
 };
 
-/// Throws FileError when the folder is missing or holds no run, or a file in it cannot be read.
+/// Reads what there is, also of a run that goes on or was killed. Throws FileError when the folder is missing or
+/// holds no run, or a file in it cannot be read.
 RunFolder read_run_folder(const std::filesystem::path& folder);
 
 }  // namespace talus::report

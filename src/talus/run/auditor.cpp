@@ -5,6 +5,7 @@
 
 #include "talus/audit/check_frame.h"
 #include "talus/audit/read_results.h"
+#include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/joint_report.h"
@@ -168,13 +169,29 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
   return frame;
 }
 
-void Auditor::exchange(Exchange& x) {
-  report_.exchange(x, "audit.report");
-  watch_.exchange(x, "audit.watch");
-  x("audit.next", next_), x("audit.failed", failed_), x("audit.first_failed", first_failed_);
-  x("audit.worst_failed", worst_failed_), x("audit.lifting", lifting_);
-  x("audit.closing", closing_), x("audit.closing_friction", closing_friction_);
-  x("audit.closing_time", closing_time_), x("audit.largest_energy", largest_energy_);
+template <class X, class Self>
+void Auditor::exchange(X& x, Self& self) {
+  x("audit.next", self.next_), x("audit.failed", self.failed_);
+  x("audit.first_failed", self.first_failed_), x("audit.worst_failed", self.worst_failed_);
+  x("audit.lifting", self.lifting_), x("audit.closing", self.closing_);
+  x("audit.closing_friction", self.closing_friction_), x("audit.closing_time", self.closing_time_);
+  x("audit.largest_energy", self.largest_energy_);
+}
+
+void Auditor::save(Saver& to) const {
+  report_.save(to, "audit.report");
+  watch_.save(to, "audit.watch");
+  exchange(to, *this);
+}
+
+void Auditor::load(Loader& from) {
+  report_.load(from, "audit.report");
+  watch_.load(from, "audit.watch");
+  exchange(from, *this);
+  std::vector<int> corners;
+  for (int i = 0; i < scene_.blocks.count; ++i) corners.push_back(scene_.blocks.vertex_count(i));
+  if (!report_.fits(scene_.blocks.count) || !watch_.fits(corners))
+    throw FileError("the audit of the saved state speaks of blocks or corners that there are not");
 }
 
 }  // namespace talus

@@ -19,10 +19,13 @@ class Auditor {
   /// All that was found up to now.
   audit::Report report() const;
 
-  /// Saves or loads where it stands.
-  void exchange(Exchange& exchange);
+  /// Where it stands.
+  void save(Saver& to) const;
+  void load(Loader& from);
 
  private:
+  template <class X, class Self>
+  static void exchange(X& x, Self& self);
   void look_at_stage(const Instant& instant);
   void watch(const Instant& instant);
   audit::Block shape(const Instant& instant, int block) const;

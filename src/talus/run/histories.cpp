@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "talus/base/error.h"
+
 namespace talus {
 
 namespace {
@@ -250,19 +252,46 @@ std::vector<Histories::Peak> Histories::peaks() const {
   return list;
 }
 
-void Histories::exchange(Exchange& x) {
-  x.each("histories.points", points_, [](auto& field, Point& p) { field("peak", p.peak); });
-  x("histories.known_until", known_until_);
-  for (size_t i = 0; i < contacts_.size(); ++i) {
+template <class X, class Self>
+void Histories::exchange(X& x, Self& self) {
+  x("histories.known_until", self.known_until_);
+  for (size_t i = 0; i < self.contacts_.size(); ++i) {
     const std::string name = fmt::format("histories.contact.{}", i);
-    Impulses& c = contacts_[i];
+    auto& c = self.contacts_[i];
     x.each(name, c.knots, [](auto& field, auto& k) { field("time", k.time), field("value", k.value); });
-    std::vector<double> sum(c.sum, c.sum + 3);
-    x(name + ".sum", sum);
-    std::copy(sum.begin(), sum.end(), c.sum);
+    x(name + ".sum", c.sum);
   }
-  x.each("histories.waiting", waiting_, [](auto& field, Waiting& w) { field("ready_at", w.ready_at); });
-  for (size_t i = 0; i < waiting_.size(); ++i) x(fmt::format("histories.waiting.row.{}", i), waiting_[i].row);
+  x.each("histories.waiting", self.waiting_, [](auto& field, auto& w) { field("ready_at", w.ready_at); });
+  for (size_t i = 0; i < self.waiting_.size(); ++i)
+    x(fmt::format("histories.waiting.row.{}", i), self.waiting_[i].row);
+}
+
+void Histories::save(Saver& to) const {
+  std::vector<double> peaks;
+  for (const Point& p : points_) peaks.push_back(p.peak);
+  to("histories.peaks", peaks);
+  exchange(to, *this);
+}
+
+void Histories::load(Loader& from) {
+  std::vector<double> peaks;
+  from("histories.peaks", peaks);
+  if (peaks.size() != points_.size())
+    throw FileError(
+        fmt::format("the saved state has {} peaks of monitors, not {}", peaks.size(), points_.size()));
+  for (size_t i = 0; i < peaks.size(); ++i) points_[i].peak = peaks[i];
+  exchange(from, *this);
+  for (const Waiting& w : waiting_)
+    if (w.row.size() != columns_.size())
+      throw FileError(
+          fmt::format("a row of the saved state has {} values, not {}", w.row.size(), columns_.size()));
+  for (const Impulses& c : contacts_) {
+    if (c.knots.empty() && !waiting_.empty())
+      throw FileError("the saved state has rows that wait for impulses, and no impulse");
+    for (size_t k = 1; k < c.knots.size(); ++k)
+      if (!(c.knots[k - 1].time < c.knots[k].time))
+        throw FileError("impulses of the saved state are out of order");
+  }
 }
 
 void Histories::finish() { release(known_until_, true); }

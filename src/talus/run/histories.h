@@ -37,8 +37,9 @@ class Histories {
   };
   std::vector<Peak> peaks() const;
 
-  /// Saves or loads sums, impulses and rows that wait.
-  void exchange(Exchange& exchange);
+  /// Sums, impulses and rows that wait. Throws FileError when they are not those of these monitors.
+  void save(Saver& to) const;
+  void load(Loader& from);
 
   /// Writes the rows still waiting; their windows end with the run.
   void finish();
@@ -82,6 +83,8 @@ class Histories {
     Vec2 apart;  // at the start, from a to b [m]
   };
   static double nearer(const Pair& pair, const State& state);
+  template <class X, class Self>
+  static void exchange(X& x, Self& self);
 
   std::vector<Point> points_;       // one per point monitor
   std::vector<Pair> pairs_;         // one per convergence monitor

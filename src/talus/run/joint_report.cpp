@@ -116,23 +116,42 @@ void JointSummary::add(const JointPoint& p) {
   if (p.state == JointState::kOpen) widest = std::max(widest, p.opening);
 }
 
-void JointPoint::exchange(Exchange& x, const std::string& name) {
-  x(name + ".face", face), x(name + ".id", id);
-  x(name + ".block_a", block_a), x(name + ".block_b", block_b);
-  x(name + ".joint", joint), x(name + ".set", set), x(name + ".point", point);
-  x(name + ".length", length), x(name + ".state", state);
-  x(name + ".normal_force", normal_force);
-  x(name + ".shear_force", shear_force);
-  x(name + ".slip", slip), x(name + ".slip_signed", slip_signed);
-  x(name + ".opening", opening), x(name + ".rise", rise);
+namespace {
+
+void exchange_point(auto& x, auto& p, const std::string& name) {
+  x(name + ".face", p.face), x(name + ".id", p.id);
+  x(name + ".block_a", p.block_a), x(name + ".block_b", p.block_b);
+  x(name + ".joint", p.joint), x(name + ".set", p.set), x(name + ".point", p.point);
+  x(name + ".length", p.length), x(name + ".state", p.state);
+  x(name + ".normal_force", p.normal_force);
+  x(name + ".shear_force", p.shear_force);
+  x(name + ".slip", p.slip), x(name + ".slip_signed", p.slip_signed);
+  x(name + ".opening", p.opening), x(name + ".rise", p.rise);
 }
 
-void JointSummary::exchange(Exchange& x, const std::string& name) {
-  x(name + ".time", time), x(name + ".points", points), x(name + ".intact", intact);
-  x(name + ".slipped", slipped), x(name + ".open", open), x(name + ".widest", widest);
-  x(name + ".slipped_joints", slipped_joints);
-  largest.exchange(x, name + ".largest");
-  most_residual.exchange(x, name + ".most_residual");
+void exchange_summary(auto& x, auto& s, const std::string& name) {
+  x(name + ".time", s.time), x(name + ".points", s.points), x(name + ".intact", s.intact);
+  x(name + ".slipped", s.slipped), x(name + ".open", s.open), x(name + ".widest", s.widest);
+  x(name + ".slipped_joints", s.slipped_joints);
+  exchange_point(x, s.largest, name + ".largest");
+  exchange_point(x, s.most_residual, name + ".most_residual");
+}
+
+}  // namespace
+
+void JointSummary::save(Saver& to, const std::string& name) const { exchange_summary(to, *this, name); }
+
+void JointSummary::load(Loader& from, const std::string& name, const Scene& scene) {
+  exchange_summary(from, *this, name);
+  const auto known = [&scene](const JointPoint& p) {
+    return p.block_a >= 0 && p.block_a < scene.blocks.count && p.block_b >= 0 &&
+           p.block_b < scene.blocks.count && p.joint >= -1 &&
+           p.joint < static_cast<int>(scene.model.joints.size());
+  };
+  // the others have no place
+  if ((!(largest.slip <= 0) && !known(largest)) || (slipped_joints != 0 && !known(most_residual)))
+    throw FileError(
+        fmt::format("\"{}\" of the saved state speaks of blocks or joints that there are not", name));
 }
 
 std::string joint_header() {

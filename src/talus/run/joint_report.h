@@ -28,8 +28,6 @@ struct JointPoint {
   JointState state = JointState::kIntact;
 
   double residual_slip() const { return std::abs(slip_signed); }  // what is left of it [m]
-  /// Saves or loads it, under names that begin with `name`.
-  void exchange(Exchange& exchange, const std::string& name);
 };
 
 /// The point of row `row`; none for supports, boundaries and bonds that never break.
@@ -54,8 +52,10 @@ struct JointSummary {
   JointPoint most_residual;  // the point with the largest slip left
 
   void add(const JointPoint& p);
-  /// Saves or loads it, under names that begin with `name`.
-  void exchange(Exchange& exchange, const std::string& name);
+  /// Under names that begin with `name`.
+  void save(Saver& to, const std::string& name) const;
+  /// Throws FileError when it speaks of blocks or joints that the scene does not have.
+  void load(Loader& from, const std::string& name, const Scene& scene);
 };
 
 std::string joint_header();

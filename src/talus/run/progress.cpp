@@ -16,15 +16,17 @@ constexpr double kRewriteInterval = 0.5, kLineInterval = 10;  // [s] of wall tim
 
 }  // namespace
 
+void say(std::FILE* out, const std::string& text) { std::fwrite(text.data(), 1, text.size(), out); }
+
 void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan) {
   next_.stage_begins(scene, stage, plan);
   finish();
   const StageInput& s = scene.model.stages[static_cast<size_t>(stage)];
   const bool at_rest = s.kind == StageKind::kStatic;
-  fmt::print(out_, "stage {}/{} \"{}\" ({}{}): {:g} s in {}{} steps of {:.4g} s\n", stage + 1,
-             scene.model.stages.size(), s.name, at_rest ? "static" : "dynamic",
-             s.implicit ? ", implicit elasticity" : "", s.duration, at_rest ? "at most " : "", plan.steps,
-             plan.dt);
+  say(out_, fmt::format("stage {}/{} \"{}\" ({}{}): {:g} s in {}{} steps of {:.4g} s\n", stage + 1,
+                        scene.model.stages.size(), s.name, at_rest ? "static" : "dynamic",
+                        s.implicit ? ", implicit elasticity" : "", s.duration, at_rest ? "at most " : "",
+                        plan.steps, plan.dt));
   std::fflush(out_);
   stage_wall_ = last_shown_ = wall_now();
   stage_step_ = 0;
@@ -55,13 +57,13 @@ void Progress::show(const Instant& instant, double now) {
                       ? fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}",
                                     instant.report.unbalanced, instant.report.speed_left, s.unbalanced)
                       : "");
-  fmt::print(out_, "{}{}{}", terminal_ ? "\r" : "", line, terminal_ ? "\x1b[K" : "\n");
+  say(out_, (terminal_ ? "\r" : "") + line + (terminal_ ? "\x1b[K" : "\n"));
   std::fflush(out_);
   line_open_ = terminal_;
 }
 
 void Progress::finish() {
-  if (line_open_) fmt::print(out_, "\r\x1b[K");
+  if (line_open_) say(out_, "\r\x1b[K");
   line_open_ = false;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // What a user sees while a run goes on: one rewritten line on a terminal, plain lines otherwise.
 
-#include <csignal>
 #include <cstdio>
 
 #include "talus/run/recorder.h"
@@ -18,7 +17,7 @@ class Progress : public Observer {
 
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override;
   void at(const Instant& instant) override;
-  bool stop() override { return next_.stop() || (stop_ && *stop_ != 0); }
+  bool stop() override { return next_.stop(); }
   bool wants_state() override { return next_.wants_state(); }
   void fails(const Instant& instant) override { next_.fails(instant); }
   bool wants_copy() override { return next_.wants_copy(); }
@@ -28,8 +27,6 @@ class Progress : public Observer {
   void keep_state(const Standing& standing, const State& state) override {
     next_.keep_state(standing, state);
   }
-  /// Ends the run at the next step once `*flag` is not 0 (set by a signal handler).
-  void stop_when(const volatile std::sig_atomic_t* flag) { stop_ = flag; }
   /// Ends a rewritten line.
   void finish();
 
@@ -39,11 +36,13 @@ class Progress : public Observer {
   Observer& next_;
   std::FILE* out_;
   bool terminal_;
-  const volatile std::sig_atomic_t* stop_ = nullptr;
   double last_shown_ = 0, stage_wall_ = 0, stage_begin_ = 0, worst_error_ = 0;
   int64_t stage_step_ = 0;
   bool line_open_ = false;
 };
+
+/// Prints without fail: a run goes on when nobody can be told of it. ferror() of the stream keeps that.
+void say(std::FILE* out, const std::string& text);
 
 /// Closing lines of a run: what happened and how far to trust it.
 std::string closing_text(const Scene& scene, const RunResult& result, const JointSummary& joints,

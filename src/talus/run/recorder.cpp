@@ -11,6 +11,7 @@
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
+#include "talus/output/vtk.h"
 #include "talus/run/model_report.h"
 #include "talus/run/problem_file.h"
 #include "talus/run/slip_report.h"
@@ -87,95 +88,166 @@ constexpr const char* kSlipsSize = "recorder.slips_csv";
 constexpr size_t kSavedStates = 2;  // between stages
 
 int64_t size_in(const Archive& saved, const std::string& name) {
-  const auto it = saved.numbers.find(name);
-  if (it == saved.numbers.end() || it->second.size() != 1)
-    throw FileError(fmt::format("the saved state has no \"{}\"", name));
-  return static_cast<int64_t>(it->second[0]);
+  Loader loader(saved);
+  int64_t size = 0;
+  loader(name, size);
+  return size;
 }
 
 // A table that is written whole at the end of every stage, as it was when the state was saved.
-std::string table_then(const std::filesystem::path& path, int64_t size) {
+std::string table_then(ResultFolder& folder, const char* name, int64_t size) {
+  const std::filesystem::path path = folder.path() / name;
   std::error_code ec;
   if (size == 0) {
     std::filesystem::remove(path, ec);  // written after the state was
     return {};
   }
-  std::string text = read_text_file(path.string());
-  if (static_cast<int64_t>(text.size()) < size)
+  std::string text = read_text_file(path);
+  if (size < 0 || static_cast<int64_t>(text.size()) < size)
     throw FileError(
         fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
                     path.string(), text.size(), size));
   text.resize(static_cast<size_t>(size));
-  write_file(path, text);
+  folder.write(name, text);
   return text;
 }
 
-std::filesystem::path make_folder(const std::filesystem::path& p) {
-  std::error_code ec;
-  std::filesystem::create_directories(p, ec);  // a failure shows, with its cause, at the first file
-  return p;
+// Replaced at the end: a run that was killed shows as one.
+std::string running_text(const Scene& scene) {
+  const nlohmann::ordered_json running = {{"program", fmt::format("talus {}", kVersion)},
+                                          {"title", scene.model.title},
+                                          {"model_hash", scene.model.hash},
+                                          {"status", "running"}};
+  return running.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+// First of all files: whatever happens then, the folder says what it is.
+ResultFolder begin_results(ResultFolder folder, const Scene& scene) {
+  folder.write("summary.json", running_text(scene), Reach::kDisk);
+  folder.write("model.toml", scene.model.text, Reach::kDisk);
+  folder.make_folder("fields");
+  return folder;
+}
+
+// Before a byte of the results is cut off: they are as long as the state says, or longer.
+void check_tables(const std::filesystem::path& folder, const Archive& saved) {
+  for (const auto& [name, size] : {std::pair("histories.csv", kHistorySize),
+                                   std::pair("steps.csv", kStepsSize), std::pair("joints.csv", kJointsSize),
+                                   std::pair("bolts.csv", kBoltsSize), std::pair("slips.csv", kSlipsSize)}) {
+    const std::filesystem::path path = folder / name;
+    const int64_t then = size_in(saved, size);
+    if (then == 0) continue;
+    if (const std::string kind = unfit_target(path); !kind.empty())
+      throw FileError(
+          fmt::format("{}: is {}: going on would write into what is behind it", path.string(), kind));
+    std::error_code ec;
+    const auto now = static_cast<int64_t>(std::filesystem::file_size(path, ec));
+    if (ec) throw FileError(fmt::format("{}: cannot be continued: {}", path.string(), ec.message()));
+    if (then < 0 || now < then)
+      throw FileError(
+          fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
+                      path.string(), now, then));
+  }
+}
+
+void check_frames(const std::filesystem::path& folder, const Archive& saved, bool bolts) {
+  std::vector<double> times;
+  const Loader from(saved);
+  from("recorder.frames", times);
+  for (const auto& [name, end] :
+       {std::pair("blocks", "vtu"), std::pair("contacts", "vtp"), std::pair("bolts", "vtp")})
+    if (bolts || std::string_view(name) != "bolts")
+      check_frames_there(folder / "fields", name, end, times.size());
 }
 
 }  // namespace
 
 Recorder::~Recorder() = default;
 
-Recorder::Recorder(const Scene& scene, std::filesystem::path folder)
+Recorder::Recorder(const Scene& scene, ResultFolder folder, RunNotes notes)
     : scene_(scene),
-      folder_(std::move(folder)),
+      folder_(begin_results(std::move(folder), scene)),
+      notes_(std::move(notes)),
       model_(model_in_numbers(scene).dump()),
-      history_file_(folder_ / "histories.csv", Histories(scene, nullptr).columns()),
-      steps_file_(folder_ / "steps.csv", step_columns()),
+      history_file_(folder_.note("histories.csv"), Histories(scene, nullptr).columns()),
+      steps_file_(folder_.note("steps.csv"), step_columns()),
       histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
-      block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
-      contact_frames_(folder_ / "fields", "contacts", "vtp"),
-      bolt_frames_(folder_ / "fields", "bolts", "vtp"),
+      block_frames_(folder_, "blocks", "vtu"),
+      contact_frames_(folder_, "contacts", "vtp"),
+      bolt_frames_(folder_, "bolts", "vtp"),
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
   if (scene.model.output.audit) auditor_.emplace(scene);
-  write_file(folder_ / "model.toml", scene.model.text);
-  // replaced at the end: a run that was killed shows as one
-  nlohmann::ordered_json running = {{"program", fmt::format("talus {}", kVersion)},
-                                    {"model_hash", scene.model.hash},
-                                    {"status", "running"}};
-  write_file(folder_ / "summary.json", running.dump(2) + "\n");
 }
 
-Recorder::Recorder(const Scene& scene, std::filesystem::path folder, Archive& saved)
+Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved, RunNotes notes)
     : scene_(scene),
-      folder_(std::move(folder)),
+      folder_(checked(std::move(folder), scene, saved)),
+      notes_(std::move(notes)),
       model_(model_in_numbers(scene).dump()),
-      history_file_(folder_ / "histories.csv", size_in(saved, kHistorySize)),
-      steps_file_(folder_ / "steps.csv", size_in(saved, kStepsSize)),
+      history_file_(folder_.note("histories.csv"), size_in(saved, kHistorySize)),
+      steps_file_(folder_.note("steps.csv"), size_in(saved, kStepsSize)),
       histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
-      block_frames_(make_folder(folder_ / "fields"), "blocks", "vtu"),
-      contact_frames_(folder_ / "fields", "contacts", "vtp"),
-      bolt_frames_(folder_ / "fields", "bolts", "vtp"),
-      bolt_table_(table_then(folder_ / "bolts.csv", size_in(saved, kBoltsSize))),
-      joints_(table_then(folder_ / "joints.csv", size_in(saved, kJointsSize))),
-      slips_(table_then(folder_ / "slips.csv", size_in(saved, kSlipsSize))),
+      block_frames_(folder_, "blocks", "vtu"),
+      contact_frames_(folder_, "contacts", "vtp"),
+      bolt_frames_(folder_, "bolts", "vtp"),
+      bolt_table_(table_then(folder_, "bolts.csv", size_in(saved, kBoltsSize))),
+      joints_(table_then(folder_, "joints.csv", size_in(saved, kJointsSize))),
+      slips_(table_then(folder_, "slips.csv", size_in(saved, kSlipsSize))),
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
   if (scene.model.output.audit) auditor_.emplace(scene);
-  Exchange loading(saved, false);
-  exchange(loading);
+  folder_.write("summary.json", running_text(scene), Reach::kDisk);
+  load(saved);
   find_saved();
 }
 
 // Clocks and sums of the results. The sizes of the tables are read where these are opened.
-void Recorder::exchange(Exchange& x) {
-  x("recorder.next_history", next_history_), x("recorder.next_steps", next_steps_);
-  x("recorder.next_frame", next_frame_), x("recorder.worst", worst_);
-  x("recorder.dumped_failure", dumped_failure_);
-  joint_summary_.exchange(x, "recorder.joints");
-  histories_.exchange(x);
-  if (auditor_) auditor_->exchange(x);
-  std::vector<double> times = block_frames_.times();
-  x("recorder.frames", times);
-  if (x.saving()) return;
+template <class X, class Self>
+void Recorder::exchange(X& x, Self& self) {
+  x("recorder.next_history", self.next_history_), x("recorder.next_steps", self.next_steps_);
+  x("recorder.next_frame", self.next_frame_), x("recorder.worst", self.worst_);
+  x("recorder.dumped_failure", self.dumped_failure_);
+}
+
+void Recorder::load(const Archive& saved) {
+  Loader from(saved);
+  exchange(from, *this);
+  joint_summary_.load(from, "recorder.joints", scene_);
+  histories_.load(from);
+  if (auditor_) auditor_->load(from);
+  std::vector<double> times;
+  from("recorder.frames", times);
   block_frames_.go_on(times);
   contact_frames_.go_on(times);
   if (!scene_.model.bolts.empty()) bolt_frames_.go_on(times);
+}
+
+// Whatever is wrong with the state or the results shows before any of them is cut back.
+ResultFolder Recorder::checked(ResultFolder folder, const Scene& scene, const Archive& saved) {
+  try {
+    Loader from(saved);
+    Histories(scene, nullptr).load(from);
+    JointSummary().load(from, "recorder.joints", scene);
+    if (scene.model.output.audit) Auditor(scene).load(from);
+    std::vector<double> worst;
+    from("recorder.worst", worst);
+    if (!worst.empty() && worst.size() != step_columns().size())
+      throw FileError(fmt::format("it has {} values of a step, not {}", worst.size(), step_columns().size()));
+    for (const char* clock : {"recorder.next_history", "recorder.next_steps", "recorder.next_frame"}) {
+      double next = 0;
+      from(clock, next);
+      if (!std::isfinite(next)) throw FileError(fmt::format("\"{}\" is not finite", clock));
+    }
+    bool dumped = false;
+    from("recorder.dumped_failure", dumped);
+  } catch (const FileError& e) {
+    throw FileError(fmt::format(
+        "the saved state is damaged: {}. Go on from another one, or run the model anew", e.what()));
+  }
+  check_tables(folder.path(), saved);
+  check_frames(folder.path(), saved, !scene.model.bolts.empty());
+  return folder;
 }
 
 bool Recorder::wants_state() {
@@ -195,57 +267,91 @@ bool Recorder::wants_copy() {
 }
 
 void Recorder::hold_state(const Standing& standing, const State& state) {
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
   const double begin = wall_now();
-  held_ = archive_of(standing, state);
-  held_step_ = state.step;
+  RunResult interrupted = standing.result;
+  interrupted.interrupted = true;
+  held_ = Held{archive_of(standing, state), state.step, summary_of(interrupted)};
   held_at_ = wall_now(), holding_took_ = held_at_ - begin;
 }
 
-Archive Recorder::archive_of(const Standing& standing, const State& state) {
+Archive Recorder::archive_of(const Standing& standing, const State& state) const {
   Archive archive = run_archive(scene_, standing, state);
-  Exchange saving(archive, true);
-  exchange(saving);
-  archive.numbers[kHistorySize] = {static_cast<double>(history_file_.size())};
-  archive.numbers[kStepsSize] = {static_cast<double>(steps_file_.size())};
-  archive.numbers[kJointsSize] = {static_cast<double>(joints_.size())};
-  archive.numbers[kSlipsSize] = {static_cast<double>(slips_.size())};
-  archive.numbers[kBoltsSize] = {static_cast<double>(bolt_table_.size())};
+  Saver to(archive);
+  exchange(to, *this);
+  joint_summary_.save(to, "recorder.joints");
+  histories_.save(to);
+  if (auditor_) auditor_->save(to);
+  to("recorder.frames", block_frames_.times());
+  to(kHistorySize, history_file_.size());
+  to(kStepsSize, steps_file_.size());
+  to(kJointsSize, joints_.size());
+  to(kSlipsSize, slips_.size());
+  to(kBoltsSize, bolt_table_.size());
   return archive;
 }
 
+std::string Recorder::summary_of(const RunResult& result) const {
+  return summary_text(scene_, result, notes_, block_frames_.count(), joint_summary_, histories_.peaks(),
+                      model_, audit());
+}
+
+void Recorder::flush_tables() {
+  history_file_.flush();
+  steps_file_.flush();
+}
+
+// A state counts on the rows and frames before it: they reach the disk first.
 void Recorder::write_step(int64_t step, const Archive& archive) {
-  make_folder(folder_ / "saved");
-  const auto path = folder_ / "saved" / fmt::format("step_{:09}.h5", step);
+  flush_tables();
+  folder_.make_folder("saved");
+  const std::string name = fmt::format("saved/step_{:09}.h5", step);
+  const auto path = folder_.note(name);
+  sync_files_of(folder_.path());
   write_archive(path, archive);
+  left_.state = name;
   std::erase(saved_, path);
   saved_.push_back(path);
   std::error_code ec;
   for (; saved_.size() > kSavedStates; saved_.erase(saved_.begin())) std::filesystem::remove(saved_[0], ec);
 }
 
+void Recorder::write_held() {
+  if (held_ && saved_step_ < held_->step) write_step(held_->step, held_->archive);
+}
+
 void Recorder::keep_state(const Standing& standing, const State& state) {
-  history_file_.flush();
-  steps_file_.flush();
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
   const Archive archive = archive_of(standing, state);
-  make_folder(folder_ / "saved");
   if (standing.between) {
-    write_archive(folder_ / "saved" / fmt::format("stage_{:02}.h5", standing.result.stages.size()), archive);
+    flush_tables();
+    folder_.make_folder("saved");
+    const std::string name = fmt::format("saved/stage_{:02}.h5", standing.result.stages.size());
+    const auto path = folder_.note(name);
+    sync_files_of(folder_.path());
+    write_archive(path, archive);
+    left_.state = name;
   } else {
     write_step(state.step, archive);
   }
+  saved_step_ = state.step;
   last_saved_ = wall_now();
 }
 
 // States between stages that an interrupted run has left.
 void Recorder::find_saved() {
   std::error_code ec;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "saved", ec))
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "saved", ec))
     if (entry.path().filename().string().rfind("step_", 0) == 0 && entry.path().extension() == ".h5")
       saved_.push_back(entry.path());
   std::sort(saved_.begin(), saved_.end());
 }
 
 void Recorder::at(const Instant& i) {
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
   const OutputInput& out = scene_.model.output;
   const double t = i.state.time, dt = i.plan.dt;
   histories_.at(i, is_due(t, dt, out.history_interval, next_history_) || i.last);
@@ -262,36 +368,39 @@ void Recorder::at(const Instant& i) {
   if (i.stage_start && i.stage > 0) write_joints(i, i.stage - 1);
   if (i.last) write_joints(i, i.stage);
   if (i.stage_start && i.stage == 0) {
-    write_file(folder_ / "blocks.csv", blocks_table(scene_));
-    write_file(folder_ / "blocks_start.svg",
-               blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage)));
+    folder_.write("blocks.csv", blocks_table(scene_));
+    folder_.write("blocks_start.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
+                                                 bolt_lines(scene_, i.state, i.stage)));
   }
   if (i.last)
-    write_file(folder_ / "blocks_end.svg",
-               blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage),
-                          joint_lines(scene_, i)));
+    folder_.write("blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
+                                               bolt_lines(scene_, i.state, i.stage), joint_lines(scene_, i)));
   if (i.last || (i.stage_start && i.stage > 0)) write_bolts(i);
   if (wall_now() - last_flush_ > 1) {
-    history_file_.flush();
-    steps_file_.flush();
+    flush_tables();
     last_flush_ = wall_now();
   }
 }
 
 // What there is to look at of a run that failed: the instant before nothing could go on.
 void Recorder::fails(const Instant& i) {
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
+  if (left_.step.empty()) write_dump(i);
+  left_.frame = i.state.time;
   if (block_frames_.times().empty() || block_frames_.times().back() < i.state.time) write_frame(i);
   write_joints(i, i.stage);
-  write_file(folder_ / "blocks_end.svg",
-             blocks_svg(scene_.blocks, i.state, scene_.model.title, bolt_lines(scene_, i.state, i.stage),
-                        joint_lines(scene_, i)));
+  folder_.write("blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
+                                             bolt_lines(scene_, i.state, i.stage), joint_lines(scene_, i)));
 }
 
 // The equations of a step as a file; of a very large one only when it was asked for.
 void Recorder::write_dump(const Instant& i) {
   constexpr size_t kMostPoints = 200000;
   if (i.work.rows.points.size() > kMostPoints && i.state.step != dump_step_) return;
-  write_file(folder_ / fmt::format("step_{}.json", i.state.step), problem_text(i));
+  const std::string name = fmt::format("step_{}.json", i.state.step);
+  folder_.write(name, problem_text(i));
+  if (i.state.step != dump_step_ || i.report.failed) left_.step = name;
 }
 
 void Recorder::record_step(const Instant& i) {
@@ -328,7 +437,7 @@ void Recorder::write_bolts(const Instant& i) {
   if (bolt_table_.empty()) bolt_table_ = bolts_csv_head();
   bolt_table_ += bolts_csv_rows(scene_.model.stages[static_cast<size_t>(stage)].name, i.state.time,
                                 bolt_lines(scene_, i.state, stage));
-  write_file(folder_ / "bolts.csv", bolt_table_);
+  folder_.write("bolts.csv", bolt_table_);
 }
 
 void Recorder::write_joints(const Instant& i, int stage) {
@@ -344,29 +453,58 @@ void Recorder::write_joints(const Instant& i, int stage) {
     joints_ += joint_row(scene_, *point, name, i.state.time);
   }
   joint_summary_.time = i.state.time;
-  write_file(folder_ / "joints.csv", joints_);
+  folder_.write("joints.csv", joints_);
 
   const std::vector<SlippedJoint> list = slipped.sorted();
   if (slips_.empty()) slips_ = slips_header();
   for (const SlippedJoint& joint : list) slips_ += slips_row(scene_, joint, name, i.state.time);
   joint_summary_.slipped_joints = static_cast<int>(list.size());
   if (!list.empty()) joint_summary_.most_residual = list[0].most;
-  write_file(folder_ / "slips.csv", slips_);
+  folder_.write("slips.csv", slips_);
 }
 
 std::optional<audit::Report> Recorder::audit() const {
   return auditor_ ? std::optional(auditor_->report()) : std::nullopt;
 }
 
-void Recorder::finish(const RunResult& result, const std::vector<std::string>& overrides,
-                      const Findings& findings) {
+void Recorder::finish(const RunResult& result) {
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
   histories_.finish();
-  history_file_.flush();
-  steps_file_.flush();
-  if (!result.failure.empty() && held_) write_step(held_step_, *held_);
-  write_file(folder_ / "summary.json",
-             summary_text(scene_, result, overrides, findings, block_frames_.count(), joint_summary_,
-                          histories_.peaks(), model_, audit()));
+  flush_tables();
+  if (!result.failure.empty()) write_held();
+  folder_.write("summary.json", summary_of(result), Reach::kDisk);
+}
+
+void Recorder::abandon(const std::string& why) noexcept {
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
+  folder_.free_reserve();
+  try {
+    flush_tables();
+  } catch (const std::exception&) {  // the rows of the last second; the table stays whole
+  }
+  try {
+    auto summary = nlohmann::ordered_json::parse(held_ ? held_->summary : running_text(scene_));
+    summary["status"] = "failed";
+    summary["failure"] = why;
+    if (!left_.state.empty()) summary["saved_state"] = left_.state;
+    folder_.write("summary.json",
+                  summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n",
+                  Reach::kDisk);
+  } catch (const std::exception&) {  // "running" stays; the command tells why
+  }
+}
+
+void Recorder::end_as_held() {
+  const std::lock_guard lock(taking_);
+  if (ended_) return;
+  ended_ = true;
+  write_held();
+  auto summary = nlohmann::ordered_json::parse(held_ ? held_->summary : running_text(scene_));
+  summary["status"] = "interrupted";
+  folder_.write("summary.json", summary.dump(2) + "\n", Reach::kDisk);
+  folder_.release();
 }
 
 namespace {
@@ -403,10 +541,9 @@ nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<aud
 
 }  // namespace
 
-std::string summary_text(const Scene& scene, const RunResult& r, const std::vector<std::string>& overrides,
-                         const Findings& findings, int frames, const JointSummary& joints,
-                         const std::vector<Histories::Peak>& peaks, const std::string& model,
-                         const std::optional<audit::Report>& audit) {
+std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes& notes, int frames,
+                         const JointSummary& joints, const std::vector<Histories::Peak>& peaks,
+                         const std::string& model, const std::optional<audit::Report>& audit) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -415,11 +552,10 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
   j["title"] = scene.model.title;
   j["model_file"] = std::filesystem::path(scene.model.file).filename().string();
   j["model_hash"] = scene.model.hash;
-  j["overrides"] = overrides;
+  j["overrides"] = notes.overrides;
   j["status"] = !r.failure.empty() ? "failed" : r.interrupted ? "interrupted" : "finished";
   if (!r.failure.empty()) j["failure"] = r.failure;
-  ordered_json warnings = ordered_json::array();
-  for (const Finding& f : findings.list()) warnings.push_back(f.key + ": " + f.text);
+  ordered_json warnings = notes.warnings;
   if (audit)
     for (const std::string& line : audit->lines(b.name)) warnings.push_back("audit: " + line);
   j["valid"] = audit ? ordered_json(audit->valid()) : ordered_json();
@@ -515,7 +651,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const std::vect
   j["frames"] = frames;
   j["wall_time [s]"] = r.wall_seconds;
   j["cpu_time [s]"] = r.cpu_seconds;
-  return j.dump(2) + "\n";
+  return j.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace talus

@@ -1,11 +1,11 @@
 #pragma once
 // Writes the result folder while a run goes on, and the summary when it ends.
 
-#include <filesystem>
+#include <mutex>
 #include <optional>
 
-#include "talus/output/files.h"
-#include "talus/output/vtk.h"
+#include "talus/output/csv.h"
+#include "talus/output/frame_series.h"
 #include "talus/run/auditor.h"
 #include "talus/run/histories.h"
 #include "talus/run/joint_report.h"
@@ -13,14 +13,21 @@
 
 namespace talus {
 
+/// What summary.json says of how the model came about.
+struct RunNotes {
+  std::vector<std::string> overrides;
+  std::vector<std::string> warnings;  // "key: text"
+};
+
 /// model.toml, histories.csv, steps.csv, joints.csv, slips.csv, fields/, saved/, with bolts also bolts.csv.
-/// Rows reach the file at least once a second, frames at once.
+/// Rows reach the system at least once a second, frames at once, saved states and summaries the disk.
 class Recorder : public Observer {
  public:
-  /// @param folder  ready for results (open_result_folder)
-  Recorder(const Scene& scene, std::filesystem::path folder);
-  /// Goes on in the folder of a saved run: what was written after the state was saved is cut off.
-  Recorder(const Scene& scene, std::filesystem::path folder, Archive& saved);
+  /// @param folder  ready for results
+  Recorder(const Scene& scene, ResultFolder folder, RunNotes notes = {});
+  /// Goes on in the folder of a saved run: what was written after the state was saved is cut off. Throws
+  /// FileError when the folder is not as it was.
+  Recorder(const Scene& scene, ResultFolder folder, const Archive& saved, RunNotes notes = {});
   ~Recorder() override;
 
   /// Saves the state in saved/: stage_NN.h5 at the end of each stage; in between at intervals of wall time
@@ -45,12 +52,40 @@ class Recorder : public Observer {
   std::optional<audit::Report> audit() const;
 
   /// Writes waiting rows and summary.json. To be called also when the run failed or was interrupted.
-  void finish(const RunResult& result, const std::vector<std::string>& overrides, const Findings& findings);
+  void finish(const RunResult& result);
+
+  /// The last word of a run that an error has ended which is none of its numbers (a full disk, no memory):
+  /// summary.json says why, as far as it still can be written. Never throws.
+  void abandon(const std::string& why) noexcept;
+
+  /// Ends the results as if the run had been interrupted when its state was last held in memory, and saves
+  /// that state: for a process that has to end while a step goes on. May be called from another thread; no
+  /// result is taken any more, and the folder is free for others.
+  void end_as_held();
+
+  /// Files that a failed run leaves to look at, by their path in the folder; "" for none.
+  struct Left {
+    std::string state, step;
+    double frame = 0;  // time [s]
+  };
+  const Left& left() const { return left_; }
 
  private:
-  void exchange(Exchange& exchange);
-  Archive archive_of(const Standing& standing, const State& state);
+  struct Held {
+    Archive archive;
+    int64_t step = -1;
+    std::string summary;  // of a run that is interrupted there
+  };
+
+  template <class X, class Self>
+  static void exchange(X& x, Self& self);
+  static ResultFolder checked(ResultFolder folder, const Scene& scene, const Archive& saved);
+  void load(const Archive& saved);
+  Archive archive_of(const Standing& standing, const State& state) const;
+  std::string summary_of(const RunResult& result) const;
   void write_step(int64_t step, const Archive& archive);
+  void write_held();
+  void flush_tables();
   void find_saved();
   void record_step(const Instant& instant);
   void write_dump(const Instant& instant);
@@ -59,8 +94,11 @@ class Recorder : public Observer {
   void write_joints(const Instant& instant, int stage);
 
   const Scene& scene_;
-  std::filesystem::path folder_;
-  std::string model_;  // in numbers, as it began: stages change materials and joints
+  ResultFolder folder_;
+  RunNotes notes_;
+  std::mutex taking_;   // results, or ending them
+  bool ended_ = false;  // end_as_held()
+  std::string model_;   // in numbers, as it began: stages change materials and joints
   CsvWriter history_file_, steps_file_;
   Histories histories_;
   std::optional<Auditor> auditor_;
@@ -71,10 +109,11 @@ class Recorder : public Observer {
   JointSummary joint_summary_;
   std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0, last_saved_ = 0;
+  int64_t saved_step_ = -1;
   std::vector<std::filesystem::path> saved_;  // between stages
   int steps_since_look_ = 0, steps_since_held_ = 0;
-  std::optional<Archive> held_;  // in case the next steps fail
-  int64_t held_step_ = -1;
+  std::optional<Held> held_;  // in case the next steps fail
+  Left left_;
   double held_at_ = 0, holding_took_ = 0;  // wall time [s]
   int64_t dump_step_ = -1;
   bool dumped_failure_ = false;
@@ -82,8 +121,7 @@ class Recorder : public Observer {
 
 /// Text of summary.json.
 /// @param model  model_in_numbers() of the scene as it began, as text
-std::string summary_text(const Scene& scene, const RunResult& result,
-                         const std::vector<std::string>& overrides, const Findings& findings, int frames,
+std::string summary_text(const Scene& scene, const RunResult& result, const RunNotes& notes, int frames,
                          const JointSummary& joints = {}, const std::vector<Histories::Peak>& peaks = {},
                          const std::string& model = "{}",
                          const std::optional<audit::Report>& audit = std::nullopt);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include "talus/base/error.h"
 #include "talus/base/version.h"
 #include "talus/blocks/state_fields.h"
@@ -21,49 +24,53 @@ inline constexpr bool kIsList = false;
 template <class T>
 inline constexpr bool kIsList<std::vector<T>> = true;
 
-template <HasFields T>
-void exchange_value(Exchange& x, const std::string& name, std::vector<T>& list);
+// A member that is a list goes by itself, not as a column.
+template <class T>
+inline constexpr bool kIsListMember = kIsList<std::remove_cvref_t<T>>;
+
+void exchange_list(auto& x, const std::string& name, auto& list);
 
 // A value under its name, down to the fields of structs and of lists of structs.
-template <class T>
-void exchange_value(Exchange& x, const std::string& name, T& value) {
-  if constexpr (HasFields<T>)
+void exchange_value(auto& x, const std::string& name, auto& value) {
+  using T = std::remove_cvref_t<decltype(value)>;
+  if constexpr (HasFields<T>) {
     each_field(value,
                [&](const char* field, auto& member) { exchange_value(x, name + "." + field, member); });
-  else
+  } else if constexpr (kIsList<T>) {
+    if constexpr (HasFields<typename T::value_type>)
+      exchange_list(x, name, value);
+    else
+      x(name, value);
+  } else {
     x(name, value);
+  }
 }
 
-// The fields of a list as columns; lists in its elements by themselves.
-template <HasFields T>
-void exchange_value(Exchange& x, const std::string& name, std::vector<T>& list) {
-  x.each(name, list, [](auto& column, T& element) {
+// The fields of a list of structs as columns; lists in its elements by themselves.
+void exchange_list(auto& x, const std::string& name, auto& list) {
+  x.each(name, list, [](auto& column, auto& element) {
     each_field(element, [&](const char* field, auto& member) {
-      if constexpr (!kIsList<std::remove_reference_t<decltype(member)>>) column(field, member);
+      if constexpr (!kIsListMember<decltype(member)>) column(field, member);
     });
   });
   for (size_t i = 0; i < list.size(); ++i)
     each_field(list[i], [&](const char* field, auto& member) {
-      if constexpr (kIsList<std::remove_reference_t<decltype(member)>>)
+      if constexpr (kIsListMember<decltype(member)>)
         exchange_value(x, fmt::format("{}.{}.{}", name, i, field), member);
     });
 }
 
-void exchange_plan(auto& field, StagePlan& p) {
+void exchange_plan(auto& field, auto& p) {
   field("dt", p.dt), field("plan_steps", p.steps), field("dt_bound", p.dt_bound);
   field("bound_block", p.bound_block), field("bound_column", p.bound_column);
   field("dt_undamped", p.dt_undamped), field("clamp_dt", p.clamp_dt);
   field("clamped", p.clamped), field("largest_clamp", p.largest_clamp);
 }
 
-}  // namespace
-
-void exchange_state(Exchange& x, State& s) { exchange_value(x, "state", s); }
-
-void exchange_standing(Exchange& x, Standing& standing) {
-  RunResult& r = standing.result;
+void exchange_standing(auto& x, auto& standing) {
+  auto& r = standing.result;
   x("run.between_stages", standing.between);
-  x.each("run.stages", r.stages, [](auto& field, StageResult& s) {
+  x.each("run.stages", r.stages, [](auto& field, auto& s) {
     exchange_plan(field, s.plan);
     field("kind", s.kind), field("steps", s.steps), field("begin", s.begin), field("end", s.end);
     field("unbalanced", s.unbalanced), field("at_rest", s.at_rest);
@@ -83,15 +90,21 @@ void exchange_standing(Exchange& x, Standing& standing) {
   x("run.wall_seconds", r.wall_seconds), x("run.cpu_seconds", r.cpu_seconds);
 }
 
+}  // namespace
+
+void save_state(Saver& to, const State& state) { exchange_value(to, "state", state); }
+void load_state(Loader& from, State& state) { exchange_value(from, "state", state); }
+void save_standing(Saver& to, const Standing& standing) { exchange_standing(to, standing); }
+void load_standing(Loader& from, Standing& standing) { exchange_standing(from, standing); }
+
 Archive run_archive(const Scene& scene, const Standing& standing, const State& state) {
   Archive archive;
-  archive.numbers["format"] = {kStateFormat};
   archive.texts["program"] = fmt::format("talus {}", kVersion);
   archive.texts["model.hash"] = scene.model.hash;
   archive.texts["model.text"] = scene.model.text;
-  Exchange exchange(archive, true);
-  exchange_state(exchange, const_cast<State&>(state));           // saving changes nothing
-  exchange_standing(exchange, const_cast<Standing&>(standing));  // the same
+  Saver saver(archive);
+  save_state(saver, state);
+  save_standing(saver, standing);
   return archive;
 }
 
@@ -112,16 +125,57 @@ std::string folder_of_saved(const std::filesystem::path& saved, const std::strin
   return folder.string();
 }
 
+namespace {
+
+[[noreturn]] void damaged(const std::filesystem::path& path, const std::string& why) {
+  throw FileError(
+      fmt::format("{}: the saved state is damaged: {}. Go on from another one, or run the model anew",
+                  path.string(), why));
+}
+
+void promise(bool kept, const char* what) {
+  if (!kept) throw std::logic_error(what);
+}
+
+// What the blocks alone do not tell: joints, bolts and stages are the model's.
+void validate_loaded(const State& s, const Scene& scene) {
+  const auto below = [](int i, size_t count) { return i >= 0 && static_cast<size_t>(i) < count; };
+  for (const Contact& c : s.contacts)
+    promise(c.joint < static_cast<int>(scene.model.joints.size()),
+            "a contact is of a joint that there is not");
+  for (const Bolt& bolt : s.bolts)
+    promise(below(bolt.input, scene.model.bolts.size()), "a bolt is none of the model's");
+}
+
+void validate_standing(const Standing& standing, const State& state, const Scene& scene) {
+  const std::vector<StageResult>& stages = standing.result.stages;
+  promise(!stages.empty() && stages.size() <= scene.model.stages.size(),
+          "it stands in no stage of the model");
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const StageInput& stage = scene.model.stages[i];
+    promise(stages[i].name == stage.name && stages[i].kind == stage.kind, "its stages are not the model's");
+    promise(stages[i].steps >= 0, "a stage has taken less than no step");
+    promise(std::isfinite(stages[i].begin) && std::isfinite(stages[i].end),
+            "a stage begins or ends at no time");
+    promise(stages[i].begin <= state.time, "a stage begins after the state");
+  }
+  promise(standing.result.steps >= 0 && standing.result.failed_steps >= 0, "it has taken less than no step");
+}
+
+// Lists are as long as those of a run that begins.
+bool fits(const State& state, const State& fresh) {
+  return state.displacement.size() == fresh.displacement.size() && state.face.size() == fresh.face.size() &&
+         state.supports.size() == fresh.supports.size() &&
+         state.boundaries.size() == fresh.boundaries.size() && state.ties.size() == fresh.ties.size() &&
+         state.column_rate.size() == fresh.column_rate.size();
+}
+
+}  // namespace
+
 SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
   SavedRun saved;
   saved.archive = read_archive(path);
   Archive& a = saved.archive;
-  const double format = a.numbers.count("format") ? a.numbers["format"].at(0) : 0;
-  if (format != kStateFormat)
-    throw InputError(fmt::format(
-        "{}: error: the state is in format {:g}, written by {}; this program (talus {}) reads format {}. "
-        "Go on with the program that wrote it, or run the model anew\n",
-        path.string(), format, a.texts["program"], kVersion, kStateFormat));
   if (a.texts["model.hash"] != scene.model.hash) {
     const std::string differ = model_difference(scene.model.text, a.texts["model.text"]);
     throw InputError(fmt::format(
@@ -129,25 +183,22 @@ SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
         path.string(), scene.model.file,
         differ.empty() ? "  no key differs, but comments or a file that the model reads do\n" : differ));
   }
-  Exchange exchange(a, false);
-  exchange_state(exchange, saved.state);
-  exchange_standing(exchange, saved.standing);
-  const State fresh = start_state(scene);
-  if (saved.state.displacement.size() != fresh.displacement.size() ||
-      saved.state.face.size() != fresh.face.size() || saved.state.supports.size() != fresh.supports.size() ||
-      saved.state.boundaries.size() != fresh.boundaries.size() ||
-      saved.state.ties.size() != fresh.ties.size() ||
-      saved.state.column_rate.size() != fresh.column_rate.size() || saved.standing.result.stages.empty())
-    throw InputError(fmt::format(
-        "{}: error: the state does not fit the model, which this program cuts or supports otherwise ({} "
-        "blocks now, {} then). Run the model anew\n",
-        path.string(), fresh.displacement.size(), saved.state.displacement.size()));
   try {
+    Loader loader(a);
+    load_state(loader, saved.state);
+    load_standing(loader, saved.standing);
+    const State fresh = start_state(scene);
+    if (!fits(saved.state, fresh))
+      throw std::logic_error(
+          fmt::format("the model is cut or supported otherwise by this program ({} blocks now, {} then)",
+                      fresh.displacement.size(), saved.state.displacement.size()));
     validate(saved.state, scene.blocks);
+    validate_loaded(saved.state, scene);
+    validate_standing(saved.standing, saved.state, scene);
   } catch (const std::logic_error& e) {
-    throw InputError(
-        fmt::format("{}: error: the state is damaged: {}. Go on from another one, or run the model anew\n",
-                    path.string(), e.what()));
+    damaged(path, e.what());
+  } catch (const FileError& e) {
+    damaged(path, e.what());
   }
   return saved;
 }

@@ -9,14 +9,13 @@
 
 namespace talus {
 
-/// Number of the layout of these files; another one is refused.
-inline constexpr int kStateFormat = 4;
-
-/// All of a State. @param prefix  of the names, "state"
-void exchange_state(Exchange& exchange, State& state);
+/// All of a State.
+void save_state(Saver& to, const State& state);
+void load_state(Loader& from, State& state);
 
 /// What run_stages() needs to go on.
-void exchange_standing(Exchange& exchange, Standing& standing);
+void save_standing(Saver& to, const Standing& standing);
+void load_standing(Loader& from, Standing& standing);
 
 /// Archive of a run: who wrote it, of which model, the state and where the run stands.
 Archive run_archive(const Scene& scene, const Standing& standing, const State& state);

@@ -1,3 +1,4 @@
+#include "talus/output/frame_series.h"
 #include "talus/output/vtk.h"
 
 #include <doctest/doctest.h>
@@ -172,10 +173,12 @@ TEST_CASE("the collection lists every frame written so far") {
   const fs::path folder = fs::temp_directory_path() / ("talus_vtk_" + std::to_string(getpid()));
   fs::create_directories(folder);
   const auto content = [&](const std::string& name) -> std::string {
-    std::ifstream file(folder / name);
+    std::ifstream file(folder / "fields" / name);
     return {std::istreambuf_iterator<char>(file), {}};
   };
-  FrameSeries series(folder, "blocks", "vtu");
+  ResultFolder results(folder, true);
+  results.make_folder("fields");
+  FrameSeries series(results, "blocks", "vtu");
   series.add(0, "first");
   CHECK(has(content("blocks.pvd"), "timestep=\"0\" group=\"\" part=\"0\" file=\"blocks_000000.vtu\""));
   CHECK_FALSE(has(content("blocks.pvd"), "blocks_000001"));
@@ -187,7 +190,7 @@ TEST_CASE("the collection lists every frame written so far") {
   CHECK(has(content("blocks.pvd"),
             "timestep=\"0.10000000000000001\" group=\"\" part=\"0\" file=\"blocks_000001.vtu\""));
   CHECK(has(content("blocks.pvd"), "</Collection>"));
-  CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 3);
+  CHECK(std::distance(fs::directory_iterator(folder / "fields"), fs::directory_iterator()) == 3);
   std::error_code ignored;
   fs::remove_all(folder, ignored);
 }

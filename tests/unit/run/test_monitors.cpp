@@ -138,9 +138,9 @@ history_interval = 0.1
   PreparedRun run = prepare_run("model.toml", text, {}, findings);
   State state = start_state(run.scene);
   {
-    Recorder recorder(run.scene, folder);
+    Recorder recorder(run.scene, ResultFolder(folder, false));
     const RunResult result = run_stages(run.scene, run.plans, state, recorder);
-    recorder.finish(result, {}, findings);
+    recorder.finish(result);
   }
   const auto j = nlohmann::json::parse(read_text_file((folder / "summary.json").string()));
   // 3 MN for one step of 1 ms on 6000 kg: 0.5 m/s on top of 2 m/s, and 1 m/s along y

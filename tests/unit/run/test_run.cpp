@@ -242,11 +242,10 @@ TEST_CASE("the predicted output size is that of the run within a third") {
     Findings findings("m", text);
     PreparedRun p = prepare_run("m", text, {cells}, findings);
     const double predicted = predict(p.scene, p.plans).output;
-    open_result_folder(folder, true);
-    Recorder recorder(p.scene, folder);
+    Recorder recorder(p.scene, ResultFolder(folder, true));
     State state = start_state(p.scene);
     const RunResult r = run_stages(p.scene, p.plans, state, recorder);
-    recorder.finish(r, {}, findings);
+    recorder.finish(r);
     double written = 0;
     for (const auto& e : std::filesystem::recursive_directory_iterator(folder))
       if (e.is_regular_file()) written += static_cast<double>(e.file_size());
@@ -261,12 +260,11 @@ TEST_CASE("joints.csv, the summary and the frames tell slip, opening and state o
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("talus_joints_{}", getpid());
   Findings findings("m", text);
   PreparedRun p = prepare_run("m", text, {}, findings);
-  open_result_folder(folder, true);
-  Recorder recorder(p.scene, folder);
+  Recorder recorder(p.scene, ResultFolder(folder, true));
   State state = start_state(p.scene);
   const RunResult r = run_stages(p.scene, p.plans, state, recorder);
   REQUIRE(r.failure.empty());
-  recorder.finish(r, {}, findings);
+  recorder.finish(r);
   // two ends of the face after "press", two contacts after "shear"
   const std::string joints = read_text_file((folder / "joints.csv").string());
   CHECK(std::count(joints.begin(), joints.end(), '\n') == 5);

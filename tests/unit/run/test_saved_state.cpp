@@ -70,9 +70,10 @@ std::vector<double> numbers_of(State s) {
 TEST_CASE("saved state: every field comes back") {
   State s = full_state(), back;
   Archive archive;
-  Exchange saving(archive, true), loading(archive, false);
-  exchange_state(saving, s);
-  exchange_state(loading, back);
+  Saver saver(archive);
+  Loader loader(archive);
+  save_state(saver, s);
+  load_state(loader, back);
   const std::vector<double> before = numbers_of(s), after = numbers_of(back);
   REQUIRE(before.size() == after.size());
   for (size_t i = 0; i < before.size(); ++i) {
@@ -89,13 +90,13 @@ TEST_CASE("saved state: limits without end and anchors of sliding contacts pass 
   const auto path =
       std::filesystem::temp_directory_path() / ("talus_saved_state_" + std::to_string(getpid()) + ".h5");
   Archive archive;
-  Exchange saving(archive, true);
-  exchange_state(saving, s);
+  Saver saver(archive);
+  save_state(saver, s);
   write_archive(path, archive);
-  Archive read = read_archive(path);
+  const Archive read = read_archive(path);
   std::filesystem::remove(path);
-  Exchange loading(read, false);
-  exchange_state(loading, back);
+  Loader loader(read);
+  load_state(loader, back);
   CHECK(std::isinf(back.bolts[1].nodes[0].limit));
   CHECK(std::isnan(back.contacts[1].anchor));
   CHECK(back.bolts[0].crossings.empty());

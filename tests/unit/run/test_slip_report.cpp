@@ -124,12 +124,11 @@ TEST_CASE("slips.csv: joints that have slipped, greatest residual slip first; th
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("talus_slips_{}", getpid());
   Findings findings("m", kModel);
   PreparedRun p = prepare_run("m", kModel, {}, findings);
-  open_result_folder(folder, true);
-  Recorder recorder(p.scene, folder);
+  Recorder recorder(p.scene, ResultFolder(folder, true));
   State state = start_state(p.scene);
   const RunResult r = run_stages(p.scene, p.plans, state, recorder);
   REQUIRE(r.failure.empty());
-  recorder.finish(r, {}, findings);
+  recorder.finish(r);
 
   struct Expected {
     const char *stage, *block, *set;

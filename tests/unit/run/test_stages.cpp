@@ -7,6 +7,7 @@
 #include "support/told.h"
 #include "support/tolerance.h"
 #include "talus/base/error.h"
+#include "talus/output/vtk.h"
 
 namespace test_stages {
 

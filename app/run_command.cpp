@@ -1,0 +1,133 @@
+#include "run_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "signals.h"
+#include "talus/run/base_report.h"
+#include "talus/run/progress.h"
+#include "talus/run/resolution.h"
+
+namespace talus::app {
+
+namespace {
+
+RunNotes notes_of(const ModelArguments& model, const Findings& findings) {
+  RunNotes notes{model.overrides, {}};
+  for (const Finding& f : findings.list()) notes.warnings.push_back(f.key + ": " + f.text);
+  return notes;
+}
+
+// Stops the run when a signal asks for it.
+class StoppedBySignals : public Progress {
+ public:
+  StoppedBySignals(Recorder& recorder, std::FILE* out, bool terminal)
+      : Progress(recorder, out, terminal), signals_([&recorder] { recorder.end_as_held(); }) {}
+  bool stop() override { return signals_.hear() != 0 || Progress::stop(); }
+  int signal() const { return signals_.asked(); }
+
+ private:
+  StopSignals signals_;
+};
+
+// The command to look at each thing that a failed run has left.
+std::string left_text(const Recorder::Left& left, const std::string& model, const std::string& folder) {
+  std::string text;
+  if (!left.step.empty())
+    text += fmt::format("  talus replay {}/{}      (the contact equations of the step)\n", folder, left.step);
+  text += fmt::format("  talus plot {} --blocks velocity --time {:.9g}      (the instant, as a picture)\n",
+                      folder, left.frame);
+  if (!left.state.empty())
+    text += fmt::format("  talus run {} --from {}/{}      (from the last good state, with --set as before)\n",
+                        model, folder, left.state);
+  return text;
+}
+
+struct Prepared {
+  ResultFolder folder;
+  std::optional<SavedRun> saved;  // of --from
+};
+
+Prepared open_folder(const RunArguments& args, const Scene& scene) {
+  if (args.from.empty()) return {ResultFolder(args.folder, args.force), std::nullopt};
+  // taken before the state is read: who is about to write into the folder must not do so meanwhile
+  Prepared out{ResultFolder::go_on(folder_of_saved(args.from, args.folder)), std::nullopt};
+  out.saved.emplace(read_saved_run(args.from, scene));
+  return out;
+}
+
+RunResult run_or_abandon(PreparedRun& prepared, std::optional<SavedRun>& saved, State& state,
+                         Recorder& recorder, Progress& progress, const Workers& workers) {
+  try {
+    RunResult result =
+        saved ? continue_stages(prepared.scene, prepared.plans, saved->standing, state, progress, workers)
+              : run_stages(prepared.scene, prepared.plans, state, progress, workers);
+    progress.finish();
+    recorder.finish(result);
+    return result;
+  } catch (const std::exception& e) {
+    recorder.abandon(e.what());
+    throw;
+  }
+}
+
+}  // namespace
+
+void add_run_arguments(CLI::App& verb, RunArguments& args) {
+  verb.add_option("-o,--output", args.folder, "folder for the results");
+  verb.add_option("--from", args.from,
+                  "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in");
+  verb.add_flag("--force", args.force, "replace the results of an earlier run in that folder");
+  verb.add_flag("-q,--quiet", args.quiet, "say nothing but errors");
+  verb.add_option("--threads", args.threads,
+                  "threads inside a step, 0: as many as pay; results are the same for any number")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  verb.add_flag("--profile", args.profile, "print the share of each part of a step in the time of the run");
+  verb.add_option("--dump-step", args.dump_step,
+                  "also write the contact equations of this step, as step_N.json, for talus replay");
+  verb.footer(
+      "Example: talus run examples/impact_bar/impact_bar.toml -o out/bar --set grid.bar.cells=[20,1]");
+}
+
+int run_command(const ModelArguments& model, const RunArguments& args) {
+  if (args.folder.empty() && args.from.empty())
+    throw Error(kExitUsage, "run needs -o FOLDER for the results, or --from STATE to go on");
+  if (args.force && !args.from.empty())
+    throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
+  if (args.from.empty()) check_result_folder(args.folder, args.force);
+  auto [findings, prepared] = prepare_model(model);
+  auto [folder, saved] = open_folder(args, prepared.scene);
+  if (const std::string stale = folder.stale_lock(); !stale.empty())
+    fmt::print(stderr, "talus: note: {}\n", stale);
+  const std::string name = folder.path().string();
+  const RunNotes notes = notes_of(model, findings);
+  std::optional<Recorder> recorder;
+  if (saved)
+    recorder.emplace(prepared.scene, std::move(folder), saved->archive, notes);
+  else
+    recorder.emplace(prepared.scene, std::move(folder), notes);
+  recorder->dump_step(args.dump_step);
+  State state = saved ? std::move(saved->state) : start_state(prepared.scene);
+  std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
+  if (!out) throw FileError("/dev/null: cannot be opened");
+  StoppedBySignals progress(*recorder, out, isatty(fileno(out)) != 0);
+  say(out, base_report(prepared.scene) + resolution_report(prepared.scene));
+  const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
+  if (saved)
+    say(out, fmt::format("goes on from {}: t = {:.6g} s, step {}\n", args.from, state.time, state.step));
+  const RunResult result = run_or_abandon(prepared, saved, state, *recorder, progress, workers);
+  say(out, closing_text(prepared.scene, result, recorder->joints(), name, recorder->audit()));
+  if (args.profile) say(out, profile_text(result.profile, result.threads, result.steps));
+  if (!result.failure.empty())
+    throw NumericalError(fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure,
+                                     name, left_text(recorder->left(), model.file, name)));
+  if (result.interrupted) return kExitSignal + progress.signal();
+  const auto audit = recorder->audit();
+  return audit && !audit->valid() ? kExitNotValid : kExitOk;
+}
+
+}  // namespace talus::app

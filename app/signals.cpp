@@ -1,0 +1,108 @@
+#include "signals.h"
+
+#include <fmt/format.h>
+#include <semaphore.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+
+#include "talus/base/error.h"
+#include "talus/base/unfinished.h"
+
+namespace talus::app {
+
+namespace {
+
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU};
+
+// A step that takes longer is not waited for; what comes after the last step may take so long.
+constexpr auto kForStep = std::chrono::milliseconds(600);
+constexpr auto kForEnd = std::chrono::seconds(20);
+
+volatile std::sig_atomic_t asked_by = 0;
+sem_t asking;
+
+// nohup has a hang-up ignored, and it stays so; all else is ours to hear.
+bool stays_ignored(int signal) {
+  struct sigaction now {};
+  return signal == SIGHUP && sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
+void on_signals(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : kSignals)
+    if (!stays_ignored(signal)) sigaction(signal, &action, nullptr);
+}
+
+extern "C" void clean_up_and_end(int signal) {
+  talus::remove_unfinished();
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+extern "C" void ask_to_stop(int signal) {
+  const bool again = asked_by != 0;
+  if (again && signal == SIGINT) _exit(kExitSignal + signal);
+  if (again) return;  // a limit on processor time tells every second
+  asked_by = signal;
+  const int error = errno;
+  sem_post(&asking);
+  errno = error;
+}
+
+}  // namespace
+
+void end_on_signals() { on_signals(clean_up_and_end); }
+
+StopSignals::StopSignals(std::function<void()> end_now) {
+  asked_by = 0;
+  sem_init(&asking, 0, 0);
+  watcher_ = std::thread([this, end = std::move(end_now)] { watch(end); });
+  on_signals(ask_to_stop);
+}
+
+StopSignals::~StopSignals() {
+  end_on_signals();
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  changed_.notify_all();
+  sem_post(&asking);
+  watcher_.join();
+  sem_destroy(&asking);
+}
+
+int StopSignals::asked() const { return asked_by; }
+
+int StopSignals::hear() {
+  if (asked_by != 0 && !heard_) {
+    const std::lock_guard lock(mutex_);
+    heard_ = true;
+    changed_.notify_all();
+  }
+  return asked_by;
+}
+
+void StopSignals::watch(const std::function<void()>& end_now) {
+  while (sem_wait(&asking) != 0) continue;
+  {
+    std::unique_lock lock(mutex_);
+    if (changed_.wait_for(lock, kForStep, [this] { return heard_ || over_; }))
+      if (changed_.wait_for(lock, kForEnd, [this] { return over_; })) return;
+  }
+  try {
+    end_now();
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "talus: %s\n", e.what());
+  }
+  _exit(kExitSignal + asked_by);
+}
+
+}  // namespace talus::app

@@ -1,0 +1,345 @@
+#include "talus/output/result_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "talus/base/error.h"
+#include "talus/base/text_file.h"
+#include "talus/output/folder_lock.h"
+
+namespace talus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// By number of ResultKind: what the manifest calls it, and the verb that makes it.
+constexpr std::array<const char*, 5> kKindName{"run", "cut", "record", "safety", "picture"};
+constexpr std::array<const char*, 5> kVerb{"run", "cut", "record", "safety", "check"};
+constexpr std::string_view kBegin = "results of talus ";
+
+const char* verb_of(ResultKind kind) { return kVerb[static_cast<size_t>(kind)]; }
+
+struct Manifest {
+  std::optional<ResultKind> kind;
+  std::vector<std::string> names;
+};
+
+bool is_frame(const std::string& name) {
+  return name.rfind("fields/", 0) == 0 && fs::path(name).extension() != ".pvd";
+}
+
+// Bytes up to the end of the last line that has one.
+off_t whole_lines(const fs::path& path) {
+  return static_cast<off_t>(read_text_file(path, kMostModelText).rfind('\n') + 1);
+}
+
+// A path that stays inside the folder.
+bool is_inside(const std::string& name) {
+  const fs::path path(name);
+  if (name.empty() || path.is_absolute()) return false;
+  return std::none_of(path.begin(), path.end(),
+                      [](const fs::path& part) { return part == ".." || part == "." || part.empty(); });
+}
+
+// Lines with an end; a torn last one names a file that was not begun.
+std::optional<Manifest> read_manifest(const fs::path& folder) {
+  const fs::path path = folder / ResultFolder::kManifest;
+  std::error_code ec;
+  if (!fs::exists(path, ec)) return std::nullopt;
+  const std::string text = read_text_file(path, kMostModelText);
+  Manifest m;
+  size_t begin = 0;
+  for (size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string line = text.substr(begin, end - begin);
+    if (begin == 0) {
+      if (line.rfind(kBegin, 0) != 0) return std::nullopt;
+      for (size_t k = 0; k < kKindName.size(); ++k)
+        if (line.substr(kBegin.size()) == kKindName[k]) m.kind = static_cast<ResultKind>(k);
+    } else if (is_inside(line)) {
+      m.names.push_back(line);
+    }
+  }
+  return m.kind ? std::optional(m) : std::nullopt;
+}
+
+// The kind of results in a folder without manifest, by its files.
+std::optional<ResultKind> kind_by_files(const fs::path& folder) {
+  std::error_code ec;
+  const auto there = [&](const char* name) { return fs::exists(folder / name, ec); };
+  if (there("summary.json") || (there("model.toml") && there("steps.csv"))) return ResultKind::kRun;
+  if (there("cut.json")) return ResultKind::kCut;
+  if (there("record.json")) return ResultKind::kRecord;
+  if (there("safety.json")) return ResultKind::kSafety;
+  if (there("cut.svg") && there("cut.png")) return ResultKind::kPicture;
+  return std::nullopt;
+}
+
+// Whether a name is BEGIN, at least `digits` digits, END.
+bool is_numbered(std::string_view name, std::string_view begin, size_t digits, std::string_view end) {
+  if (name.size() < begin.size() + digits + end.size() || name.substr(0, begin.size()) != begin ||
+      name.substr(name.size() - end.size()) != end)
+    return false;
+  const std::string_view number = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Files by the names of docs/file_format.md: what a talus without manifest left.
+bool is_result(const std::string& folder, const std::string& name, ResultKind kind) {
+  if (folder == "fields")
+    return kind == ResultKind::kRun &&
+           (is_one_of(name, {"blocks.pvd", "contacts.pvd", "bolts.pvd"}) ||
+            is_numbered(name, "blocks_", 6, ".vtu") || is_numbered(name, "contacts_", 6, ".vtp") ||
+            is_numbered(name, "bolts_", 6, ".vtp"));
+  if (folder == "saved")
+    return kind == ResultKind::kRun &&
+           (is_numbered(name, "stage_", 2, ".h5") || is_numbered(name, "step_", 9, ".h5"));
+  if (!folder.empty()) return false;
+  switch (kind) {
+    case ResultKind::kRun:
+      return is_numbered(name, "step_", 1, ".json") ||
+             is_one_of(name,
+                       {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "slips.csv",
+                        "bolts.csv", "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html"});
+    case ResultKind::kCut:
+      return is_one_of(name, {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv",
+                              "report.txt", "map.svg", "map.png", "model.toml"});
+    case ResultKind::kRecord:
+      return is_one_of(
+          name, {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
+                 "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"});
+    case ResultKind::kSafety:
+      return is_one_of(name, {"safety.json", "safety.csv", "model.toml"});
+    case ResultKind::kPicture:
+      return is_one_of(name, {"cut.svg", "cut.png"});
+  }
+  return false;
+}
+
+std::vector<std::string> results_by_name(const fs::path& folder, ResultKind kind) {
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (const char* inside : {"", "fields", "saved"}) {
+    if (*inside && !fs::is_directory(fs::symlink_status(folder / inside, ec))) continue;
+    for (const auto& entry : fs::directory_iterator(folder / inside, ec)) {
+      const std::string name = entry.path().filename().string();
+      if (is_result(inside, name, kind)) names.push_back((fs::path(inside) / name).string());
+    }
+  }
+  return names;
+}
+
+// What killed processes left of files they had not finished.
+void remove_unfinished_in(const fs::path& folder) {
+  std::error_code ec;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder, ec))
+    if (is_unfinished_file(entry.path())) left.push_back(entry.path());
+  for (const fs::path& path : left) fs::remove(path, ec);
+}
+
+// Removes a file of the folder, never through a link. Throws FileError when it cannot be.
+void remove_result(const fs::path& folder, const fs::path& name) {
+  std::error_code ec;
+  fs::path at = folder;
+  for (const fs::path& part : name.parent_path()) {
+    at /= part;
+    const fs::file_status status = fs::symlink_status(at, ec);
+    if (fs::is_symlink(status))
+      throw FileError(
+          fmt::format("{}: is a link, and nothing is removed behind links. Remove it, or give "
+                      "another folder",
+                      at.string()));
+    if (!fs::is_directory(status)) return;
+  }
+  at = folder / name;
+  const fs::file_status status = fs::symlink_status(at, ec);
+  if (!fs::is_regular_file(status) && !fs::is_symlink(status)) return;
+  if (unlink(at.c_str()) != 0 && errno != ENOENT) fail_file(at, "removed", errno);
+}
+
+void remove_results(const fs::path& folder, ResultKind kind) {
+  const auto manifest = read_manifest(folder);
+  const std::vector<std::string> names = manifest ? manifest->names : results_by_name(folder, kind);
+  std::set<fs::path> folders;
+  for (const std::string& name : names) {
+    remove_result(folder, name);
+    if (fs::path(name).has_parent_path()) folders.insert(folder / fs::path(name).parent_path());
+  }
+  remove_unfinished_in(folder);
+  for (const fs::path& inside : folders) {
+    remove_unfinished_in(inside);
+    rmdir(inside.c_str());  // stays when the user has something in it
+  }
+  remove_result(folder, ResultFolder::kManifest);
+}
+
+// The kind of what is there; checks that a result of `kind` may replace it.
+std::optional<ResultKind> check_replaced(const fs::path& folder, bool force, ResultKind kind, bool locked) {
+  std::error_code ec;
+  if (!fs::exists(folder, ec)) return std::nullopt;
+  if (!fs::is_directory(folder, ec))
+    throw FileError(fmt::format("{}: is a file, not a folder", folder.string()));
+  const auto entries = fs::directory_iterator(folder, ec);
+  if (ec) fail_file(folder, "read", ec.value());
+  const bool empty = std::none_of(begin(entries), end(entries), [locked](const auto& entry) {
+    return !locked || entry.path().filename() != FolderLock::kName;
+  });
+  if (empty) return std::nullopt;
+  if (!locked)
+    if (const std::string user = user_of_folder(folder); !user.empty())
+      throw FileError(
+          fmt::format("{}: is in use: {} writes into it. Wait until it has ended, or give another folder",
+                      folder.string(), user));
+  if (!force)
+    throw FileError(
+        fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
+                    "replace the results in it",
+                    folder.string()));
+  const auto manifest = read_manifest(folder);
+  const std::optional<ResultKind> there = manifest ? manifest->kind : kind_by_files(folder);
+  if (!there)
+    throw FileError(
+        fmt::format("{}: is not empty and holds no results of talus; --force would remove its files. "
+                    "Give another folder",
+                    folder.string()));
+  if (*there != kind)
+    throw FileError(
+        fmt::format("{}: holds results of talus {}, which --force of talus {} does not replace. Give another "
+                    "folder, or remove it",
+                    folder.string(), verb_of(*there), verb_of(kind)));
+  return there;
+}
+
+}  // namespace
+
+struct ResultFolder::Parts {
+  std::optional<FolderLock> lock;
+  Descriptor manifest;
+  off_t size = 0;               // of the manifest [bytes]
+  std::set<std::string> noted;  // but for frames, which are many and each noted once
+};
+
+void check_result_folder(const fs::path& folder, bool force, ResultKind kind) {
+  check_replaced(folder, force, kind, false);
+}
+
+ResultFolder::ResultFolder(const fs::path& folder) : path_(folder), parts_(std::make_unique<Parts>()) {}
+ResultFolder::ResultFolder(ResultFolder&&) noexcept = default;
+ResultFolder::~ResultFolder() = default;
+
+ResultFolder::ResultFolder(const fs::path& folder, bool force, ResultKind kind) : ResultFolder(folder) {
+  check_result_folder(folder, force, kind);
+  std::error_code ec;
+  fs::create_directories(folder, ec);
+  if (ec) fail_file(folder, "created", ec.value());
+  lock();
+  // once more: between the first look and the lock another process may have come and gone
+  if (const auto there = check_replaced(folder, force, kind, true)) remove_results(folder, *there);
+  open_manifest(fmt::format("{}{}\n", kBegin, kKindName[static_cast<size_t>(kind)]));
+}
+
+ResultFolder ResultFolder::go_on(const fs::path& folder) {
+  ResultFolder out(folder);
+  out.lock();
+  remove_unfinished_in(folder);
+  for (const char* inside : {"fields", "saved", "plots"}) remove_unfinished_in(folder / inside);
+  const auto manifest = read_manifest(folder);
+  if (manifest) {
+    for (const std::string& name : manifest->names)
+      if (!is_frame(name)) out.parts_->noted.insert(name);
+    out.open_manifest("");
+    return out;
+  }
+  const std::vector<std::string> names = results_by_name(folder, ResultKind::kRun);
+  std::string text = fmt::format("{}{}\n", kBegin, kKindName[0]);
+  for (const std::string& name : names) text += name + "\n";
+  write_file(folder / kManifest, text);
+  out.open_manifest("");
+  return out;
+}
+
+void ResultFolder::lock() { parts_->lock.emplace(path_); }
+
+void ResultFolder::open_manifest(const std::string& begin) {
+  const fs::path path = path_ / kManifest;
+  if (!begin.empty()) write_file(path, begin);
+  parts_->manifest = Descriptor(open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
+  if (parts_->manifest < 0) fail_file(path, "written", errno);
+  parts_->size = whole_lines(path);
+  if (ftruncate(parts_->manifest, parts_->size) != 0) fail_file(path, "cut back", errno);
+}
+
+std::string ResultFolder::stale_lock() const {
+  const std::string& who = parts_->lock->stale();
+  return who.empty() ? ""
+                     : fmt::format("{}: {} has ended without letting go of this folder; it is taken over",
+                                   path_.string(), who);
+}
+
+fs::path ResultFolder::note(const std::string& name) {
+  TALUS_ASSERT(is_inside(name));
+  if (!is_frame(name) && !parts_->noted.insert(name).second) return path_ / name;
+  size_t done = 0;
+  if (const int error = write_all(parts_->manifest, name + "\n", done); error != 0) {
+    parts_->noted.erase(name);
+    (void)(ftruncate(parts_->manifest, parts_->size) == 0);  // else readers leave out a line without end
+    fail_file(path_ / kManifest, "written", error);
+  }
+  parts_->size += static_cast<off_t>(done);
+  return path_ / name;
+}
+
+fs::path ResultFolder::note_picture(const std::string& name) {
+  note(name + ".svg");
+  note(name + ".png");
+  return path_ / name;
+}
+
+void ResultFolder::write(const std::string& name, std::string_view content, Reach reach) {
+  write_file(note(name), content, reach);
+}
+
+void ResultFolder::make_folder(const std::string& name) {
+  std::error_code ec;
+  fs::create_directories(path_ / name, ec);
+  if (ec) fail_file(path_ / name, "created", ec.value());
+}
+
+void ResultFolder::release() { parts_->lock.reset(); }
+
+void ResultFolder::free_reserve() {
+  if (parts_->lock) parts_->lock->free_reserve();
+}
+
+void note_result(const fs::path& folder, const fs::path& file) {
+  std::error_code ec;
+  const fs::path inside =
+      fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
+  const auto manifest = read_manifest(folder);
+  if (!manifest || !is_inside(inside.string())) return;
+  if (std::find(manifest->names.begin(), manifest->names.end(), inside.string()) != manifest->names.end())
+    return;
+  const fs::path path = folder / ResultFolder::kManifest;
+  const Descriptor out(open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
+  // a line that a full disk cut short, unless a run is just writing it
+  if (out >= 0 && user_of_folder(folder).empty() && ftruncate(out, whole_lines(path)) != 0)
+    fail_file(path, "cut back", errno);
+  size_t done = 0;
+  const int error = out < 0 ? errno : write_all(out, inside.string() + "\n", done);
+  if (error != 0) fail_file(path, "written", error);
+}
+
+}  // namespace talus

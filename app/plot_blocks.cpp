@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.h"
+#include "talus/base/json_depth.h"
 #include "talus/base/text_file.h"
 #include "talus/output/read_vtk.h"
 #include "talus/plot/block_picture.h"
@@ -20,7 +21,9 @@ namespace {
 std::string title_of(const fs::path& folder) {
   std::error_code ec;
   if (fs::exists(folder / "summary.json", ec)) {
-    const auto summary = nlohmann::json::parse(read_text_file(folder / "summary.json"), nullptr, false);
+    const fs::path file = folder / "summary.json";
+    const auto summary =
+        nlohmann::json::parse(checked_json(file.string(), read_text_file(file)), nullptr, false);
     if (summary.is_object() && summary.contains("title") && summary["title"].is_string() &&
         !summary["title"].get<std::string>().empty())
       return summary["title"].get<std::string>();

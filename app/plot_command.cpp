@@ -8,6 +8,7 @@
 
 #include "plot_blocks.h"
 #include "talus/base/error.h"
+#include "talus/base/json_depth.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
@@ -49,7 +50,7 @@ CsvTable only_stage(CsvTable table, const fs::path& folder, const std::string& s
   const fs::path file = folder / "summary.json";
   std::vector<std::string> names;
   try {
-    const auto summary = nlohmann::json::parse(read_text_file(file.string()));
+    const auto summary = nlohmann::json::parse(checked_json(file.string(), read_text_file(file)));
     for (const auto& s : summary.at("stages")) {
       names.push_back(s.at("name").get<std::string>());
       if (names.back() != stage) continue;

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "talus/audit/check_frame.h"
 #include "talus/base/error.h"
+#include "talus/base/json_depth.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
 #include "talus/output/read_vtk.h"
@@ -72,7 +75,7 @@ class Reader {
       throw FileError(
           fmt::format("{}: holds no results of talus run: summary.json is missing", folder_.string()));
     try {
-      summary_ = ordered_json::parse(read_text_file(file));
+      summary_ = ordered_json::parse(checked_json(file.string(), read_text_file(file)));
       if (!summary_.is_object() || !summary_.contains("model"))
         throw FileError(fmt::format("{}: is no summary of a run that has ended", file.string()));
       const auto& model = summary_["model"];
@@ -117,7 +120,12 @@ class Reader {
     if (id < 0 || name < 0)
       throw FileError(fmt::format("{}: has no columns id and name", (folder_ / "blocks.csv").string()));
     for (const auto& row : table.rows) {
-      const auto i = static_cast<size_t>(std::stoul(row[static_cast<size_t>(id)]));
+      const std::string& text = row[static_cast<size_t>(id)];
+      size_t i = 0;
+      const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), i);
+      if (status != std::errc{} || end != text.data() + text.size() || i >= table.rows.size())
+        throw FileError(fmt::format("{}: \"{}\" is no number of a block", (folder_ / "blocks.csv").string(),
+                                    text.substr(0, 40)));
       if (rules_.names.size() <= i) rules_.names.resize(i + 1);
       rules_.names[i] = row[static_cast<size_t>(name)];
       number_of_[rules_.names[i]] = static_cast<int>(i);
@@ -178,16 +186,21 @@ class Reader {
   void read_blocks(const VtkFrame& vtk, Frame& frame) const {
     frame.blocks.resize(rules_.names.size());
     for (Block& b : frame.blocks) b.hold = Hold::kRemoved;
-    const auto &points = vtk.at("Points", 3).values, &velocity = vtk.at("velocity [m s-1]", 3).values,
-               &offsets = vtk.at("offsets", 1).values, &id = vtk.at("block", 1).values,
-               &kind = vtk.at("kind", 1).values;
+    const auto corners = static_cast<long>(vtk.at("Points", 3).tuples()),
+               blocks = static_cast<long>(vtk.at("block", 1).tuples());
+    const auto &points = vtk.at("Points", 3).values,
+               &velocity = vtk.at("velocity [m s-1]", 3, corners).values,
+               &offsets = vtk.at("offsets", 1, blocks).values, &id = vtk.at("block", 1).values,
+               &kind = vtk.at("kind", 1, blocks).values;
     size_t corner = 0;
     for (size_t i = 0; i < id.size(); ++i) {
       if (!(id[i] >= 0) || id[i] >= static_cast<double>(frame.blocks.size()))
         throw FileError(fmt::format("{}: has a block that blocks.csv does not name", vtk.file));
       Block& b = frame.blocks[static_cast<size_t>(id[i])];
       b.hold = kind[i] >= 2 ? Hold::kPrescribed : Hold::kFree;  // deformable, rigid, fixed, driven
-      for (; corner < static_cast<size_t>(offsets[i]) && 3 * corner + 1 < points.size(); ++corner) {
+      if (!(offsets[i] >= 0 && offsets[i] <= static_cast<double>(corners)))
+        throw FileError(fmt::format("{}: corners and blocks do not fit", vtk.file));
+      for (; corner < static_cast<size_t>(offsets[i]); ++corner) {
         b.polygon.push_back({points[3 * corner], points[3 * corner + 1]});
         b.velocity.push_back({velocity[3 * corner], velocity[3 * corner + 1]});
       }
@@ -200,8 +213,9 @@ class Reader {
       if (!vtk.has(name))
         throw FileError(
             fmt::format("{}: has no \"{}\": a talus older than the audit needs wrote it", vtk.file, name));
-    const auto column = [&vtk](const char* name) -> const std::vector<double>& {
-      return vtk.at(name, 1).values;
+    const auto n = static_cast<long>(vtk.at("Points", 3).tuples());
+    const auto column = [&vtk, n](const char* name) -> const std::vector<double>& {
+      return vtk.at(name, 1, n).values;
     };
     const auto &place = vtk.at("Points", 3).values, &kind = column("kind"), &a = column("block a"),
                &b = column("block b"), &corner = column("corner"), &edge = column("edge"),
@@ -211,11 +225,11 @@ class Reader {
     for (size_t i = 0; i < kind.size(); ++i) {
       if (kind[i] != 0 && kind[i] != 1) continue;
       Point p;
-      p.block_a = static_cast<int>(a[i]), p.block_b = static_cast<int>(b[i]);
+      p.block_a = whole(vtk, a[i]), p.block_b = whole(vtk, b[i]);
       check_number(vtk, p.block_a, frame.blocks.size());
       check_number(vtk, p.block_b, frame.blocks.size());
       if (kind[i] == 0) {
-        p.corner = static_cast<int>(corner[i]), p.edge = static_cast<int>(edge[i]);
+        p.corner = whole(vtk, corner[i]), p.edge = whole(vtk, edge[i]);
         check_number(vtk, p.corner, frame.blocks[static_cast<size_t>(p.block_a)].polygon.size());
         check_number(vtk, p.edge, frame.blocks[static_cast<size_t>(p.block_b)].polygon.size());
       }
@@ -234,9 +248,15 @@ class Reader {
       frame.points.push_back(p);
     }
     for (size_t i = 0; i < kind.size(); ++i) {
-      if (at[i] < 0 || partner[i] < 0 || partner[i] >= static_cast<double>(kind.size())) continue;
+      if (at[i] < 0 || !(partner[i] >= 0) || partner[i] >= static_cast<double>(kind.size())) continue;
       frame.points[static_cast<size_t>(at[i])].partner = at[static_cast<size_t>(partner[i])];
     }
+  }
+
+  static int whole(const VtkFrame& vtk, double value) {
+    if (!(value >= -1 && value <= std::numeric_limits<int>::max()))
+      throw FileError(fmt::format("{}: {} is no number of a block, corner or edge", vtk.file, value));
+    return static_cast<int>(value);
   }
 
   static void check_number(const VtkFrame& vtk, int number, size_t count) {

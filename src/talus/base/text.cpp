@@ -30,9 +30,11 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 std::string closest_name(std::string_view word, const std::vector<std::string>& known) {
   std::string best;
-  if (word.empty()) return best;
+  constexpr size_t kLongestWord = 200;
+  if (word.empty() || word.size() > kLongestWord) return best;
   int best_distance = (static_cast<int>(word.size()) + 2) / 3;
   for (const std::string& name : known) {
+    if (name.size() > word.size() + kLongestWord) continue;
     const int distance = edit_distance(word, name);
     const bool begins = word.size() >= 3 && name.rfind(word, 0) == 0;  // "dens" for "density"
     if ((distance <= best_distance && distance < static_cast<int>(word.size())) || (begins && best.empty())) {

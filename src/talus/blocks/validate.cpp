@@ -58,11 +58,14 @@ void validate_block(const BlockSet& b, size_t i) {
 
 void validate_candidates(const CandidateList& c, size_t blocks) {
   promise_length_or_none(c.displacement, blocks, "displacements when pairs were listed");
-  promise_length_or_none(c.strain_part, blocks, "strains when pairs were listed");
-  promise_length_or_none(c.skin, blocks, "skins"), promise_length_or_none(c.reach, blocks, "reaches");
+  promise_length(c.strain_part, c.displacement.size(), "strains when pairs were listed");
+  promise_length(c.skin, c.displacement.size(), "skins");
+  promise_length(c.reach, c.displacement.size(), "reaches");
   const std::vector<int>& begin = c.neighbours.begin;
   if (begin.empty()) return promise(c.neighbours.block.empty(), "neighbours of no block");
   promise_length(begin, blocks + 1, "first neighbours");
+  promise(begin.front() == 0 && begin.back() >= 0, "neighbours begin at {} and end at {}", begin.front(),
+          begin.back());
   promise_length(c.neighbours.block, static_cast<size_t>(begin.back()), "neighbours");
   for (size_t i = 0; i < blocks; ++i)
     promise(begin[i] >= 0 && begin[i] <= begin[i + 1], "neighbours of block {} end before they begin", i);
@@ -114,6 +117,7 @@ void validate_pairs(const State& s, const BlockSet& b) {
 }
 
 void validate_bolt(const Bolt& bolt, size_t blocks) {
+  promise(bolt.nodes.size() >= 2, "a bolt has {} nodes", bolt.nodes.size());
   promise_length(bolt.segments, bolt.nodes.size() - 1, "segments of a bolt");
   for (const BoltNode& n : bolt.nodes)
     promise(is_index(n.block, blocks), "a bolt is held in block {}", n.block);

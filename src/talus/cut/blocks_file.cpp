@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.h"
+#include "talus/base/json_depth.h"
 #include "talus/base/text.h"
+#include "talus/base/text_file.h"
 
 namespace talus {
 
@@ -211,16 +210,16 @@ std::string blocks_file_text(const Model& model, const Cut& cut) {
 Cut read_blocks_file(const Model& model, Findings& findings) {
   const auto path = std::filesystem::path(model.folder) / model.cut.blocks_file;
   const Where& where = model.cut.where_file;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    findings.error(where, "cut.blocks",
-                   fmt::format("{} cannot be opened: {}", path.string(), std::strerror(errno)),
-                   "the path counts from the folder of the model file");
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (const FileError& e) {
+    findings.error(where, "cut.blocks", e.what(), "the path counts from the folder of the model file");
     return {};
   }
   Cut cut;
   try {
-    const Json json = Json::parse(in);
+    const Json json = Json::parse(checked_json("it", text));
     if (json.at("talus_blocks") != kFormat) throw std::runtime_error("it is of another format");
     if (json.at("cut") != cut_fingerprint(model)) {
       findings.error(

@@ -8,6 +8,20 @@
 
 namespace talus {
 
+namespace {
+
+// What is longer than anyone reads is cut, so that the message stays one.
+std::string shortened(const std::string& text, size_t most) {
+  if (text.size() <= most) return text;
+  size_t end = most;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a character
+  return fmt::format("{}... ({} characters)", text.substr(0, end), text.size());
+}
+
+constexpr size_t kMostSaid = 1000, kMostKey = 200, kMostLine = 500;
+
+}  // namespace
+
 Findings::Findings(std::string file, std::string_view text) : file_(std::move(file)) {
   size_t begin = 0;
   while (begin <= text.size()) {
@@ -20,12 +34,16 @@ Findings::Findings(std::string file, std::string_view text) : file_(std::move(fi
   }
 }
 
-void Findings::error(const Where& where, std::string key, std::string text, std::string hint) {
-  list_.push_back({Severity::kError, where, std::move(key), std::move(text), std::move(hint)});
+void Findings::error(const Where& where, const std::string& key, const std::string& text,
+                     const std::string& hint) {
+  list_.push_back({Severity::kError, where, shortened(key, kMostKey), shortened(text, kMostSaid),
+                   shortened(hint, kMostSaid)});
 }
 
-void Findings::warning(const Where& where, std::string key, std::string text, std::string hint) {
-  list_.push_back({Severity::kWarning, where, std::move(key), std::move(text), std::move(hint)});
+void Findings::warning(const Where& where, const std::string& key, const std::string& text,
+                       const std::string& hint) {
+  list_.push_back({Severity::kWarning, where, shortened(key, kMostKey), shortened(text, kMostSaid),
+                   shortened(hint, kMostSaid)});
 }
 
 int Findings::error_count() const {
@@ -45,12 +63,13 @@ std::string Findings::render() const {
     std::string place = file_;
     if (f.where.line > 0) place += fmt::format(":{}:{}", f.where.line, f.where.column);
     out += fmt::format("{}: {}: {}{}{}\n", place, level, f.key, f.key.empty() ? "" : ": ", f.text);
-    if (!f.where.override_text.empty()) out += fmt::format("   from {}\n", f.where.override_text);
+    if (!f.where.override_text.empty())
+      out += fmt::format("   from {}\n", shortened(f.where.override_text, kMostSaid));
     const size_t line = static_cast<size_t>(f.where.line);
     if (line > 0 && line <= lines_.size()) {
       const int column = std::max(f.where.column, 1);
-      out += fmt::format("{:>5} | {}\n", f.where.line, lines_[line - 1]);
-      out += fmt::format("      | {:>{}}\n", "^", column);
+      out += fmt::format("{:>5} | {}\n", f.where.line, shortened(lines_[line - 1], kMostLine));
+      if (static_cast<size_t>(column) <= kMostLine) out += fmt::format("      | {:>{}}\n", "^", column);
     }
     if (!f.hint.empty()) out += fmt::format("      = {}\n", f.hint);
   }

@@ -29,8 +29,10 @@ class Findings {
   /// @param text  the whole file, from which lines are quoted
   Findings(std::string file, std::string_view text);
 
-  void error(const Where& where, std::string key, std::string text, std::string hint = "");
-  void warning(const Where& where, std::string key, std::string text, std::string hint = "");
+  void error(const Where& where, const std::string& key, const std::string& text,
+             const std::string& hint = "");
+  void warning(const Where& where, const std::string& key, const std::string& text,
+               const std::string& hint = "");
 
   int error_count() const;
   int warning_count() const { return static_cast<int>(list_.size()) - error_count(); }

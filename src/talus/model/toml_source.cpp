@@ -13,6 +13,7 @@ namespace talus {
 namespace {
 
 constexpr size_t kLargestFile = 64 << 20;  // [bytes] a model text beyond this is a mistake
+constexpr int kMostParts = 20;             // of a key; those of a model have four at most
 
 // Line of the first byte that no TOML text may hold (control character, broken UTF-8), or 0.
 int first_bad_line(const std::string& text) {
@@ -32,6 +33,56 @@ int first_bad_line(const std::string& text) {
   }
   return 0;
 }
+
+// Reads over the texts and comments of a TOML text; what is left tells keys apart.
+class TomlScan {
+ public:
+  explicit TomlScan(std::string_view text) : text_(text) {}
+
+  // Line of the first key of more than `most` parts, or 0.
+  int deep_key(int most) {
+    int parts = 1;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      } else if (c == '"' || c == '\'') {
+        skip_text(c);
+      } else {
+        if (c == '.' && ++parts > most) return line_;
+        if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '}' || c == '[') parts = 1;
+        step();
+      }
+    }
+    return 0;
+  }
+
+ private:
+  void step() { line_ += text_[at_++] == '\n'; }
+  bool is_triple(char quote) const { return text_.substr(at_, 3) == std::string(3, quote); }
+  // Behind a text of one line or more; at the end of its line where the text has no end.
+  void skip_text(char quote) {
+    const bool triple = is_triple(quote);
+    at_ += triple ? 3 : 1;
+    while (at_ < text_.size()) {
+      if (text_[at_] == '\\' && quote == '"' && at_ + 1 < text_.size()) {
+        ++at_;
+        step();
+      } else if (text_[at_] == quote && (!triple || is_triple(quote))) {
+        at_ += triple ? 3 : 1;
+        return;
+      } else if (text_[at_] == '\n' && !triple) {
+        return;
+      } else {
+        step();
+      }
+    }
+  }
+
+  std::string_view text_;
+  size_t at_ = 0;
+  int line_ = 1;
+};
 
 std::vector<std::string> split(const std::string& s, char separator) {
   std::vector<std::string> parts(1);
@@ -101,6 +152,10 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
   }
   const std::string path = item.substr(0, equal), value = item.substr(equal + 1);
   const std::vector<std::string> parts = split(path, '.');
+  if (parts.size() > kMostParts) {
+    findings.error(where, path, fmt::format("a key has more than {} parts", kMostParts));
+    return;
+  }
   toml::table* table = &source.root;
   for (size_t i = 0; i + 1 < parts.size(); ++i) {
     toml::node* next = table->get(parts[i]);
@@ -124,7 +179,9 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
     }
   }
   try {
-    const toml::table parsed = toml::parse("v = " + value + "\n");
+    const std::string line = "v = " + value + "\n";
+    if (TomlScan(line).deep_key(kMostParts) > 0) throw std::invalid_argument("a deep key");
+    const toml::table parsed = toml::parse(line);
     if (parsed.size() != 1) throw std::invalid_argument("more than one value");
     table->insert_or_assign(parts.back(), *parsed.get("v"));
   } catch (const std::exception&) {
@@ -145,6 +202,11 @@ TomlSource parse_toml(const std::string& text, const std::vector<std::string>& o
   if (const int line = first_bad_line(text); line > 0) {
     findings.error({line, 1, ""}, "", "the line holds bytes that are not UTF-8 text",
                    "save the file as UTF-8");
+    return source;
+  }
+  if (const int line = TomlScan(text).deep_key(kMostParts); line > 0) {
+    findings.error({line, 1, ""}, "", fmt::format("a key has more than {} parts", kMostParts),
+                   "keys of a model have four at most");
     return source;
   }
   try {

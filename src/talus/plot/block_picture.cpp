@@ -108,7 +108,8 @@ void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
   const auto& stress = f.at("stress xx yy xy [Pa]", 3, static_cast<long>(ends.tuples()));
   size_t v = 0;
   for (size_t b = 0; b < ends.tuples(); ++b) {
-    const auto end = static_cast<size_t>(std::clamp(ends.values[b], 0.0, static_cast<double>(corners)));
+    const auto end =
+        static_cast<size_t>(std::clamp(ends.values[b], static_cast<double>(v), static_cast<double>(corners)));
     Shape shape;
     Vec2 u, rate;
     const size_t begin = v;
@@ -154,6 +155,7 @@ void take_bolts(const VtkFrame& f, Scenery& s) {
   const auto n = static_cast<long>(points.tuples() / 2);
   const auto& axial = f.at("axial force [N]", 1, n);
   const auto& condition = f.at("condition", 1, n);
+  if (points.tuples() % 2 != 0) throw FileError(f.file + ": a piece of a bolt has one end");
   for (size_t i = 0; i < axial.tuples(); ++i) {
     s.bolts.push_back(
         {point_at(points, 2 * i), point_at(points, 2 * i + 1), axial.values[i], condition.values[i] == 2});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "talus/base/error.h"
@@ -64,10 +65,12 @@ std::vector<double> component(const std::vector<Mat2>& v, double Mat2::*c) {
   return out;
 }
 
+// Numbers of blocks, corners and points; -1 for what is none.
 std::vector<int> whole(const Array& array) {
   std::vector<int> out;
   out.reserve(array.values.size());
-  for (const double v : array.values) out.push_back(static_cast<int>(v));
+  for (const double v : array.values)
+    out.push_back(v >= 0 && v <= std::numeric_limits<int>::max() ? static_cast<int>(v) : -1);
   return out;
 }
 
@@ -75,7 +78,7 @@ std::vector<uint8_t> small(const Array& array) {
   std::vector<uint8_t> out;
   out.reserve(array.values.size());
   for (const double v : array.values)
-    out.push_back(v < 0 || v > 255 ? uint8_t{255} : static_cast<uint8_t>(v));
+    out.push_back(v >= 0 && v <= 255 ? static_cast<uint8_t>(v) : uint8_t{255});
   return out;
 }
 
@@ -149,10 +152,13 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   std::vector<Vec2> zero(now.size());
   for (size_t v = 0; v < now.size(); ++v) zero[v] = now[v] - moved[v];
 
+  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k)
+    if (end[k] < static_cast<int>(begin) + 3 || end[k] > corners || id[k] < 0)
+      refuse(file, "a block has less than three corners, or no number");
+
   // do the shapes still hold?
   bool same = !shapes_.empty();
   for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
-    if (end[k] < static_cast<int>(begin) + 3) refuse(file, "a block has less than three corners");
     const auto it = place_.find(id[k]);
     if (!same || it == place_.end()) {
       same = false;

@@ -247,14 +247,9 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
   return out;
 }
 
-}  // namespace
-
-std::string report_page(const std::string& page, const std::vector<RunFolder>& runs,
-                        const PageOptions& options, PageNotes& notes) {
-  const size_t place = page.find(kDataPlace);
-  if (place == std::string::npos)
-    throw FileError("the page of the report has no place for data: build talus again");
-  Chunks chunks;
+// The index of the page, in the order of the runs; their data in `chunks`.
+json index_of(const std::vector<RunFolder>& runs, const PageOptions& options, PageNotes& notes,
+              Chunks& chunks) {
   json index = {{"program", fmt::format("talus {}", kVersion)}, {"runs", json::array()}};
   size_t blocks = 0;
   for (const RunFolder& run : runs) blocks = std::max(blocks, blocks_in(run));
@@ -281,6 +276,23 @@ std::string report_page(const std::string& page, const std::vector<RunFolder>& r
     if (!note.reason.empty()) j["frames"]["reason"] = note.reason;
     index["runs"].push_back(j);
     notes.runs.push_back(note);
+  }
+  return index;
+}
+
+}  // namespace
+
+std::string report_page(const std::string& page, const std::vector<RunFolder>& runs,
+                        const PageOptions& options, PageNotes& notes) {
+  const size_t place = page.find(kDataPlace);
+  if (place == std::string::npos)
+    throw FileError("the page of the report has no place for data: build talus again");
+  Chunks chunks;
+  json index;
+  try {
+    index = index_of(runs, options, notes, chunks);
+  } catch (const json::exception& e) {
+    throw FileError(fmt::format("a summary.json has something else than talus writes there: {}", e.what()));
   }
   const std::string data =
       fmt::format("{}<script type=\"text/plain\" id=\"talus-index\">{}</script>\n", chunks.html(),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "talus/base/error.h"
+#include "talus/base/json_depth.h"
 #include "talus/base/text_file.h"
 
 namespace talus::report {
@@ -21,7 +22,8 @@ RunFolder read_run_folder(const fs::path& folder) {
   run.name = fs::absolute(folder).lexically_normal().filename().string();
   if (run.name.empty()) run.name = fs::absolute(folder).lexically_normal().parent_path().filename().string();
   try {
-    run.summary = nlohmann::ordered_json::parse(read_text_file(folder / "summary.json"));
+    const std::string file = (folder / "summary.json").string();
+    run.summary = nlohmann::ordered_json::parse(checked_json(file, read_text_file(file)));
   } catch (const nlohmann::json::exception& e) {
     throw FileError(fmt::format("{}: cannot be read: {}", (folder / "summary.json").string(), e.what()));
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.h"
+#include "talus/base/json_depth.h"
 #include "talus/base/text_file.h"
 
 namespace talus {
@@ -96,7 +97,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
   const std::string text = read_text_file(file);
   Replay replay;
   try {
-    const ordered_json j = ordered_json::parse(text);
+    const ordered_json j = ordered_json::parse(checked_json("it", text));
     if (j.at("talus_problem") != kFormat)
       throw std::runtime_error(fmt::format("its format is not {}", kFormat));
     std::vector<BlockRate> rate;

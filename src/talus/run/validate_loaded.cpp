@@ -1,0 +1,128 @@
+#include "talus/run/validate_loaded.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "talus/blocks/state_fields.h"
+
+namespace talus {
+
+namespace {
+
+void promise_loaded(bool kept, const std::string& what) {
+  if (!kept) throw std::logic_error(what);
+}
+
+template <size_t N>
+bool is_one_of(std::string_view name, const std::array<std::string_view, N>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Fields of a State by their names in each_field().
+constexpr std::array<std::string_view, 8> kMayBeEndless{"limit", "yield", "most",  "shear_yield",
+                                                        "skin",  "reach", "reuse", "margin"};
+constexpr std::array<std::string_view, 1> kMayBeNoNumber{"anchor"};
+constexpr std::array<std::string_view, 19> kNotNegative{
+    "time",    "history_time", "dt_before",       "allowed",     "length",         "margin", "skin",
+    "reach",   "stiffness",    "limit",           "gauge",       "yield",          "most",   "row_stiffness",
+    "relaxed", "share",        "shear_stiffness", "shear_yield", "largest_kinetic"};
+
+// One number of a field: whether it may be what it is.
+void judge_number(const std::string& field, double v) {
+  if (is_one_of(field, kMayBeNoNumber) && std::isnan(v)) return;
+  const bool endless = is_one_of(field, kMayBeEndless);
+  promise_loaded(!std::isnan(v) && (endless || std::isfinite(v)), fmt::format("\"{}\" is {}", field, v));
+  promise_loaded(v >= 0 || !is_one_of(field, kNotNegative), fmt::format("\"{}\" is {}", field, v));
+}
+
+template <class T>
+concept Fielded = requires(T& value) {
+  each_field(value, [](const char*, auto&) {});
+};
+
+template <class T>
+inline constexpr bool kIsVector = false;
+template <class T>
+inline constexpr bool kIsVector<std::vector<T>> = true;
+
+void judge_field(const std::string& field, const auto& value) {
+  using T = std::remove_cvref_t<decltype(value)>;
+  if constexpr (Fielded<const T>) {
+    each_field(value, [](const char* name, auto& member) { judge_field(name, member); });
+  } else if constexpr (kIsVector<T>) {
+    for (const auto& element : value) judge_field(field, element);
+  } else if constexpr (std::is_floating_point_v<T>) {
+    judge_number(field, value);
+  } else if constexpr (!std::is_arithmetic_v<T> && !std::is_enum_v<T>) {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0);
+    std::array<double, sizeof(T) / sizeof(double)> parts;
+    std::copy_n(reinterpret_cast<const double*>(&value), parts.size(), parts.begin());
+    for (const double v : parts) judge_number(field, v);
+  }
+}
+
+bool is_below(int i, size_t count) { return i >= 0 && static_cast<size_t>(i) < count; }
+
+void judge_contacts(const State& s, const Scene& scene) {
+  const auto is_side = [&scene](int block, int edge) {
+    return edge >= -1 && edge < scene.blocks.vertex_count(block);
+  };
+  for (const Contact& c : s.contacts) {
+    promise_loaded(c.joint < static_cast<int>(scene.model.joints.size()),
+                   fmt::format("a contact is of joint {}, which there is not", c.joint));
+    const auto [lo, hi] = std::minmax(c.key.block_a, c.key.block_b);
+    promise_loaded(
+        is_side(lo, c.face.side_lo) && is_side(hi, c.face.side_hi) && (c.face.end == 0 || c.face.end == 1),
+        "a contact lies on a side that its blocks do not have");
+    promise_loaded(c.toes >= 0 && c.toes <= 3, fmt::format("a contact has toes {}", c.toes));
+  }
+}
+
+void judge_bolts(const State& s, const Scene& scene) {
+  for (const Bolt& bolt : s.bolts) {
+    promise_loaded(is_below(bolt.input, scene.model.bolts.size()),
+                   fmt::format("bolt {} is none of the model's", bolt.input));
+    for (size_t k = 0; k < bolt.crossings.size(); ++k) {
+      const BoltSegment& segment = bolt.segments[static_cast<size_t>(bolt.crossings[k].segment)];
+      promise_loaded(segment.crossing == static_cast<int>(k),
+                     "a segment of a bolt does not know its crossing");
+    }
+  }
+}
+
+void judge_standing(const Standing& standing, const State& state, const Scene& scene) {
+  const std::vector<StageResult>& stages = standing.result.stages;
+  promise_loaded(!stages.empty() && stages.size() <= scene.model.stages.size(),
+                 "it stands in no stage of the model");
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const StageInput& stage = scene.model.stages[i];
+    promise_loaded(stages[i].name == stage.name && stages[i].kind == stage.kind,
+                   "its stages are not the model's");
+    promise_loaded(stages[i].steps >= 0, "a stage has taken less than no step");
+    promise_loaded(
+        std::isfinite(stages[i].begin) && std::isfinite(stages[i].end) && stages[i].begin <= state.time,
+        "a stage begins after the state");
+  }
+  const RunResult& r = standing.result;
+  for (const int64_t count : {r.steps, r.failed_steps, r.second_solver_steps, r.iterations})
+    promise_loaded(count >= 0, "it has counted less than nothing");
+}
+
+}  // namespace
+
+void validate_loaded(const Standing& standing, const State& state, const Scene& scene) {
+  judge_field("state", state);
+  promise_loaded(state.relaxed <= 1, fmt::format("\"relaxed\" is {}", state.relaxed));
+  promise_loaded(state.rest.sharper > 0 && state.rest.sharper <= 1,
+                 fmt::format("\"sharper\" is {}", state.rest.sharper));
+  judge_contacts(state, scene);
+  judge_bolts(state, scene);
+  judge_standing(standing, state, scene);
+}
+
+}  // namespace talus

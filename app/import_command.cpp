@@ -44,7 +44,7 @@ void add_import_arguments(CLI::App& verb, ImportArguments& args) {
   verb.add_option("--curve-step", args.curve_step, "angle between two points of an arc")
       ->capture_default_str();
   verb.add_option("--origin", args.origin, "point of the map [m] that becomes 0 0")->expected(2);
-  verb.add_option("-o,--output", args.output, "file for the sections; none: they are printed");
+  verb.add_option("-o,--output", args.output, "file for the sections; none or -: they are printed");
   verb.add_option("--picture", args.picture,
                   "also draw the lines before and after cleaning, as NAME.svg and NAME.png");
   verb.footer(
@@ -68,7 +68,7 @@ int import_command(const ImportArguments& args) {
   findings.throw_if_errors();
   fmt::print(stderr, "{}{}", findings.render(), map_report_text(made.report));
   if (!args.picture.empty()) plot::write_map_picture(made.report, args.picture);
-  if (args.output.empty())
+  if (args.output.empty() || args.output == "-")
     fmt::print("{}", made.text);
   else
     write_file(args.output, made.text);

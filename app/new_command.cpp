@@ -14,7 +14,9 @@ namespace talus::app {
 namespace fs = std::filesystem;
 
 void add_new_arguments(CLI::App& verb, NewArguments& args) {
-  verb.add_option("NAME", args.name, "file to write; .toml is added where it is missing")->required();
+  verb.add_option("NAME", args.name,
+                  "file to write, .toml is added where it is missing; - for standard output")
+      ->required();
   verb.add_option("--from", args.from, "what it begins from: impact_bar, slope, tunnel, wall or blast")
       ->check(CLI::IsMember({"impact_bar", "slope", "tunnel", "wall", "blast"}))
       ->capture_default_str();
@@ -25,6 +27,10 @@ void add_new_arguments(CLI::App& verb, NewArguments& args) {
 int new_command(const NewArguments& args) {
   const fs::path from = data_file("models/" + args.from + ".toml");
   const std::string text = read_text_file(from);
+  if (args.name == "-") {
+    fmt::print("{}", text);
+    return kExitOk;
+  }
   fs::path file = args.name;
   if (file.extension() != ".toml") file += ".toml";
   std::error_code ec;

@@ -10,6 +10,7 @@
 #include "talus/base/json_depth.h"
 #include "talus/base/text_file.h"
 #include "talus/output/read_vtk.h"
+#include "talus/output/result_folder.h"
 #include "talus/plot/block_picture.h"
 
 namespace talus::app {
@@ -66,7 +67,8 @@ plot::BlockPicture picture_of(const Series& s, size_t frame, const std::string& 
   return picture;
 }
 
-void write(const plot::BlockPicture& picture, const fs::path& stem) {
+void write(const fs::path& folder, const plot::BlockPicture& picture, const fs::path& stem) {
+  note_figure(folder, stem);
   plot::write_block_picture(picture, stem);
   fmt::print("{0}.svg\n{0}.png\n", stem.string());
 }
@@ -90,10 +92,11 @@ void plot_blocks(const fs::path& folder, const BlockPlotArguments& args, const f
     for (const std::string& quantity : args.quantities) {
       picture.quantity = quantity == "none" ? "" : quantity;
       const bool single = exact && frames.size() == 1 && args.quantities.size() == 1;
-      write(picture, single ? stem
-                            : fs::path(fmt::format("{}_{}_t_{:g}", stem.string(),
-                                                   quantity == "none" ? "joints" : quantity,
-                                                   series.blocks[frame].time)));
+      write(folder, picture,
+            single
+                ? stem
+                : fs::path(fmt::format("{}_{}_t_{:g}", stem.string(),
+                                       quantity == "none" ? "joints" : quantity, series.blocks[frame].time)));
     }
   }
 }
@@ -106,12 +109,12 @@ void plot_blocks_at_end(const fs::path& folder, const fs::path& plots) {
   picture.bolts.reset();
   const auto contacts = std::move(picture.contacts);
   picture.contacts.reset();
-  write(picture, plots / "blocks_displacement");
+  write(folder, picture, plots / "blocks_displacement");
   picture.quantity = "stress_minor";
-  write(picture, plots / "blocks_stress_minor");
+  write(folder, picture, plots / "blocks_stress_minor");
   picture.quantity.clear();
   picture.contacts = contacts, picture.bolts = bolts;
-  write(picture, plots / "joints_and_bolts");
+  write(folder, picture, plots / "joints_and_bolts");
 }
 
 }  // namespace talus::app

@@ -9,6 +9,7 @@
 #include "plot_blocks.h"
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
+#include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
@@ -49,6 +50,7 @@ std::string full_title(const CsvTable& table, const std::string& column) {
 CsvTable only_stage(CsvTable table, const fs::path& folder, const std::string& stage) {
   const fs::path file = folder / "summary.json";
   std::vector<std::string> names;
+  if (table.values.empty()) return table;
   try {
     const auto summary = nlohmann::json::parse(checked_json(file.string(), read_text_file(file)));
     for (const auto& s : summary.at("stages")) {
@@ -127,8 +129,50 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
   }
   if (args.limit_y.size() == 2) figure.y_min = args.limit_y[0], figure.y_max = args.limit_y[1];
   if (args.limit_t.size() == 2) figure.x_min = args.limit_t[0], figure.x_max = args.limit_t[1];
+  note_figure(args.folders[0], stem);
   plot::write_figure(figure, stem);
   fmt::print("{0}.svg\n{0}.png\n", stem.string());
+}
+
+// The histories of a run; no rows where it was killed before it wrote one.
+CsvTable histories_of(const std::string& folder) {
+  const fs::path file = fs::path(folder) / "histories.csv";
+  std::error_code ec;
+  if (!fs::is_directory(folder, ec)) throw FileError(fmt::format("{}: there is no such folder", folder));
+  if (!fs::exists(file, ec)) {
+    if (!fs::exists(fs::path(folder) / "summary.json", ec))
+      throw FileError(fmt::format("{}: holds no results of talus run: histories.csv is missing", folder));
+    return {};
+  }
+  CsvTable table = read_csv(file, LastLine::kMustEnd);
+  if (table.cut_short)
+    fmt::print(stderr, "talus: note: {}: its last row is not whole, and left out\n", file.string());
+  return table;
+}
+
+void plot_all(const std::string& folder, const CsvTable& table, const PlotArguments& args) {
+  const fs::path plots = fs::path(folder) / "plots";
+  fs::create_directories(plots);
+  if (table.rows() == 0)
+    fmt::print(stderr, "talus: note: {}: the run has not written a row of histories yet\n", folder);
+  for (size_t c = 1; c < table.columns.size() && table.rows() > 0; ++c) {
+    const std::string& column = table.columns[c];
+    draw_columns(args, {table}, {column}, plots / file_name_of(column.substr(0, column.find(" ["))));
+  }
+  if (args.stage.empty()) plot_blocks_at_end(folder, plots);
+}
+
+int plot_frames(const PlotArguments& args) {
+  if (!args.columns.empty())
+    throw Error(kExitUsage, "-c and --blocks are different figures: give one of them");
+  if (args.folders.size() > 1) throw Error(kExitUsage, "--blocks draws one folder at a time");
+  BlockPlotArguments blocks = args.blocks;
+  blocks.title = args.title;
+  const fs::path folder = args.folders[0];
+  const fs::path stem = args.output.empty() ? folder / "plots" / "blocks" : fs::path(args.output);
+  if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
+  plot_blocks(folder, blocks, stem, !args.output.empty());
+  return kExitOk;
 }
 
 }  // namespace
@@ -182,50 +226,31 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
 }
 
 int plot_command(const PlotArguments& args) {
-  if (!args.blocks.quantities.empty()) {
-    if (!args.columns.empty())
-      throw Error(kExitUsage, "-c and --blocks are different figures: give one of them");
-    BlockPlotArguments blocks = args.blocks;
-    blocks.title = args.title;
-    const fs::path folder = args.folders[0];
-    const fs::path stem = args.output.empty() ? folder / "plots" / "blocks" : fs::path(args.output);
-    if (args.folders.size() > 1) throw Error(kExitUsage, "--blocks draws one folder at a time");
-    if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
-    plot_blocks(folder, blocks, stem, !args.output.empty());
-    return kExitOk;
-  }
+  if (!args.blocks.quantities.empty()) return plot_frames(args);
   if (!args.blocks.times.empty() || !args.blocks.window.empty())
     throw Error(kExitUsage, "--time and --window need --blocks");
   std::vector<CsvTable> tables;
   for (const std::string& folder : args.folders) {
-    std::error_code ec;
-    if (!fs::is_directory(folder, ec)) throw FileError(fmt::format("{}: there is no such folder", folder));
-    if (!fs::exists(fs::path(folder) / "histories.csv", ec))
-      throw FileError(fmt::format("{}: holds no results of talus run: histories.csv is missing", folder));
-    tables.push_back(read_csv(fs::path(folder) / "histories.csv", LastLine::kMustEnd));
-    if (tables.back().cut_short)
-      fmt::print(stderr, "talus: note: {}/histories.csv: its last row is not whole, and left out\n", folder);
+    tables.push_back(histories_of(folder));
     if (!args.stage.empty()) tables.back() = only_stage(std::move(tables.back()), folder, args.stage);
   }
-  if (!args.columns.empty()) {
-    if (args.columns.size() > 1 && args.output.empty())
-      throw Error(kExitUsage, "several columns in one figure need -o, the path of the figure");
-    const fs::path stem = args.output.empty()
-                              ? fs::path(args.folders[0]) / "plots" /
-                                    split_column(full_title(tables[0], args.columns[0])).monitor
-                              : fs::path(args.output);
-    if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
-    draw_columns(args, tables, args.columns, stem);
+  if (args.columns.empty()) {
+    if (!args.output.empty()) throw Error(kExitUsage, "-o needs -c: without a column there are many figures");
+    plot_all(args.folders[0], tables[0], args);
     return kExitOk;
   }
-  if (!args.output.empty()) throw Error(kExitUsage, "-o needs -c: without a column there are many figures");
-  const fs::path folder = fs::path(args.folders[0]) / "plots";
-  fs::create_directories(folder);
-  for (size_t c = 1; c < tables[0].columns.size(); ++c) {
-    const std::string& column = tables[0].columns[c];
-    draw_columns(args, tables, {column}, folder / column.substr(0, column.find(" [")));
-  }
-  if (args.stage.empty()) plot_blocks_at_end(args.folders[0], folder);
+  for (size_t i = 0; i < tables.size(); ++i)
+    if (tables[i].rows() == 0)
+      throw FileError(fmt::format(
+          "{}: the run has not written a row of histories yet: there is nothing to draw", args.folders[i]));
+  if (args.columns.size() > 1 && args.output.empty())
+    throw Error(kExitUsage, "several columns in one figure need -o, the path of the figure");
+  const fs::path stem = args.output.empty()
+                            ? fs::path(args.folders[0]) / "plots" /
+                                  file_name_of(split_column(full_title(tables[0], args.columns[0])).monitor)
+                            : fs::path(args.output);
+  if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
+  draw_columns(args, tables, args.columns, stem);
   return kExitOk;
 }
 

@@ -172,12 +172,14 @@ int record_command(const RecordArguments& args) {
   Outcome out = args.synthetic ? from_seed(args) : from_file(args);
   record::Account& account = out.account;
   account.after = record::measure(out.motion);
+  record::check_finite(out.title, out.motion, account.after);
   account.samples = out.motion.size();
   account.dt = out.motion.dt;
   std::vector<std::pair<std::string, record::Measures>> columns;
   std::vector<plot::MotionCurve> curves;
   if (out.before && !args.raw) {
     account.before.push_back(record::measure(*out.before));
+    record::check_finite(out.title, *out.before, account.before[0]);
     columns.emplace_back("as read", account.before[0]);
     curves.push_back({"as read", &*out.before});
   }

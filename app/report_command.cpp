@@ -8,7 +8,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
-#include "talus/output/files.h"
+#include "talus/output/result_folder.h"
 #include "talus/report/page.h"
 
 namespace talus::app {
@@ -32,7 +32,8 @@ std::string page_text() {
 
 void add_report_arguments(CLI::App& verb, ReportArguments& args) {
   verb.add_option("DIR", args.folders, "result folders; the charts of several are overlaid")->required();
-  verb.add_option("-o,--output", args.output, "file to write; without: report.html in the first folder");
+  verb.add_option("-o,--output", args.output,
+                  "file to write, - for standard output; without: report.html in the first folder");
   verb.add_option("--frames", args.frames,
                   "at most so many frames of each run, spread evenly; 0: as many as fit")
       ->check(CLI::Range(0, 1000000))
@@ -57,9 +58,14 @@ int report_command(const ReportArguments& args) {
   report::PageNotes notes;
   const std::string html =
       report::report_page(page, runs, {.frames = args.frames, .megabytes = args.megabytes}, notes);
+  if (args.output == "-") {
+    fmt::print("{}", html);
+    return kExitOk;
+  }
   const fs::path file =
       args.output.empty() ? fs::path(args.folders[0]) / "report.html" : fs::path(args.output);
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
+  note_result(args.folders[0], file);
   write_file(file, html);
   for (const auto& run : notes.runs)
     fmt::print("{}: {} of {} frames{}, contact points of {} frames\n", run.name, run.frames, run.frames_there,

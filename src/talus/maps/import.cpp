@@ -8,6 +8,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/name.h"
 #include "talus/base/text.h"
 
 namespace talus::maps {
@@ -17,10 +18,15 @@ namespace {
 // A name that a model file takes.
 std::string section_name(const std::string& text, std::set<std::string>& used) {
   std::string name;
-  for (const char c : text)
-    name +=
-        std::string(".,\"[]*").find(c) != std::string::npos || static_cast<unsigned char>(c) < 0x20 ? '_' : c;
-  if (name.empty()) name = "map";
+  constexpr std::string_view kWrong = ".,\"[]*/\\";
+  constexpr size_t kLongest = kLongestName - 20;  // features are numbered behind it
+  for (const char c : text.substr(0, kLongest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    name += kWrong.find(c) != std::string_view::npos || byte < 0x20 || byte == 0x7f ? '_' : c;
+  }
+  if (!name.empty() && !name_defect(name).empty()) name = "map " + name;
+  while (!name.empty() && name.back() == ' ') name.pop_back();
+  if (!name_defect(name).empty()) name = "map";
   const std::string base = name;
   for (int n = 2; !used.insert(name).second; ++n) name = fmt::format("{}_{}", base, n);
   return name;

@@ -9,10 +9,12 @@
 #include <cstring>
 #include <vector>
 
+#include "talus/base/child.h"
 #include "talus/base/error.h"
 #include "talus/base/program.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
+#include "talus/maps/drawing_bytes.h"
 #include "talus/maps/dxf_scan.h"
 
 namespace talus::maps {
@@ -68,6 +70,42 @@ bool is_drawn(const std::string& kind) {
   return std::find(drawn.begin(), drawn.end(), kind) != drawn.end();
 }
 
+// What the module makes of the file, in a process of its own: libraries of that size have crashed on files
+// before, and will. The first byte tells a drawing from the text of an error.
+constexpr char kDrawing = 'd', kWrongFile = 'w', kNoModule = 'm';
+
+std::string answer_of(const std::string& path, double curve_step) {
+  try {
+    Drawing drawing;
+    std::string error;
+    return module().read(path, curve_step, drawing, error) ? kDrawing + bytes_of(drawing)
+                                                           : kWrongFile + error;
+  } catch (const FileError& e) {
+    return kNoModule + std::string(e.what());
+  }
+}
+
+Drawing read_by_module(const std::filesystem::path& path, double curve_step) {
+  const std::string answer =
+      work_in_child(path.string(), [&] { return answer_of(path.string(), curve_step); });
+  const std::string rest = answer.empty() ? "" : answer.substr(1);
+  if (answer.empty() || (answer[0] != kDrawing && answer[0] != kWrongFile && answer[0] != kNoModule))
+    throw FileError(fmt::format("{}: reading it gave nothing", path.string()));
+  if (answer[0] == kNoModule) throw FileError(rest);
+  if (answer[0] == kWrongFile) throw InputError(fmt::format("{}: {}", path.string(), rest));
+  return drawing_of(rest);
+}
+
+// Regular files, and folders, which some formats are; a pipe or device might have no end.
+void check_kind(const std::filesystem::path& path) {
+  std::error_code ec;
+  const auto status = std::filesystem::status(path, ec);
+  if (!std::filesystem::exists(status))
+    throw FileError(fmt::format("{}: there is no such file", path.string()));
+  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
+    throw FileError(fmt::format("{}: is a pipe or a device, not a file", path.string()));
+}
+
 }  // namespace
 
 Drawing read_drawing(const std::filesystem::path& path, double curve_step) {
@@ -75,13 +113,10 @@ Drawing read_drawing(const std::filesystem::path& path, double curve_step) {
   if (is_dxf(path)) {
     scan = scan_dxf(read_text_file(path));
     if (!scan.defect.empty()) throw InputError(fmt::format("{}: {}", path.string(), scan.defect));
-  } else if (std::error_code error; !std::filesystem::exists(path, error)) {
-    throw FileError(fmt::format("{}: there is no such file", path.string()));
+  } else {
+    check_kind(path);
   }
-  Drawing out;
-  std::string error;
-  if (!module().read(path.string(), curve_step, out, error))
-    throw InputError(fmt::format("{}: {}", path.string(), error));
+  Drawing out = read_by_module(path, curve_step);
   if (!is_dxf(path)) {
     if (out.format == "DXF")
       throw InputError(

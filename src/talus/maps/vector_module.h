@@ -18,9 +18,11 @@ struct VectorModule {
   bool (*read)(const std::string& path, double curve_step, Drawing& drawing, std::string& error);
 };
 
-/// Reads the lines and points of a DXF, shapefile, GeoPackage or GeoJSON.
+/// Reads the lines and points of a DXF, shapefile, GeoPackage or GeoJSON, in a process of its own with limits of
+/// time and memory (ChildLimits): what crashes there is told.
 /// @param curve_step  [rad] of arcs between two points
-/// @throws FileError   the file cannot be opened, or the module is not there (with what to install)
+/// @throws FileError   the file cannot be opened or crashes the reader, or the module is not there (with what to
+///                     install)
 /// @throws InputError  the file is damaged or of another format
 Drawing read_drawing(const std::filesystem::path& path, double curve_step);
 

@@ -5,13 +5,16 @@
 #include <algorithm>
 
 #include "talus/base/error.h"
+#include "talus/base/name.h"
 
 namespace talus {
 
 namespace {
 
-// What is longer than anyone reads is cut, so that the message stays one.
-std::string shortened(const std::string& text, size_t most) {
+// What is longer than anyone reads is cut, so that the message stays one; control characters, which may stand in
+// names, are shown and not sent to a terminal.
+std::string shortened(const std::string& raw, size_t most) {
+  const std::string text = shown_name(raw, "\n");
   if (text.size() <= most) return text;
   size_t end = most;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a character

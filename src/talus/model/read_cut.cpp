@@ -133,9 +133,7 @@ class CutReader : private SectionReader {
       for (size_t i = r.sides.size(); i < r.polygon.size(); ++i)
         r.sides.push_back(fmt::format("{}-{}", r.name, i + 1));
       for (const std::string& side : r.sides) {
-        if (side.empty() || side.find_first_of(".,\"\n[]") != std::string::npos)
-          findings_.error(f.where("sides"), f.path_of("sides"), fmt::format("\"{}\" is no name", side),
-                          "names are not empty and hold no dot, comma, quote or bracket");
+        if (f.has("sides")) check_name(f.where("sides"), f.path_of("sides"), side);
         side_names_.emplace(side, f.has("sides") ? std::pair(f.where("sides"), f.path_of("sides"))
                                                  : std::pair(f.where(), f.path()));
       }

@@ -77,10 +77,10 @@ class MeshReader : private SectionReader {
   // Groups of surfaces give materials and groups of blocks, those of curves joints and names for supports.
   void name_groups(const Fields& f, MeshInput& m) {
     const auto sound = [&](const std::string& name) {
-      if (!name.empty() && name.find_first_of(".,\"\n[]") == std::string::npos) return true;
+      const std::string defect = name_defect(name);
+      if (defect.empty()) return true;
       findings_.error(f.where("file"), f.path_of("file"),
-                      fmt::format("\"{}\" is no name of a physical group", name),
-                      "names are not empty and hold no dot, comma, quote or bracket");
+                      fmt::format("\"{}\" is no name of a physical group: {}", shown_name(name), defect));
       return false;
     };
     bool needs_default = false;

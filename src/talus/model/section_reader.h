@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/model/model.h"
 #include "talus/model/read_section.h"
@@ -45,6 +46,7 @@ class SectionReader {
                         fmt::format("write [{}.NAME] with a name of your own, then its keys", section));
         continue;
       }
+      check_name(where_of(key.source()), path, std::string(key.str()));
       use(std::string(key.str()),
           read_section(section_spec(section), *t, path, where_of(key.source()), source_, findings_));
     }
@@ -126,12 +128,18 @@ class SectionReader {
     return found;
   }
 
+  // A name that can go into keys, tables and file names.
+  bool check_name(const Where& where, const std::string& path, const std::string& name) {
+    const std::string defect = name_defect(name);
+    if (!defect.empty())
+      findings_.error(where, path, fmt::format("\"{}\" is no name: {}", shown_name(name), defect));
+    return defect.empty();
+  }
+
   void claim_name(const Fields& f, std::set<std::string>& used, const std::string& what) {
     if (!f.has("name")) return;
     const std::string name = f.get<std::string>("name");
-    if (name.empty() || name.find_first_of(".,\"\n[]") != std::string::npos)
-      findings_.error(f.where("name"), f.path_of("name"), fmt::format("\"{}\" is no name", name),
-                      "names are not empty and hold no dot, comma, quote or bracket");
+    check_name(f.where("name"), f.path_of("name"), name);
     if (!used.insert(name).second)
       findings_.error(f.where("name"), f.path_of("name"),
                       fmt::format("a second {} is called \"{}\"", what, name));

@@ -1,5 +1,6 @@
 #include "talus/output/cut_report.h"
 #include "talus/base/angle.h"
+#include "talus/output/text_table.h"
 
 #include <fmt/format.h>
 
@@ -232,8 +233,8 @@ std::string cut_blocks_csv(const Model& model, const std::vector<BlockShape>& bl
     const BlockShape& b = blocks[static_cast<size_t>(i)];
     const BlockNumbers n = numbers_of(b.polygon);
     const Vec2 c = set.centroid[static_cast<size_t>(i)];
-    out += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{:.6g}\n", b.name, b.id, c.x, c.y, n.area,
-                       n.width, n.aspect, b.polygon.size(), stable_step_of(set, i));
+    out += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{:.6g}\n", table_cell(b.name), b.id, c.x,
+                       c.y, n.area, n.width, n.aspect, b.polygon.size(), stable_step_of(set, i));
   }
   return out;
 }

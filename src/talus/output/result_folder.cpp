@@ -342,4 +342,11 @@ void note_result(const fs::path& folder, const fs::path& file) {
   if (error != 0) fail_file(path, "written", error);
 }
 
+void note_figure(const fs::path& folder, const fs::path& stem) {
+  for (const char* end : {".svg", ".png"}) {
+    fs::path file = stem;
+    note_result(folder, file += end);
+  }
+}
+
 }  // namespace talus

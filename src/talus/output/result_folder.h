@@ -68,5 +68,7 @@ class ResultFolder {
 /// Notes a file that another verb adds to the results (a figure, a report), when it lies in a folder that has
 /// a manifest.
 void note_result(const std::filesystem::path& folder, const std::filesystem::path& file);
+/// The same of a figure, STEM.svg and STEM.png.
+void note_figure(const std::filesystem::path& folder, const std::filesystem::path& stem);
 
 }  // namespace talus

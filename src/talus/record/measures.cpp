@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "talus/base/error.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -70,6 +72,24 @@ double highest_frequency(const Motion& motion, double share) {
   }
   const auto at = std::lower_bound(sum.begin(), sum.end(), share * sum.back());
   return static_cast<double>(at - sum.begin()) / (static_cast<double>(v.size()) * motion.dt);
+}
+
+void check_finite(const std::string& name, const Motion& motion, const Measures& m) {
+  const auto refuse = [&name](const std::string& what) {
+    throw InputError(fmt::format(
+        "{}: {} is not finite: the numbers are too large to be filtered or integrated, so nothing was "
+        "written. Is the unit right?",
+        name, what));
+  };
+  for (size_t i = 0; i < motion.size(); ++i) {
+    const double t = static_cast<double>(i) * motion.dt;
+    if (!std::isfinite(motion.acceleration[i])) refuse(fmt::format("its acceleration at t = {:g} s", t));
+    if (!std::isfinite(motion.velocity[i])) refuse(fmt::format("its velocity at t = {:g} s", t));
+    if (!std::isfinite(motion.displacement[i])) refuse(fmt::format("its displacement at t = {:g} s", t));
+  }
+  for (const double v : {m.pga, m.pga_time, m.pgv, m.pgd, m.arias, m.significant_duration, m.end_velocity,
+                         m.end_displacement, m.highest_frequency})
+    if (!std::isfinite(v)) refuse("one of its measures");
 }
 
 std::string measures_table(const std::vector<std::pair<std::string, Measures>>& columns) {

@@ -22,6 +22,10 @@ struct Measures {
 
 Measures measure(const Motion& motion);
 
+/// Throws InputError, naming the motion and the first time, when a value or a measure is not finite: numbers so
+/// large that sums of them are none.
+void check_finite(const std::string& name, const Motion& motion, const Measures& measures);
+
 /// Frequency [Hz] below which `share` of the integral of |V(f)|^2 lies. A motion that does not end at rest
 /// jumps at its end, which adds high frequencies: process it first. Resolution: 1 / duration.
 double highest_frequency(const Motion& motion, double share = kVelocityShare);

@@ -317,7 +317,9 @@ class Runner {
     State copy = state_;
     const StepReport report = kick(scene_, settings_, plan.dt, work_, copy);
     note(report);
-    show({scene_, copy, work_, report, plan, index, false, true});
+    // a run that is stopped between two stages has not shown the begin of the second
+    const bool at_start = result_.stages.back().steps == 0;
+    show({scene_, copy, work_, report, plan, index, at_start, true});
   }
 
   void note(const StepReport& r) {

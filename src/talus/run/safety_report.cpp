@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/version.h"
+#include "talus/output/text_table.h"
 #include "talus/run/safety.h"
 
 namespace talus {
@@ -42,7 +43,8 @@ std::string safety_csv(const SafetyResult& r) {
       "factor,stands,outcome,stage,time [s],steps,unbalanced,displacement [m],block,energy_closure\n";
   for (const SafetyTrial& t : r.trials)
     out += fmt::format("{:.17g},{},{},{},{:.17g},{},{:.17g},{:.17g},{},{:.17g}\n", t.factor, t.stands ? 1 : 0,
-                       t.outcome, t.stage, t.time, t.steps, t.unbalanced, t.displacement, t.block, t.closure);
+                       table_cell(t.outcome), table_cell(t.stage), t.time, t.steps, t.unbalanced,
+                       t.displacement, table_cell(t.block), t.closure);
   return out;
 }
 

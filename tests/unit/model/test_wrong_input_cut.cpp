@@ -257,8 +257,7 @@ TEST_CASE("wrong cut: regions and arches") {
   17:1: error: region.rock.sides: has 5 names for 4 edges
   = give one name per edge, the first for the edge from the first to the second corner
 ["base", "right", "top", "left"] => ["base", "right", "t.op", "left"]
-  17:1: error: region.rock.sides: "t.op" is no name
-  = names are not empty and hold no dot, comma, quote or bracket
+  17:1: error: region.rock.sides: "t.op" is no name: names hold no dot, comma, quote or bracket
 [[0, 0], [40, 0], [40, 30], [0, 30]] => [[0, 0], [40, 30], [40, 0], [0, 30]]
   16:1: error: region.rock.polygon: crosses or touches itself at (20, 15)
 [[0, 0], [40, 0], [40, 30], [0, 30]]\nsides = ["base", "right", "top", "left"] => [[0, 0], [40, 0]]
@@ -300,8 +299,7 @@ segments = 16 => joint = "mortar"
 [[opening]] => [[fault]]\nname = "shear"\npoints = [[0, 1], [40, 2]]\n[[opening]]
   59:1: error: fault.shear.name: a second source of joints is called "shear"
 name = "shear" => name = "F.1"
-  55:1: error: fault.F.1.name: "F.1" is no name
-  = names are not empty and hold no dot, comma, quote or bracket
+  55:1: error: fault.F.1.name: "F.1" is no name: names hold no dot, comma, quote or bracket
 [[fault]]\nname = "shear" => [fault.shear]
   54:1: error: fault: is a list: write [[fault]] with double brackets
 [[-1, 8], [20, 10], [41, 14]] => [[-1, 8]]

@@ -1,0 +1,105 @@
+#include "talus/base/child.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <new>
+
+#include "talus/base/clock.h"
+#include "talus/base/descriptor.h"
+#include "talus/base/error.h"
+
+namespace talus {
+
+namespace {
+
+constexpr int kNoMemory = 70, kThrown = 71;
+
+// The sanitizers keep shadows of all memory there could be.
+constexpr bool kWatched =
+#if defined(__SANITIZE_ADDRESS__)
+    true;
+#else
+    false;
+#endif
+
+void limit(__rlimit_resource resource, rlim_t most) {
+  const rlimit both{most, most};
+  setrlimit(resource, &both);
+}
+
+[[noreturn]] void be_child(int out, const std::function<std::string()>& work, const ChildLimits& limits) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
+    std::signal(signal, SIG_DFL);
+  std::signal(SIGPIPE, SIG_IGN);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
+  limit(RLIMIT_CORE, 0);
+  if (!kWatched) limit(RLIMIT_AS, static_cast<rlim_t>(limits.memory));
+  try {
+    std::string bytes = work();
+    for (std::string_view rest = bytes; !rest.empty();) {
+      const ssize_t n = write(out, rest.data(), rest.size());
+      if (n < 0 && errno != EINTR) _exit(kThrown);
+      if (n > 0) rest.remove_prefix(static_cast<size_t>(n));
+    }
+    _exit(0);
+  } catch (const std::bad_alloc&) {
+    _exit(kNoMemory);
+  } catch (...) {
+    _exit(kThrown);
+  }
+}
+
+// Reads up to the end; false when time is over.
+bool read_up_to(int in, double end, std::string& bytes) {
+  std::array<char, 1 << 16> part;
+  for (;;) {
+    const double left = end - wall_now();
+    pollfd ready{in, POLLIN, 0};
+    const int some = left > 0 ? poll(&ready, 1, static_cast<int>(1e3 * left) + 1) : 0;
+    if (some < 0 && errno == EINTR) continue;
+    if (some <= 0) return false;
+    const ssize_t n = read(in, part.data(), part.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return true;
+    bytes.append(part.data(), static_cast<size_t>(n));
+  }
+}
+
+std::string reason_of(int status, const ChildLimits& limits) {
+  const std::string memory = fmt::format("reading it took more than {} MiB of memory", limits.memory >> 20);
+  if (WIFEXITED(status)) return WEXITSTATUS(status) == kNoMemory ? memory : "reading it failed";
+  const int signal = WTERMSIG(status);
+  if (signal == SIGXCPU || signal == SIGKILL)
+    return fmt::format("reading it took more than {} s", limits.seconds);
+  return fmt::format("the library that reads it has crashed ({})", strsignal(signal));
+}
+
+}  // namespace
+
+std::string work_in_child(const std::string& what, const std::function<std::string()>& work,
+                          const ChildLimits& limits) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0)
+    throw FileError(fmt::format("{}: cannot be read: {}", what, std::strerror(errno)));
+  Descriptor in(ends[0]), out(ends[1]);
+  const pid_t child = fork();
+  if (child < 0) throw FileError(fmt::format("{}: cannot be read: {}", what, std::strerror(errno)));
+  if (child == 0) be_child(out, work, limits);
+  out.done();
+  std::string bytes;
+  if (!read_up_to(in, wall_now() + limits.seconds, bytes)) kill(child, SIGKILL);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return bytes;
+  throw FileError(fmt::format("{}: {}", what, reason_of(status, limits)));
+}
+
+}  // namespace talus

@@ -1,0 +1,350 @@
+// What ends a run from outside, what is in its way, and what it leaves: docs/reliability.md says what holds.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "support/command.h"
+#include "support/record_text.h"
+#include "support/shaken_bricks.h"
+#include "talus/output/csv.h"
+#include "talus/output/files.h"
+
+namespace test_reliability {
+
+using namespace talus;
+using namespace talus::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string status_of(const fs::path& folder) {
+  const auto summary = nlohmann::json::parse(content(folder / "summary.json"), nullptr, false);
+  return summary.is_object() ? summary.value("status", "") : "no summary";
+}
+
+void write_long_model(const Folder& f) {
+  std::string text = kShakenBricks;
+  const std::string was = "duration = \"0.2 s\"";
+  text.replace(text.find(was), was.size(), "duration = \"60 s\"");
+  write_file(f / "long.toml", text);
+}
+
+// A block between two jaws that close: no force is the right one, and the solver may seek it for hours.
+const std::string kEndlessStep = R"model(talus = 1
+[material.r]
+density = 2700
+young = "5 GPa"
+poisson = 0.25
+[joint.f]
+friction_angle = "35 deg"
+[contact]
+joint = "f"
+[solver]
+method = "gauss_seidel"
+max_sweeps = 10000000
+second_solver = false
+[history.v]
+time = [0, 10]
+value = [0.05, 0.05]
+[history.w]
+time = [0, 10]
+value = [-0.05, -0.05]
+[[block]]
+name = "left"
+polygon = [[-1, 0], [-0.001, 0], [-0.001, 1], [-1, 1]]
+material = "r"
+kind = "driven"
+motion_x = { velocity = "v" }
+[[block]]
+name = "right"
+polygon = [[1.001, 0], [2, 0], [2, 1], [1.001, 1]]
+material = "r"
+kind = "driven"
+motion_x = { velocity = "w" }
+[[block]]
+name = "between"
+polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
+material = "r"
+kind = "rigid"
+[[stage]]
+name = "close"
+kind = "dynamic"
+duration = "10 s"
+time_step = "0.5 ms"
+)model";
+
+// A shell line that starts the run in the background and waits until it has written something.
+const std::string kStart =
+    "$talus run long.toml -o out > said.txt 2>&1 & p=$!; "
+    "for i in $(seq 200); do [ -s out/steps.csv ] && break; sleep 0.05; done; ";
+
+}  // namespace
+
+TEST_CASE("reliability: signals end a run as Ctrl-C does, with their exit codes, and it goes on") {
+  const Folder f;
+  write_long_model(f);
+  for (const auto& [name, code] : {std::pair("INT", 130), std::pair("TERM", 143), std::pair("HUP", 129),
+                                   std::pair("XCPU", 152), std::pair("PIPE", 141)}) {
+    INFO(name);
+    const Outcome o = shell(f, fmt::format("{}sleep 0.2; kill -{} $p; wait $p", kStart, name));
+    CHECK(o.code == code);
+    CHECK(status_of(f / "out") == "interrupted");
+    CHECK(!fs::exists(f / "out/talus_lock.txt"));
+    const Outcome on =
+        shell(f,
+              "$talus run long.toml --from out/saved/$(ls out/saved | grep step | tail -1) -q & "
+              "p=$!; sleep 0.3; kill -TERM $p; wait $p");
+    INFO(on.text);
+    CHECK(on.code == 143);
+    CHECK(shell(f, "$talus report out && $talus plot out").code == 0);
+    fs::remove_all(f / "out");
+  }
+}
+
+TEST_CASE("reliability: a hang-up that nohup has ignored stays so") {
+  const Folder f;
+  write_long_model(f);
+  const Outcome o =
+      shell(f,
+            "nohup $talus run long.toml -o out > said.txt 2>&1 & p=$!; for i in $(seq 200); do "
+            "[ -s out/steps.csv ] && break; sleep 0.05; done; kill -HUP $p; sleep 0.3; kill -0 $p && "
+            "echo lives; kill -TERM $p; wait $p");
+  has(o.text, "lives");
+  CHECK(o.code == 143);
+}
+
+TEST_CASE("reliability: a signal inside an endless step is heard, and the state before it saved") {
+  const Folder f;
+  write_file(f / "endless.toml", kEndlessStep);
+  const std::string start = "$talus run endless.toml -o out -q & p=$!; sleep 1.5; ";
+  const Outcome o = shell(f, start +
+                                 "b=$(date +%s%N); kill -TERM $p; wait $p; c=$?; e=$(date +%s%N); echo "
+                                 "took $(( (e - b) / 1000000 )); exit $c");
+  CHECK(o.code == 143);
+  const size_t at = o.text.find("took ");
+  REQUIRE(at != std::string::npos);
+  CHECK(std::stoi(o.text.substr(at + 5)) < 1500);  // 0.6 s of patience, and a loaded machine
+  CHECK(status_of(f / "out") == "interrupted");
+  CHECK(!fs::exists(f / "out/talus_lock.txt"));
+  REQUIRE(fs::exists(f / "out/saved"));
+  CHECK(!fs::is_empty(f / "out/saved"));
+  CHECK(shell(f, "$talus report out && $talus plot out").code == 0);
+  // a second Ctrl-C does not wait for that
+  fs::remove_all(f / "out");
+  const Outcome twice = shell(f, start + "kill -INT $p; kill -INT $p; wait $p");
+  CHECK(twice.code == 130);
+}
+
+TEST_CASE("reliability: one run per folder") {
+  const Folder f;
+  write_long_model(f);
+  const Outcome o =
+      shell(f, kStart +
+                   "$talus run long.toml -o out; echo A$?; $talus run long.toml -o out --force; echo B$?; "
+                   "$talus cut long.toml -o out --force; echo C$?; "
+                   "$talus run long.toml --from out/saved/stage_01.h5; echo D$?; "
+                   "kill -KILL $p; wait $p; ls out");
+  for (const char* code : {"A4", "B4", "C4", "D4"}) has(o.text, code);
+  has(o.text, "is in use: process ");
+  has(o.text, "talus_lock.txt");
+  const Outcome after =
+      shell(f,
+            "$talus run long.toml --from out/saved/stage_01.h5 -q & p=$!; sleep 0.5; kill -INT "
+            "$p; wait $p");
+  CHECK(after.code == 130);
+  has(after.text, "has ended without letting go of this folder; it is taken over");
+  CHECK(!fs::exists(f / "out/talus_lock.txt"));
+  CHECK(shell(f, "$talus run long.toml -o out --force --from out/saved/stage_01.h5").code == 2);
+}
+
+TEST_CASE("reliability: standard streams that are full, closed or gone") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  SUBCASE("full") {
+    const Outcome o = shell(f, "$talus run m.toml -o out > /dev/full");
+    CHECK(o.code == 4);
+    has(o.text, "standard output cannot be written: No space left");
+    CHECK(status_of(f / "out") == "finished");  // nobody could be told of it
+    for (const char* line : {"schema", "schema --json", "man", "check m.toml", "plot out", "report out",
+                             "--help", "--version", "completion bash"})
+      CHECK_MESSAGE(shell(f, fmt::format("$talus {} > /dev/full", line)).code == 4, line);
+  }
+  SUBCASE("closed: no file is taken for it") {
+    for (const char* closed : {">&-", "2>&-", "<&-", "<&- >&- 2>&-"}) {
+      INFO(closed);
+      fs::remove_all(f / "out");
+      const Outcome o = shell(f, fmt::format("$talus run m.toml -o out {}", closed));
+      CHECK(o.code ==
+            (std::string(closed).find(" >&-") != std::string::npos || std::string(closed) == ">&-" ? 4 : 0));
+      CHECK(status_of(f / "out") == "finished");
+      const CsvTable table = read_csv(f / "out/histories.csv", LastLine::kMustEnd);
+      CHECK(table.rows() > 100);
+      CHECK(content(f / "out/histories.csv").find("stage ") == std::string::npos);
+    }
+  }
+  SUBCASE("a pipe whose reader has gone: the usual end") {
+    const Outcome o = shell(f, "($talus schema; echo \"code $?\" >&2) | true");
+    has(o.text, "code 141");
+    write_long_model(f);
+    const Outcome run = shell(f, "($talus run long.toml -o out; echo \"code $?\" >&2) | head -1");
+    has(run.text, "code 141");
+    CHECK(status_of(f / "out") == "interrupted");
+  }
+  SUBCASE("- is standard output where a verb prints one file") {
+    CHECK(shell(f, "$talus run m.toml -o out -q && $talus report out -o - > page.html").code == 0);
+    CHECK(shell(f, "$talus report out -q > /dev/null").code == 2);
+    CHECK(content(f / "page.html").find("</html>") != std::string::npos);
+    CHECK(shell(f, "$talus new - --from wall > w.toml && $talus check w.toml").code == 0);
+  }
+}
+
+TEST_CASE("reliability: a disk that is full while a state is saved") {
+  // no file longer than 64 kB: the tables fit, the state does not
+  const Folder f;
+  std::string text = kShakenBricks;
+  text.replace(text.find("cells = [4, 6]"), 14, "cells = [8, 12]");
+  write_file(f / "m.toml", text);
+  const Outcome o = shell(f, "bash -c 'ulimit -f 128; exec $0 run m.toml -o out -q' $talus");
+  CHECK(o.code == 4);
+  has(o.text, "cannot be written: File too large");
+  const auto summary = nlohmann::json::parse(content(f / "out/summary.json"));
+  CHECK(summary["status"] == "failed");
+  has(summary["failure"].get<std::string>(), "File too large");
+  for (const auto& e : fs::recursive_directory_iterator(f / "out")) CHECK(!is_unfinished_file(e.path()));
+  CHECK(shell(f, "$talus report out && $talus plot out").code == 0);
+  CHECK(shell(f, "$talus run m.toml -o out -q --force").code != 4);
+}
+
+TEST_CASE("reliability: a failed run names the commands to look at it, and they work") {
+  const Folder f;
+  std::string text = kEndlessStep;
+  text.replace(text.find("10000000"), 8, "50");
+  write_file(f / "m.toml", text);
+  const Outcome o = shell(f, "$talus run m.toml -o out -q");
+  CHECK(o.code == 5);
+  CHECK(status_of(f / "out") == "failed");
+  int commands = 0;
+  for (size_t at = o.text.find("\n  talus "); at != std::string::npos;
+       at = o.text.find("\n  talus ", at + 1)) {
+    std::string line = o.text.substr(at + 9, o.text.find("      (", at) - at - 9);
+    INFO(line);
+    const int code = shell(f, "$talus " + line).code;
+    CHECK((code == 0 || code == 5));  // the step fails again, as it should
+    ++commands;
+  }
+  CHECK(commands == 3);
+}
+
+TEST_CASE(
+    "reliability: names that would leave the folder are refused, those of a hostile folder stay inside") {
+  const Folder f;
+  for (const char* name : {"/abs/path", "../x", "a\\\\b", "=1+1", "a\\rb", "a\\u0000b", " a"}) {
+    std::string text = kShakenBricks;
+    text.replace(text.find("name = \"top\""), 12, fmt::format("name = \"{}\"", name));
+    write_file(f / "m.toml", text);
+    const Outcome o = shell(f, "$talus check m.toml");
+    INFO(name);
+    CHECK(o.code == 3);
+    has(o.text, "is no name: ");
+    CHECK(o.text.find('\0') == std::string::npos);
+  }
+  // a folder that somebody else has made
+  write_file(f / "m.toml", kShakenBricks);
+  REQUIRE(shell(f, "$talus run m.toml -o out -q").code == 0);
+  write_file(f / "out/histories.csv",
+             "t [s],../../escaped.velocity_x [m/s],/tmp/talus_escaped [m]\n0,1,2\n1,2,3\n");
+  CHECK(shell(f, "$talus plot out").code == 0);
+  CHECK(!fs::exists(f / "escaped.velocity_x.svg"));
+  CHECK(!fs::exists("/tmp/talus_escaped.svg"));
+  CHECK(fs::exists(f / "out/plots/%2E.%2F..%2Fescaped.velocity_x.svg"));
+}
+
+TEST_CASE("reliability: outputs replace regular files only") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  REQUIRE(shell(f, "$talus run m.toml -o out -q").code == 0);
+  write_file(f / "precious", "x");
+  const Outcome pipe = shell(f, "mkfifo pipe; $talus report out -o pipe");
+  CHECK(pipe.code == 4);
+  has(pipe.text, "pipe: is a pipe; only a regular file is replaced");
+  CHECK(fs::is_fifo(f / "pipe"));
+  CHECK(shell(f, "ln -s precious link; $talus report out -o link").code == 4);
+  CHECK(shell(f, "ln -s ../precious out/report.html.part; $talus report out").code == 0);
+  // --from writes into no other file than its own
+  CHECK(shell(f,
+              "mv out/histories.csv h; ln -s ../h out/histories.csv; $talus run m.toml --from "
+              "out/saved/stage_01.h5 -q")
+            .code == 4);
+  CHECK(content(f / "h").size() > 1000);
+  CHECK(content(f / "precious") == "x");
+}
+
+TEST_CASE("reliability: crafted texts are refused within seconds") {
+  const Folder f;
+  const auto refused = [&f](const std::string& line, int code, const std::string& piece) {
+    INFO(line);
+    const Outcome o = shell(f, "timeout 20 " + line);
+    CHECK(o.code == code);
+    has(o.text, piece);
+    CHECK(o.text.size() < 20000);
+  };
+  std::string dots = "a";
+  for (int i = 0; i < 40000; ++i) dots += ".a";
+  write_file(f / "header.toml", "talus = 1\n[" + dots + "]\nx = 1\n");
+  refused("$talus check header.toml", 3, "a key has more than 20 parts");
+  write_file(f / "dotted.toml", "talus = 1\n" + dots + " = 1\n");
+  refused("$talus check dotted.toml", 3, "a key has more than 20 parts");
+  write_file(f / "quoted.toml", "talus = 1\n[model]\ntitle = \"\"\"" + dots + "\"\"\"\n");
+  refused("$talus check quoted.toml", 3, "the file has no [[stage]]");  // a text may hold dots
+  write_file(f / "key.toml", "talus = 1\n" + std::string(10000000, 'k') + " = 1\n");
+  refused("$talus check key.toml", 3, "(10000000 characters)");
+  std::string sections = "talus = 1\n";
+  for (int i = 0; i < 300000; ++i) sections += fmt::format("[blok{}]\nx = 1\n", i);
+  write_file(f / "sections.toml", sections);
+  refused("$talus check sections.toml", 3, "and 299");
+  refused("$talus check /dev/zero", 4, "/dev/zero: is a device, not a file");
+  refused("bash -c 'mkfifo fifo; $0 check fifo' $talus", 4, "fifo: is a pipe, not a file");
+  refused("$talus check .", 4, "is a folder, not a file");
+  // results
+  fs::create_directories(f / "out");
+  write_file(f / "out/histories.csv", "t [s],a [m]\n0,1\n1,2\n");
+  write_file(f / "out/summary.json", std::string(100000, '[') + std::string(100000, ']'));
+  refused("$talus report out", 4, "is nested more than 100 deep");
+  refused("$talus plot out --stage s", 4, "is nested more than 100 deep");
+  refused("$talus audit out", 4, "is nested more than 100 deep");
+  refused("$talus replay out/summary.json", 4, "is nested more than 100 deep");
+  write_file(f / "out/summary.json", R"({"status": "finished", "stages": 5, "blocks": [], "model": 7})");
+  refused("$talus report out", 4, "something else than talus writes");
+  refused("$talus audit out", 4, "cannot be read");
+}
+
+TEST_CASE("reliability: a record whose numbers overflow is refused, and nothing is written") {
+  const Folder f;
+  std::string text = "t [s],a [m/s2]\n";
+  for (int i = 0; i < 300; ++i) text += fmt::format("{},{}\n", 0.01 * i, i % 2 == 0 ? 1e308 : -1e308);
+  write_file(f / "big.csv", text);
+  for (const char* how : {"", " --raw"}) {
+    const Outcome o = shell(f, fmt::format("$talus record big.csv -o out{}", how));
+    CHECK(o.code == 3);
+    has(o.text, "is not finite");
+    CHECK(!fs::exists(f / "out"));
+  }
+}
+
+TEST_CASE("reliability: no memory is an exit code of its own") {
+  const Folder f;
+  std::string text = kShakenBricks;
+  text.replace(text.find("cells = [4, 6]"), 14, "cells = [400, 600]");
+  write_file(f / "m.toml", text);
+#ifndef __SANITIZE_ADDRESS__
+  const Outcome o = shell(f, "bash -c 'ulimit -v 400000; exec $0 run m.toml -o out -q' $talus");
+  CHECK(o.code == 7);
+  has(o.text, "not enough memory");
+#endif
+}
+
+}  // namespace test_reliability

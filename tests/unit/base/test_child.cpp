@@ -1,0 +1,73 @@
+#include "talus/base/child.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "talus/base/error.h"
+
+namespace test_child {
+
+using namespace talus;
+
+namespace {
+
+std::string said(const std::function<std::string()>& work, const ChildLimits& limits = {}) {
+  try {
+    work_in_child("map.gpkg", work, limits);
+    return "";
+  } catch (const FileError& e) {
+    return e.what();
+  }
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("work in a child: its bytes come back, whatever they are and how many") {
+  CHECK(work_in_child("x", [] { return std::string(); }) == "");
+  const std::string some("a\0b\n", 4);
+  CHECK(work_in_child("x", [&] { return some; }) == some);
+  const std::string many(5000000, 'q');
+  CHECK(work_in_child("x", [&] { return many; }) == many);
+}
+
+TEST_CASE("work in a child: its death is an error with the reason") {
+  CHECK(has(said([]() -> std::string {
+              raise(SIGSEGV);
+              return "";
+            }),
+            "map.gpkg: the library that reads it has crashed"));
+  CHECK(has(said([]() -> std::string { _exit(3); }), "map.gpkg: reading it failed"));
+  CHECK(has(said([]() -> std::string { throw std::runtime_error("x"); }), "map.gpkg: reading it failed"));
+  CHECK(has(said([]() -> std::string { throw std::bad_alloc(); }), "MiB of memory"));
+  const auto sleeps = []() -> std::string {
+    std::this_thread::sleep_for(std::chrono::seconds(100));
+    return "";
+  };
+  CHECK(has(said(sleeps, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
+  const auto turns = []() -> std::string {
+    for (volatile int i = 0;;) i = i + 1;
+  };
+  CHECK(has(said(turns, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("work in a child: no more memory than it may have") {
+  const auto grows = []() -> std::string {
+    std::vector<std::string> all;
+    for (int i = 0; i < 100; ++i) all.emplace_back(size_t{64} << 20, 'x');
+    return "";
+  };
+  CHECK(has(said(grows, {.memory = size_t{1} << 30}),
+            "map.gpkg: reading it took more than 1024 MiB of memory"));
+}
+#endif
+
+}  // namespace test_child

@@ -4,10 +4,11 @@
 # Usage: [AT_ONCE=2] fuzz/run.sh [SECONDS [READER...]]     (default: 600 seconds each)
 set -eu
 cd "$(dirname "$0")/.."
+readers='model msh dxf record history blocks vtk table replay csv series frame summary state geojson'
 seconds=${1:-600} at_once=${AT_ONCE:-2}
 [ $# = 0 ] || shift
 [ -e build/fuzz/build.ninja ] || cmake --preset fuzz >/dev/null
-cmake --build build/fuzz --target $(printf 'fuzz_%s ' model msh dxf record history blocks vtk table replay) | tail -1
+cmake --build build/fuzz --target $(printf 'fuzz_%s ' $readers) | tail -1
 mkdir -p build/fuzz/found
 one() {
   local corpus=build/fuzz/corpus/$1
@@ -18,7 +19,7 @@ one() {
     { echo "$1: FAILED, see build/fuzz/$1.log"; return 1; }
 }
 failed=0
-for reader in ${@:-model msh dxf record history blocks vtk table replay}; do
+for reader in ${@:-$readers}; do
   one "$reader" &
   while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do wait -n || failed=1; done
 done

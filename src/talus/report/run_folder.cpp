@@ -10,6 +10,18 @@ namespace talus::report {
 
 namespace fs = std::filesystem;
 
+nlohmann::ordered_json parse_summary(const std::string& name, const std::string& text) {
+  nlohmann::ordered_json summary;
+  try {
+    summary = nlohmann::ordered_json::parse(checked_json(name, text));
+  } catch (const nlohmann::json::exception& e) {
+    throw FileError(fmt::format("{}: cannot be read: {}", name, e.what()));
+  }
+  if (!summary.is_object() || !summary.contains("status"))
+    throw FileError(fmt::format("{}: is no summary of a run", name));
+  return summary;
+}
+
 RunFolder read_run_folder(const fs::path& folder) {
   std::error_code ec;
   if (!fs::is_directory(folder, ec))
@@ -21,14 +33,7 @@ RunFolder read_run_folder(const fs::path& folder) {
   run.path = folder;
   run.name = fs::absolute(folder).lexically_normal().filename().string();
   if (run.name.empty()) run.name = fs::absolute(folder).lexically_normal().parent_path().filename().string();
-  try {
-    const std::string file = (folder / "summary.json").string();
-    run.summary = nlohmann::ordered_json::parse(checked_json(file, read_text_file(file)));
-  } catch (const nlohmann::json::exception& e) {
-    throw FileError(fmt::format("{}: cannot be read: {}", (folder / "summary.json").string(), e.what()));
-  }
-  if (!run.summary.is_object() || !run.summary.contains("status"))
-    throw FileError(fmt::format("{}: is no summary of a run", (folder / "summary.json").string()));
+  run.summary = parse_summary((folder / "summary.json").string(), read_text_file(folder / "summary.json"));
   const auto there = [&](const char* name) { return fs::exists(folder / name, ec); };
   const auto unless_missing = [&](const char* name) {
     if (!there(name)) return CsvTable();

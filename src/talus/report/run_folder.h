@@ -24,6 +24,9 @@ struct RunFolder {
   std::vector<std::string> notes;  // what was left out, of a run that was killed
 };
 
+/// The content of a summary.json. Throws FileError when it is none.
+nlohmann::ordered_json parse_summary(const std::string& name, const std::string& text);
+
 /// Reads what there is, also of a run that goes on or was killed. Throws FileError when the folder is missing or
 /// holds no run, or a file in it cannot be read.
 RunFolder read_run_folder(const std::filesystem::path& folder);

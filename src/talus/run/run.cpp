@@ -167,7 +167,7 @@ class Runner {
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
     try {
-      note(report);
+      note(report, state_);
       // from the start of the stage, not by adding: the last step ends exactly on the stage's end
       drift(scene_, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1), work_, state_,
             report);
@@ -316,20 +316,21 @@ class Runner {
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     State copy = state_;
     const StepReport report = kick(scene_, settings_, plan.dt, work_, copy);
-    note(report);
+    note(report, copy);
     // a run that is stopped between two stages has not shown the begin of the second
     const bool at_start = result_.stages.back().steps == 0;
     show({scene_, copy, work_, report, plan, index, at_start, true});
   }
 
-  void note(const StepReport& r) {
+  // @param state  that of the step: its contacts are those of the rows
+  void note(const StepReport& r, const State& state) {
     ++result_.steps;
     result_.iterations += r.solve.iterations;
     result_.most_contacts = std::max(result_.most_contacts, r.contacts);
     result_.most_iterations = std::max(result_.most_iterations, r.solve.iterations);
     if (std::isnan(r.error.worst) || r.error.worst > result_.worst_error) {
       result_.worst_error = r.error.worst;
-      result_.worst_error_time = state_.time;
+      result_.worst_error_time = state.time;
       result_.worst_error_row = r.worst;
     }
     result_.second_solver_steps += r.second_solver;
@@ -339,12 +340,12 @@ class Runner {
     result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));
     result_.largest_energy = std::max(result_.largest_energy, r.energy.largest());
     if (r.closed_share > result_.closed_share) {
-      result_.closed_share = r.closed_share, result_.closed_time = state_.time;
-      result_.closed_row = closed_text(r);
+      result_.closed_share = r.closed_share, result_.closed_time = state.time;
+      result_.closed_row = closed_text(r, state);
     }
     if (r.closed_share > kMostClosed)
       throw NumericalError(
-          fmt::format("step {} at t = {:.9g} s: {}", state_.step, state_.time, result_.closed_row));
+          fmt::format("step {} at t = {:.9g} s: {}", state.step, state.time, result_.closed_row));
     if (!r.failed) return;
     ++result_.failed_steps;
     if (scene_.model.solver.stop_on_failure) {
@@ -353,16 +354,16 @@ class Runner {
           "iterations, allowed {:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a "
           "wider solver.tolerance may help; solver.on_failure = \"continue\" counts such steps instead of "
           "stopping",
-          state_.step, state_.time, r.error.worst, r.solve.iterations, settings_.tolerance, r.worst));
+          state.step, state.time, r.error.worst, r.solve.iterations, settings_.tolerance, r.worst));
     }
   }
 
   // How deep a contact has gone, where, and what would keep it from it.
-  std::string closed_text(const StepReport& r) const {
+  std::string closed_text(const StepReport& r, const State& state) const {
     const auto row = static_cast<size_t>(r.closed_row);
-    const Contact& c = state_.contacts[work_.rows.owner[row].at()];
+    const Contact& c = state.contacts[work_.rows.owner[row].at()];
     const auto a = static_cast<size_t>(c.key.block_a);
-    const Vec2 at = scene_.blocks.centroid[a] + offset_now(state_, a, scene_.blocks.corner(c.key.corner()));
+    const Vec2 at = scene_.blocks.centroid[a] + offset_now(state, a, scene_.blocks.corner(c.key.corner()));
     const JointProperty* joint = c.joint < 0 ? nullptr : &scene_.model.joints[static_cast<size_t>(c.joint)];
     const std::string cure =
         joint && joint->normal_stiffness > 0
@@ -370,7 +371,7 @@ class Runner {
                           joint->normal_stiffness * r.closed_share / 0.01, joint->name)
             : "a smaller time step keeps hard contacts apart";
     return fmt::format("{} at ({:.4g}, {:.4g}) has closed by {:.2g} % of the thinner block{}; {}",
-                       row_name(scene_, state_, work_, row), at.x, at.y, 100 * r.closed_share,
+                       row_name(scene_, state, work_, row), at.x, at.y, 100 * r.closed_share,
                        r.closed_share > kMostClosed
                            ? ", more than a quarter: the geometry is no longer that of the model"
                            : "",

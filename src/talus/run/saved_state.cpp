@@ -128,10 +128,9 @@ std::string folder_of_saved(const std::filesystem::path& saved, const std::strin
 
 namespace {
 
-[[noreturn]] void damaged(const std::filesystem::path& path, const std::string& why) {
-  throw FileError(
-      fmt::format("{}: the saved state is damaged: {}. Go on from another one, or run the model anew",
-                  path.string(), why));
+[[noreturn]] void damaged(const std::string& name, const std::string& why) {
+  throw FileError(fmt::format(
+      "{}: the saved state is damaged: {}. Go on from another one, or run the model anew", name, why));
 }
 
 // Results are finite, but for the limits of steps that have none; what of a State may be endless is judged with
@@ -156,14 +155,18 @@ bool fits(const State& state, const State& fresh) {
 }  // namespace
 
 SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
+  return saved_run_of(path.string(), read_archive(path), scene);
+}
+
+SavedRun saved_run_of(const std::string& name, Archive archive, const Scene& scene) {
   SavedRun saved;
-  saved.archive = read_archive(path);
+  saved.archive = std::move(archive);
   Archive& a = saved.archive;
   if (a.texts["model.hash"] != scene.model.hash) {
     const std::string differ = model_difference(scene.model.text, a.texts["model.text"]);
     throw InputError(fmt::format(
         "{}: error: the state is of another model than {}:\n{}Run the model anew, or put it back as it was\n",
-        path.string(), scene.model.file,
+        name, scene.model.file,
         differ.empty() ? "  no key differs, but comments or a file that the model reads do\n" : differ));
   }
   try {
@@ -179,9 +182,9 @@ SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
     validate(saved.state, scene.blocks);
     validate_loaded(saved.standing, saved.state, scene);
   } catch (const std::logic_error& e) {
-    damaged(path, e.what());
+    damaged(name, e.what());
   } catch (const FileError& e) {
-    damaged(path, e.what());
+    damaged(name, e.what());
   }
   return saved;
 }

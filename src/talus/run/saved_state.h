@@ -34,6 +34,9 @@ struct SavedRun {
 /// another model (with the keys that differ) or of another format.
 SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene);
 
+/// The same of an archive that was read; `name` is for messages.
+SavedRun saved_run_of(const std::string& name, Archive archive, const Scene& scene);
+
 /// Lines that say which keys of two model texts differ: "stage.rest.duration: 1 s, was 2 s"; "" when none.
 std::string model_difference(const std::string& now, const std::string& before);
 

@@ -51,11 +51,11 @@ struct Prepared {
   std::optional<SavedRun> saved;  // of --from
 };
 
-Prepared open_folder(const RunArguments& args, const Scene& scene) {
+Prepared open_folder(const RunArguments& args, const PreparedRun& prepared) {
   if (args.from.empty()) return {ResultFolder(args.folder, args.force), std::nullopt};
   // taken before the state is read: who is about to write into the folder must not do so meanwhile
   Prepared out{ResultFolder::go_on(folder_of_saved(args.from, args.folder)), std::nullopt};
-  out.saved.emplace(read_saved_run(args.from, scene));
+  out.saved.emplace(read_saved_run(args.from, prepared));
   return out;
 }
 
@@ -100,16 +100,21 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
   if (args.from.empty()) check_result_folder(args.folder, args.force);
   auto [findings, prepared] = prepare_model(model);
-  auto [folder, saved] = open_folder(args, prepared.scene);
+  auto [folder, saved] = open_folder(args, prepared);
   if (const std::string stale = folder.stale_lock(); !stale.empty())
     fmt::print(stderr, "talus: note: {}\n", stale);
   const std::string name = folder.path().string();
   const RunNotes notes = notes_of(model, findings);
   std::optional<Recorder> recorder;
-  if (saved)
-    recorder.emplace(prepared.scene, std::move(folder), saved->archive, notes);
-  else
-    recorder.emplace(prepared.scene, std::move(folder), notes);
+  try {
+    if (saved)
+      recorder.emplace(prepared.scene, std::move(folder), saved->archive, notes);
+    else
+      recorder.emplace(prepared.scene, std::move(folder), notes);
+  } catch (const std::exception& e) {
+    Recorder::abandon_begun(name, e.what());
+    throw;
+  }
   recorder->dump_step(args.dump_step);
   State state = saved ? std::move(saved->state) : start_state(prepared.scene);
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;

@@ -20,14 +20,16 @@ struct Outcome {
   std::string text;  // both streams
 };
 
-/// Runs a shell line inside the folder; $talus is the program. The output is kept there as log.txt.
+/// Runs a shell line inside the folder; $talus is the program, or that of TALUS_PROGRAM. The output is kept there as log.txt.
 inline Outcome shell(const Folder& folder, const std::string& line) {
   const std::filesystem::path log = folder / "log.txt";
   // not "cd && line": where the line sends a program to the background with "&", that would take the "cd"
   // along, and in some shells $! would name the shell around both
-  const int status = std::system(fmt::format("talus='{}'; ( cd '{}' || exit 126; {} ) > '{}' 2>&1",
-                                             TALUS_COMMAND, (folder / "").string(), line, log.string())
-                                     .c_str());
+  const char* another = std::getenv("TALUS_PROGRAM");
+  const int status =
+      std::system(fmt::format("talus='{}'; ( cd '{}' || exit 126; {} ) > '{}' 2>&1",
+                              another ? another : TALUS_COMMAND, (folder / "").string(), line, log.string())
+                      .c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text_file(log)};
 }
 

@@ -101,8 +101,8 @@ class StateTaker {
   void take(const std::string& edits) const {
     Archive a = archive_;
     for (size_t i = 0; i + 6 <= edits.size() && i < 60; i += 6) edit(edits.substr(i, 6), a);
+    SavedRun saved = saved_run_of("state.h5", std::move(a), prepared_);
     Scene scene = prepared_.scene;
-    SavedRun saved = saved_run_of("state.h5", std::move(a), scene);
     Loader loader(saved.archive);
     Histories(scene, nullptr).load(loader);
     Stopper stopper(3);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -39,6 +40,10 @@ void limit(__rlimit_resource resource, rlim_t most) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
     std::signal(signal, SIG_DFL);
   std::signal(SIGPIPE, SIG_IGN);
+  // nothing of the parent is kept open, no lock of a folder above all, and nothing outlives it
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (out > 3) close_range(3, static_cast<unsigned>(out) - 1, 0);
+  close_range(static_cast<unsigned>(out) + 1, ~0u, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
   limit(RLIMIT_CORE, 0);
   if (!kWatched) limit(RLIMIT_AS, static_cast<rlim_t>(limits.memory));

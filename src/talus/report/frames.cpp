@@ -155,6 +155,10 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k)
     if (end[k] < static_cast<int>(begin) + 3 || end[k] > corners || id[k] < 0)
       refuse(file, "a block has less than three corners, or no number");
+  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
+    const double area = signed_area(std::span(zero).subspan(begin, static_cast<size_t>(end[k]) - begin));
+    if (!std::isfinite(area) || area == 0) refuse(file, "a block has no area");
+  }
 
   // do the shapes still hold?
   bool same = !shapes_.empty();

@@ -476,6 +476,19 @@ void Recorder::finish(const RunResult& result) {
   folder_.write("summary.json", summary_of(result), Reach::kDisk);
 }
 
+namespace {
+
+// A summary of a run that has ended with an error.
+std::string failed_text(const std::string& summary, const std::string& why, const std::string& state) {
+  auto j = nlohmann::ordered_json::parse(summary);
+  j["status"] = "failed";
+  j["failure"] = why;
+  if (!state.empty()) j["saved_state"] = state;
+  return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
 void Recorder::abandon(const std::string& why) noexcept {
   const std::lock_guard lock(taking_);
   if (ended_) return;
@@ -485,14 +498,18 @@ void Recorder::abandon(const std::string& why) noexcept {
   } catch (const std::exception&) {  // the rows of the last second; the table stays whole
   }
   try {
-    auto summary = nlohmann::ordered_json::parse(held_ ? held_->summary : running_text(scene_));
-    summary["status"] = "failed";
-    summary["failure"] = why;
-    if (!left_.state.empty()) summary["saved_state"] = left_.state;
     folder_.write("summary.json",
-                  summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n",
-                  Reach::kDisk);
+                  failed_text(held_ ? held_->summary : running_text(scene_), why, left_.state), Reach::kDisk);
   } catch (const std::exception&) {  // "running" stays; the command tells why
+  }
+}
+
+void Recorder::abandon_begun(const std::filesystem::path& folder, const std::string& why) noexcept {
+  try {
+    const std::string summary = read_text_file(folder / "summary.json");
+    if (nlohmann::json::parse(summary).value("status", "") != "running") return;
+    ResultFolder::go_on(folder).write("summary.json", failed_text(summary, why, ""), Reach::kDisk);
+  } catch (const std::exception&) {  // the same
   }
 }
 

@@ -154,11 +154,12 @@ bool fits(const State& state, const State& fresh) {
 
 }  // namespace
 
-SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene) {
-  return saved_run_of(path.string(), read_archive(path), scene);
+SavedRun read_saved_run(const std::filesystem::path& path, const PreparedRun& prepared) {
+  return saved_run_of(path.string(), read_archive(path), prepared);
 }
 
-SavedRun saved_run_of(const std::string& name, Archive archive, const Scene& scene) {
+SavedRun saved_run_of(const std::string& name, Archive archive, const PreparedRun& prepared) {
+  const Scene& scene = prepared.scene;
   SavedRun saved;
   saved.archive = std::move(archive);
   Archive& a = saved.archive;
@@ -180,7 +181,7 @@ SavedRun saved_run_of(const std::string& name, Archive archive, const Scene& sce
           fmt::format("the model is cut or supported otherwise by this program ({} blocks now, {} then)",
                       fresh.displacement.size(), saved.state.displacement.size()));
     validate(saved.state, scene.blocks);
-    validate_loaded(saved.standing, saved.state, scene);
+    validate_loaded(saved.standing, saved.state, prepared);
   } catch (const std::logic_error& e) {
     damaged(name, e.what());
   } catch (const FileError& e) {

@@ -32,10 +32,10 @@ struct SavedRun {
 
 /// Reads a saved run of this model. Throws FileError when the file cannot be used, InputError when it is of
 /// another model (with the keys that differ) or of another format.
-SavedRun read_saved_run(const std::filesystem::path& path, const Scene& scene);
+SavedRun read_saved_run(const std::filesystem::path& path, const PreparedRun& prepared);
 
 /// The same of an archive that was read; `name` is for messages.
-SavedRun saved_run_of(const std::string& name, Archive archive, const Scene& scene);
+SavedRun saved_run_of(const std::string& name, Archive archive, const PreparedRun& prepared);
 
 /// Lines that say which keys of two model texts differ: "stage.rest.duration: 1 s, was 2 s"; "" when none.
 std::string model_difference(const std::string& now, const std::string& before);

@@ -24,8 +24,8 @@ bool is_one_of(std::string_view name, const std::array<std::string_view, N>& nam
 }
 
 // Fields of a State by their names in each_field().
-constexpr std::array<std::string_view, 8> kMayBeEndless{"limit", "yield", "most",  "shear_yield",
-                                                        "skin",  "reach", "reuse", "margin"};
+constexpr std::array<std::string_view, 9> kMayBeEndless{
+    "limit", "yield", "most", "shear_yield", "rupture_strain", "skin", "reach", "reuse", "margin"};
 constexpr std::array<std::string_view, 1> kMayBeNoNumber{"anchor"};
 constexpr std::array<std::string_view, 19> kNotNegative{
     "time",    "history_time", "dt_before",       "allowed",     "length",         "margin", "skin",
@@ -95,7 +95,8 @@ void judge_bolts(const State& s, const Scene& scene) {
   }
 }
 
-void judge_standing(const Standing& standing, const State& state, const Scene& scene) {
+void judge_standing(const Standing& standing, const State& state, const PreparedRun& prepared) {
+  const Scene& scene = prepared.scene;
   const std::vector<StageResult>& stages = standing.result.stages;
   promise_loaded(!stages.empty() && stages.size() <= scene.model.stages.size(),
                  "it stands in no stage of the model");
@@ -108,6 +109,14 @@ void judge_standing(const Standing& standing, const State& state, const Scene& s
         std::isfinite(stages[i].begin) && std::isfinite(stages[i].end) && stages[i].begin <= state.time,
         "a stage begins after the state");
   }
+  const StagePlan& plan = prepared.plans[stages.size() - 1];
+  const StageResult& now = stages.back();
+  promise_loaded(now.plan.dt == plan.dt && now.steps <= plan.steps, "its steps are not those of the model");
+  // as drift() counts time
+  const double time = now.begin + plan.dt * static_cast<double>(now.steps);
+  promise_loaded(
+      std::abs(state.time - time) <= 1e-3 * plan.dt,
+      fmt::format("it stands at {} s, and {} steps of its stage end at {} s", state.time, now.steps, time));
   const RunResult& r = standing.result;
   for (const int64_t count : {r.steps, r.failed_steps, r.second_solver_steps, r.iterations})
     promise_loaded(count >= 0, "it has counted less than nothing");
@@ -115,14 +124,14 @@ void judge_standing(const Standing& standing, const State& state, const Scene& s
 
 }  // namespace
 
-void validate_loaded(const Standing& standing, const State& state, const Scene& scene) {
+void validate_loaded(const Standing& standing, const State& state, const PreparedRun& prepared) {
   judge_field("state", state);
   promise_loaded(state.relaxed <= 1, fmt::format("\"relaxed\" is {}", state.relaxed));
   promise_loaded(state.rest.sharper > 0 && state.rest.sharper <= 1,
                  fmt::format("\"sharper\" is {}", state.rest.sharper));
-  judge_contacts(state, scene);
-  judge_bolts(state, scene);
-  judge_standing(standing, state, scene);
+  judge_contacts(state, prepared.scene);
+  judge_bolts(state, prepared.scene);
+  judge_standing(standing, state, prepared);
 }
 
 }  // namespace talus

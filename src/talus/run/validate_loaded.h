@@ -9,7 +9,7 @@ namespace talus {
 /// Throws std::logic_error naming the broken promise: numbers that are not finite (but for limits without end
 /// and anchors of sliding contacts), lengths, stiffnesses and strengths below 0, joints, bolts and stages that
 /// are not the model's.
-/// @pre validate(state, scene.blocks)
-void validate_loaded(const Standing& standing, const State& state, const Scene& scene);
+/// @pre validate(state, prepared.scene.blocks)
+void validate_loaded(const Standing& standing, const State& state, const PreparedRun& prepared);
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "talus/base/child.h"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -56,6 +57,17 @@ TEST_CASE("work in a child: its death is an error with the reason") {
     for (volatile int i = 0;;) i = i + 1;
   };
   CHECK(has(said(turns, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
+}
+
+TEST_CASE("work in a child: it holds nothing of its parent open") {
+  const int mine = dup(0);
+  REQUIRE(mine > 2);
+  const std::string bytes = work_in_child("x", [mine] {
+    return std::string(fcntl(mine, F_GETFD) < 0 ? "closed" : "open") +
+           (fcntl(2, F_GETFD) < 0 ? "" : " but streams");
+  });
+  CHECK(bytes == "closed but streams");
+  close(mine);
 }
 
 #ifndef __SANITIZE_ADDRESS__

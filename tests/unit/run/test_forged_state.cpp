@@ -78,7 +78,7 @@ End go_on(const Saved& saved, const Archive& archive) {
     alarm(60);
     try {
       PreparedRun p = saved.prepare();
-      SavedRun read = read_saved_run(folder / "saved" / saved.state, p.scene);
+      SavedRun read = read_saved_run(folder / "saved" / saved.state, p);
       Recorder recorder(p.scene, ResultFolder::go_on(folder), read.archive);
       Short some(recorder, 15);
       const RunResult r = continue_stages(p.scene, p.plans, read.standing, read.state, some);
@@ -137,8 +137,8 @@ std::string forge(Forgery kind, Random& random, Archive& archive) {
 
 // Limits that a run may have without end, and the anchor of a contact that slides.
 bool may_be_endless(const std::string& what) {
-  for (const char* field :
-       {"anchor", "limit", "yield", "most", "skin", "reach", "reuse", "margin", "dt_bound", "dt_undamped"})
+  for (const char* field : {"anchor", "rupture_strain", "limit", "yield", "most", "skin", "reach", "reuse",
+                            "margin", "dt_bound", "dt_undamped"})
     if (what.find(field) != std::string::npos) return true;
   return false;
 }

@@ -14,6 +14,8 @@
 #include "talus/output/csv.h"
 #include "talus/output/files.h"
 
+#ifndef __SANITIZE_ADDRESS__  // which wants to be preloaded itself
+
 namespace test_faults {
 
 using namespace talus;
@@ -90,6 +92,18 @@ bool run_with_fault(const Folder& f, const std::string& run, const std::string& 
 
 }  // namespace
 
+TEST_CASE("faults: a sample, of a short run") {
+  const Folder f;
+  write_file(f / "bar.toml", content(TALUS_SOURCE_DIR "/examples/impact_bar/impact_bar.toml"));
+  REQUIRE(shell(f, "$talus run bar.toml -q -o whole").code == 0);
+  const auto whole = results_of(f / "whole");
+  Tried tried;
+  for (const char* kind : {"write", "rename", "sync", "open", "new"})
+    for (long n = 1; run_with_fault(f, "$talus run bar.toml -q ", kind, n, whole, tried); n += 1 + n)
+      continue;
+  CHECK(tried.told > 15);
+}
+
 TEST_SUITE("long: faults") {
   TEST_CASE("faults in runs") {
     const Folder f;
@@ -137,3 +151,5 @@ TEST_SUITE("long: faults") {
 }
 
 }  // namespace test_faults
+
+#endif

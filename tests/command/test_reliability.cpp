@@ -287,7 +287,7 @@ TEST_CASE("reliability: crafted texts are refused within seconds") {
   const Folder f;
   const auto refused = [&f](const std::string& line, int code, const std::string& piece) {
     INFO(line);
-    const Outcome o = shell(f, "timeout 20 " + line);
+    const Outcome o = shell(f, "timeout 60 " + line);
     CHECK(o.code == code);
     has(o.text, piece);
     CHECK(o.text.size() < 20000);

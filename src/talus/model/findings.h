@@ -36,6 +36,8 @@ class Findings {
 
   int error_count() const;
   int warning_count() const { return static_cast<int>(list_.size()) - error_count(); }
+  /// More than anyone reads: what takes time to find out for each is left out from here on.
+  bool many() const { return list_.size() > 1000; }
   bool has_errors() const { return error_count() > 0; }
   const std::vector<Finding>& list() const { return list_; }
 

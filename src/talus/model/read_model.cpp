@@ -77,7 +77,7 @@ class ModelReader : private SectionReader {
     for (const auto& [key, node] : source_.root) {
       const std::string name(key.str());
       if (std::find(known.begin(), known.end(), name) == known.end()) {
-        const std::string near = closest_name(name, known);
+        const std::string near = findings_.many() ? "" : closest_name(name, known);
         findings_.error(where_of(key.source()), name,
                         node.is_table() || node.is_array_of_tables() ? "unknown section" : "unknown key",
                         near.empty() ? fmt::format("sections are {}", join_or(sections))

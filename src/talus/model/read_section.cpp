@@ -343,7 +343,7 @@ Fields read_section(const SectionSpec& spec, const toml::table& table, const std
       if (k.name == key.str()) match = &k;
     if (!match) {
       if (spec.shape == SectionShape::kTop) continue;  // sections; the caller knows their names
-      const std::string near = closest_name(key.str(), known);
+      const std::string near = findings.many() ? "" : closest_name(key.str(), known);
       findings.error(where, full(key.str()), "unknown key",
                      near.empty() ? fmt::format("known here: {}", join_or(known))
                                   : fmt::format("did you mean \"{}\"?", near));

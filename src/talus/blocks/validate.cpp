@@ -60,7 +60,7 @@ void validate_candidates(const CandidateList& c, size_t blocks) {
   promise_length_or_none(c.displacement, blocks, "displacements when pairs were listed");
   promise_length(c.strain_part, c.displacement.size(), "strains when pairs were listed");
   promise_length(c.skin, c.displacement.size(), "skins");
-  promise_length(c.reach, c.displacement.size(), "reaches");
+  promise_length_or_none(c.reach, c.displacement.size(), "reaches");  // none: the list is out of date
   const std::vector<int>& begin = c.neighbours.begin;
   if (begin.empty()) return promise(c.neighbours.block.empty(), "neighbours of no block");
   promise_length(begin, blocks + 1, "first neighbours");

@@ -165,6 +165,34 @@ void forge_each(int count) {
 
 }  // namespace
 
+TEST_CASE("states of runs that are stopped at the begin of a stage are taken up") {
+  struct StopsAtStage : Observer {
+    StopsAtStage(const Scene& s, int n) : scene(s), stage(n) {}
+    void at(const Instant&) override {}
+    void stage_begins(const Scene&, int now, const StagePlan&) override { reached = now == stage; }
+    bool stop() override { return reached; }
+    void keep_state(const Standing& standing, const State& state) override {
+      archive = run_archive(scene, standing, state);
+    }
+    const Scene& scene;
+    int stage;
+    bool reached = false;
+    Archive archive;
+  };
+  const std::string model = bolted_bricks();
+  for (int stage = 0; stage < 3; ++stage) {
+    Findings findings("m.toml", model);
+    PreparedRun p = prepare_run("m.toml", model, {}, findings),
+                fresh = prepare_run("m.toml", model, {}, findings);
+    State state = start_state(p.scene);
+    StopsAtStage observer(p.scene, stage);
+    const RunResult r = run_stages(p.scene, p.plans, state, observer);
+    REQUIRE(r.interrupted);
+    REQUIRE(r.stages.size() == static_cast<size_t>(stage + 1));
+    CHECK_NOTHROW(saved_run_of("state", observer.archive, fresh));
+  }
+}
+
 TEST_CASE("forged states: refused or run, without a signal") { forge_each(25); }
 
 TEST_SUITE("long: forged") {

@@ -10,6 +10,7 @@
 
 #include "support/command.h"
 #include "support/record_text.h"
+#include "support/results.h"
 #include "support/shaken_bricks.h"
 #include "talus/output/csv.h"
 #include "talus/output/files.h"
@@ -27,15 +28,6 @@ namespace {
 std::string faulty(const std::string& kind, long n, const std::string& line) {
   return fmt::format("rm -f told; LD_PRELOAD='{}' TALUS_FAULT={}:{} TALUS_FAULT_TOLD=$PWD/told {}",
                      TALUS_FAULTS, kind, n, line);
-}
-
-// Tables and frames; the summary but for its times.
-std::map<std::string, std::string> results_of(const fs::path& folder) {
-  std::map<std::string, std::string> all;
-  for (const char* name :
-       {"histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv", "fields/blocks.pvd"})
-    all[name] = content(folder / name);
-  return all;
 }
 
 struct Tried {
@@ -62,7 +54,7 @@ bool run_with_fault(const Folder& f, const std::string& run, const std::string& 
   CHECK((o.code == 0 || o.code == 4 || o.code == 7));
   if (o.code == 0) {  // what failed was not needed
     ++tried.unharmed;
-    CHECK((results_of(f / "out") == whole));
+    CHECK((results_in(f / "out") == whole));
     return true;
   }
   ++tried.told;
@@ -79,14 +71,11 @@ bool run_with_fault(const Folder& f, const std::string& run, const std::string& 
   const Outcome read = shell(f, "$talus report out && $talus plot out");
   INFO(read.text);
   CHECK(read.code == 0);
-  std::string state;
-  std::error_code ec;
-  for (const auto& e : fs::directory_iterator(f / "out/saved", ec))
-    if (e.path().extension() == ".h5") state = std::max(state, e.path().filename().string());
+  const std::string state = newest_state(f / "out");
   const Outcome on = shell(f, state.empty() ? run + "-o out --force" : run + "--from out/saved/" + state);
   INFO("then ", state, ": ", on.text);
   CHECK(on.code == 0);
-  CHECK((results_of(f / "out") == whole));
+  CHECK((results_in(f / "out") == whole));
   return true;
 }
 
@@ -96,7 +85,7 @@ TEST_CASE("faults: a sample, of a short run") {
   const Folder f;
   write_file(f / "bar.toml", content(TALUS_SOURCE_DIR "/examples/impact_bar/impact_bar.toml"));
   REQUIRE(shell(f, "$talus run bar.toml -q -o whole").code == 0);
-  const auto whole = results_of(f / "whole");
+  const auto whole = results_in(f / "whole");
   Tried tried;
   for (const char* kind : {"write", "rename", "sync", "open", "new"})
     for (long n = 1; run_with_fault(f, "$talus run bar.toml -q ", kind, n, whole, tried); n += 1 + n)
@@ -115,7 +104,7 @@ TEST_SUITE("long: faults") {
     for (const char* model : {"bar", "bricks", "bolts", "tunnel"}) {
       const std::string run = fmt::format("$talus run {}.toml -q ", model);
       REQUIRE(shell(f, run + "-o whole").code == 0);
-      const auto whole = results_of(f / "whole");
+      const auto whole = results_in(f / "whole");
       // all of the first ones, then ever fewer of them
       for (const char* kind : {"write", "rename", "sync", "open", "new"})
         for (long n = 1; run_with_fault(f, run, kind, n, whole, tried); n += 1 + n / 5) continue;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "support/command.h"
+#include "support/results.h"
 #include "talus/output/csv.h"
 #include "talus/output/files.h"
 
@@ -21,17 +22,6 @@ using namespace talus::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::map<std::string, std::string> results_of(const fs::path& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = entry.path().lexically_relative(folder).string();
-    const bool compared = entry.path().extension() == ".csv" || entry.path().extension() == ".svg" ||
-                          name.rfind("fields/", 0) == 0;
-    if (compared && name.rfind("plots/", 0) != 0) all[name] = content(entry.path());
-  }
-  return all;
-}
 
 struct Count {
   int full = 0, room = 0, from_state = 0, told_in_summary = 0;
@@ -48,7 +38,7 @@ void try_size(const Folder& f, const std::string& run, int kilobytes,
   CHECK((o.code == 0 || o.code == 4));
   if (o.code == 0) {
     ++count.room;
-    CHECK((results_of(f / "disk/out") == whole));
+    CHECK((results_in(f / "disk/out") == whole));
     return;
   }
   ++count.full;
@@ -69,17 +59,13 @@ void try_size(const Folder& f, const std::string& run, int kilobytes,
   const Outcome read = shell(f, "$talus report disk/out && $talus plot disk/out");
   INFO(read.text);
   CHECK(read.code == 0);
-  std::string state;
-  fs::file_time_type when;
-  for (const auto& e : fs::directory_iterator(out / "saved", ec))
-    if (e.path().extension() == ".h5" && (state.empty() || fs::last_write_time(e.path()) > when))
-      state = e.path().filename().string(), when = fs::last_write_time(e.path());
+  const std::string state = newest_state(out);
   count.from_state += !state.empty();
   const Outcome on =
       shell(f, run + (state.empty() ? "-o disk/out --force" : "--from disk/out/saved/" + state));
   INFO("then ", state, ": ", on.text);
   CHECK(on.code == 0);
-  CHECK((results_of(out) == whole));
+  CHECK((results_in(out) == whole));
 }
 
 }  // namespace
@@ -98,7 +84,7 @@ TEST_SUITE("long: disk") {
     write_file(f / "m.toml", content(TALUS_SOURCE_DIR "/examples/staged_tunnel/staged_tunnel.toml"));
     const std::string run = "$talus run m.toml -q --set output.save_interval=0.1 ";
     REQUIRE(shell(f, run + "-o disk/out").code == 0);
-    const auto whole = results_of(f / "disk/out");
+    const auto whole = results_in(f / "disk/out");
     double bytes = 0;
     for (const auto& e : fs::recursive_directory_iterator(f / "disk/out"))
       if (e.is_regular_file()) bytes += static_cast<double>((e.file_size() + 4095) / 4096 * 4096);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/command.h"
+#include "support/results.h"
 #include "support/shaken_bricks.h"
 #include "talus/base/clock.h"
 #include "talus/base/random.h"
@@ -60,37 +61,6 @@ std::vector<Example> examples() {
           {"many bricks", many_bricks(), " --set output.save_interval=0.2", 0.1}};
 }
 
-// Tables and the summary but for times of the clock; frames and pictures.
-std::map<std::string, std::string> results_of(const fs::path& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = entry.path().lexically_relative(folder).string();
-    if (!entry.is_regular_file() || name.rfind("saved/", 0) == 0 || name.rfind("plots/", 0) == 0) continue;
-    if (name == "talus_manifest.txt" || name == "report.html") continue;
-    std::string text = content(entry.path());
-    if (name == "summary.json")
-      for (const char* key : {"\"wall_time", "\"cpu_time"})
-        if (const size_t at = text.find(key); at != std::string::npos)
-          text.erase(at, text.find('\n', at) - at);
-    all[name] = text;
-  }
-  return all;
-}
-
-std::string newest_state(const fs::path& folder) {
-  std::vector<fs::path> list;
-  std::error_code ec;
-  for (const auto& entry : fs::directory_iterator(folder / "saved", ec))
-    if (entry.path().extension() == ".h5") list.push_back(entry.path());
-  if (list.empty()) return "";
-  return std::max_element(list.begin(), list.end(),
-                          [](const fs::path& a, const fs::path& b) {
-                            return fs::last_write_time(a) < fs::last_write_time(b);
-                          })
-      ->filename()
-      .string();
-}
-
 // Rows and frames of a killed run are the first ones of a whole one.
 void check_beginning(const fs::path& folder, const std::map<std::string, std::string>& whole) {
   for (const char* name : {"histories.csv", "steps.csv"}) {
@@ -119,7 +89,7 @@ void kill_example(const Example& e, int kills, uint64_t seed, Count& count) {
   const Outcome first = shell(f, run + "-o whole");
   REQUIRE((first.code == 0 || first.code == 8));
   const double took = wall_now() - begin;
-  const auto whole = results_of(f / "whole");
+  const auto whole = results_in(f / "whole");
   Random random(seed);
   std::string from;
   for (int done = 0; done < kills;) {
@@ -133,7 +103,7 @@ void kill_example(const Example& e, int kills, uint64_t seed, Count& count) {
     if (!from.empty()) ++count.gone_on;
     if (o.code != 137) {  // it was quicker
       ++count.ended;
-      const auto now = results_of(f / "out");
+      const auto now = results_in(f / "out");
       const bool all = now == whole;
       count.same += all;
       CHECK(all);
@@ -163,7 +133,7 @@ void kill_example(const Example& e, int kills, uint64_t seed, Count& count) {
     INFO(last.text);
     CHECK((last.code == 0 || last.code == 8));
     ++count.ended;
-    const bool all = results_of(f / "out") == whole;
+    const bool all = results_in(f / "out") == whole;
     count.same += all;
     CHECK(all);
   }

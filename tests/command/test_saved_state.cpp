@@ -7,7 +7,9 @@
 #include <fstream>
 #include <map>
 
+#include "support/closing_jaws.h"
 #include "support/command.h"
+#include "support/results.h"
 #include "support/shaken_bricks.h"
 #include "talus/base/clock.h"
 #include "talus/base/random.h"
@@ -29,24 +31,6 @@ std::string bolted_model() { return bolted_bricks(); }
 
 void write_model(const Folder& folder, const std::string& text = kModel) {
   std::ofstream(folder / "model.toml") << text;
-}
-
-// Every result file by its name; of the summary what does not depend on the clock.
-std::map<std::string, std::string> results(const fs::path& folder) {
-  std::map<std::string, std::string> all;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = entry.path().lexically_relative(folder).string();
-    if (!entry.is_regular_file() || name.rfind("saved/step_", 0) == 0) continue;
-    if (entry.path().extension() == ".h5" || entry.path().extension() == ".part") continue;
-    if (name == "talus_manifest.txt") continue;  // files that were written again are noted again
-    std::string text = read_text_file(entry.path().string());
-    if (name == "summary.json")
-      for (const char* key : {"\"wall_time", "\"cpu_time"})
-        if (const size_t at = text.find(key); at != std::string::npos)
-          text.erase(at, text.find('\n', at) - at);
-    all[name] = text;
-  }
-  return all;
 }
 
 void same(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b) {
@@ -90,7 +74,7 @@ void readable(const fs::path& folder, const std::map<std::string, std::string>& 
 // Runs model.toml, then goes on from every state saved on the way. The results of the whole run.
 std::map<std::string, std::string> goes_on_from_each_state(const Folder& folder) {
   REQUIRE(shell(folder, "$talus run model.toml -o whole -q").code == 0);
-  const auto whole = results(folder / "whole");
+  const auto whole = results_in(folder / "whole");
   const auto states = saved_in(folder / "whole");
   REQUIRE(states.size() >= 4);  // three ends of stages, and in between
   for (const fs::path& state : states) {
@@ -101,7 +85,7 @@ std::map<std::string, std::string> goes_on_from_each_state(const Folder& folder)
         folder, fmt::format("$talus run model.toml --from again/saved/{} -q", state.filename().string()));
     INFO(o.text);
     CHECK(o.code == 0);
-    same(whole, results(folder / "again"));
+    same(whole, results_in(folder / "again"));
   }
   return whole;
 }
@@ -156,7 +140,7 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
   const double begin = wall_now();
   REQUIRE(shell(folder, "$talus run model.toml -o whole -q").code == 0);
   double length = wall_now() - begin;  // [s] of wall time
-  const auto whole = results(folder / "whole");
+  const auto whole = results_in(folder / "whole");
 
   // A run that was killed goes on from its last state, is killed again, and so on until one comes to its
   // end, with the results of the run that was left alone.
@@ -175,7 +159,7 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
     gone_on += !from.empty();
     kills += o.code == kKilled;
     if (o.code == 0) {
-      same(whole, results(folder / "killed"));
+      same(whole, results_in(folder / "killed"));
       ++ended;
       if (from.empty()) length = wall_now() - started;  // the machine may be busier or idler by now
     } else if (fs::exists(folder / "killed/steps.csv")) {
@@ -187,7 +171,7 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
   }
   if (!from.empty()) {
     REQUIRE(shell(folder, "$talus run model.toml -q --from " + from).code == 0);
-    same(whole, results(folder / "killed"));
+    same(whole, results_in(folder / "killed"));
   }
   CHECK(kills == 50);
   CHECK(gone_on >= 10);
@@ -196,46 +180,8 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
 }
 
 TEST_CASE("command run: a run that fails leaves its last good state, from which it comes to the same end") {
-  // a block between two jaws: there is no room for what the equations ask for
   Folder folder;
-  write_model(folder, R"model(talus = 1
-[material.r]
-density = 2700
-young = "5 GPa"
-poisson = 0.25
-[joint.f]
-friction_angle = "35 deg"
-[contact]
-joint = "f"
-[history.v]
-time = [0, 10]
-value = [0.05, 0.05]
-[history.w]
-time = [0, 10]
-value = [-0.05, -0.05]
-[[block]]
-name = "left"
-polygon = [[-1, 0], [-0.1, 0], [-0.1, 1], [-1, 1]]
-material = "r"
-kind = "driven"
-motion_x = { velocity = "v" }
-[[block]]
-name = "right"
-polygon = [[1.1, 0], [2, 0], [2, 1], [1.1, 1]]
-material = "r"
-kind = "driven"
-motion_x = { velocity = "w" }
-[[block]]
-name = "between"
-polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
-material = "r"
-kind = "rigid"
-[[stage]]
-name = "close"
-kind = "dynamic"
-duration = "10 s"
-time_step = "0.5 ms"
-)model");
+  write_model(folder, closing_jaws(0.1));
   const Outcome o = shell(folder, "$talus run model.toml -o whole -q");
   INFO(o.text);
   CHECK(o.code == 5);
@@ -245,9 +191,9 @@ time_step = "0.5 ms"
   const int step = std::atoi(name.c_str() + 5);
   CHECK(step > 0);
   CHECK(step <= 4000);  // the jaws touch after 2 s
-  const auto whole = results(folder / "whole");
+  const auto whole = results_in(folder / "whole");
   CHECK(shell(folder, "$talus run model.toml --from whole/saved/" + name + " -q").code == 5);
-  same(whole, results(folder / "whole"));
+  same(whole, results_in(folder / "whole"));
 }
 
 TEST_CASE("command run --from: what cannot go on is refused") {

@@ -18,6 +18,19 @@ int Descriptor::done() {
   return close(number) == 0 ? 0 : errno;
 }
 
+int write_all(int descriptor, std::string_view bytes, size_t& done) {
+  for (done = 0; done < bytes.size();) {
+    const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
+    if (n > 0)
+      done += static_cast<size_t>(n);
+    else if (n == 0)
+      return EIO;
+    else if (errno != EINTR)
+      return errno;
+  }
+  return 0;
+}
+
 std::string special_kind(mode_t mode) {
   if (S_ISDIR(mode)) return "a folder";
   if (S_ISLNK(mode)) return "a link";

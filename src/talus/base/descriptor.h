@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <string>
+#include <string_view>
 
 namespace talus {
 
@@ -21,6 +22,10 @@ class Descriptor {
  private:
   int number_;
 };
+
+/// Writes all bytes where the descriptor stands, going on where a signal interrupted. 0 or an error number;
+/// `done` is how many bytes were written.
+int write_all(int descriptor, std::string_view bytes, size_t& done);
 
 /// "a folder", "a link", "a pipe", "a socket", "a device"; "" for a regular file.
 std::string special_kind(mode_t mode);

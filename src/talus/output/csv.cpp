@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,21 +34,9 @@ CsvWriter::CsvWriter(fs::path path, const std::vector<std::string>& columns) : p
 }
 
 CsvWriter::CsvWriter(fs::path path, int64_t size) : path_(std::move(path)), size_(size) {
-  if (const std::string kind = unfit_target(path_); !kind.empty())
-    throw FileError(
-        fmt::format("{}: is {}: going on would write into what is behind it", path_.string(), kind));
+  check_continued(path_, size);
   file_ = Descriptor(open(path_.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC));
   if (file_ < 0) fail_file(path_, "continued", errno);
-  struct stat there {};
-  if (fstat(file_, &there) != 0) fail_file(path_, "continued", errno);
-  if (there.st_nlink > 1)
-    throw FileError(fmt::format(
-        "{}: is the same file under {} names (hard links): going on would change all. Copy it first",
-        path_.string(), there.st_nlink));
-  if (size < 0 || there.st_size < size)
-    throw FileError(
-        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
-                    path_.string(), there.st_size, size));
   if (ftruncate(file_, size) != 0) fail_file(path_, "cut back", errno);
   if (lseek(file_, size, SEEK_SET) != size) fail_file(path_, "continued", errno);
 }

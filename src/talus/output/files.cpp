@@ -57,22 +57,25 @@ void fail_file(const fs::path& path, const std::string& doing, int error) {
                               full ? "; free some space and run again" : ""));
 }
 
-int write_all(int descriptor, std::string_view bytes, size_t& done) {
-  for (done = 0; done < bytes.size();) {
-    const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
-    if (n > 0)
-      done += static_cast<size_t>(n);
-    else if (n == 0)
-      return EIO;
-    else if (errno != EINTR)
-      return errno;
-  }
-  return 0;
-}
-
 std::string unfit_target(const fs::path& path) {
   struct stat there {};
   return lstat(path.c_str(), &there) == 0 ? special_kind(there.st_mode) : "";
+}
+
+void check_continued(const fs::path& path, int64_t size) {
+  struct stat there {};
+  if (lstat(path.c_str(), &there) != 0) fail_file(path, "continued", errno);
+  if (const std::string kind = special_kind(there.st_mode); !kind.empty())
+    throw FileError(
+        fmt::format("{}: is {}: going on would write into what is behind it", path.string(), kind));
+  if (there.st_nlink > 1)
+    throw FileError(fmt::format(
+        "{}: is the same file under {} names (hard links): going on would change all. Copy it first",
+        path.string(), there.st_nlink));
+  if (size < 0 || there.st_size < size)
+    throw FileError(
+        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
+                    path.string(), there.st_size, size));
 }
 
 void write_file(const fs::path& path, std::string_view content, Reach reach) {

@@ -2,6 +2,7 @@
 // Writing result files so that a reader never meets half a file, nothing but a regular file is replaced, and
 // every failure is reported.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -34,8 +35,8 @@ std::string unfit_target(const std::filesystem::path& path);
 /// Throws FileError: "PATH: cannot be DOING: cause", with what helps when the disk is full.
 [[noreturn]] void fail_file(const std::filesystem::path& path, const std::string& doing, int error);
 
-/// Writes all bytes to a descriptor, going on where a signal interrupted. 0 or an error number; `done` is how
-/// many bytes were written.
-int write_all(int descriptor, std::string_view bytes, size_t& done);
+/// Throws FileError unless writing can go on behind the first `size` bytes of what is at the path: a regular
+/// file, under this name alone, at least that long.
+void check_continued(const std::filesystem::path& path, int64_t size);
 
 }  // namespace talus

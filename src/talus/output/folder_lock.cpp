@@ -93,12 +93,6 @@ bool same_file(int file, const fs::path& path) {
   return fstat(file, &a) == 0 && lstat(path.c_str(), &b) == 0 && a.st_ino == b.st_ino && a.st_dev == b.st_dev;
 }
 
-[[noreturn]] void in_use(const fs::path& path, const std::string& who) {
-  throw FileError(
-      fmt::format("{}: is in use: {} writes into it. Wait until it has ended, or give another folder",
-                  path.parent_path().string(), who));
-}
-
 Descriptor open_lock(const fs::path& path) {
   if (const std::string kind = unfit_target(path); !kind.empty())
     throw FileError(fmt::format("{}: is {}, where the lock of the folder should be", path.string(), kind));
@@ -110,13 +104,13 @@ Descriptor open_lock(const fs::path& path) {
     if (!same_file(file, path)) continue;
     const std::optional<Holder> holder = read_holder(path);
     const std::string who = holder ? holder->text() : "another process";
-    if (held == Grip::kTaken) in_use(path, who);
+    if (held == Grip::kTaken) fail_in_use(path.parent_path(), who);
     if (holder && holder->host != this_host())
       throw FileError(
           fmt::format("{}: says that {} writes into this folder, which cannot be seen from here. When that "
                       "process has ended, remove the file",
                       path.string(), who));
-    if (held == Grip::kUnknown && holder && lives(*holder)) in_use(path, who);
+    if (held == Grip::kUnknown && holder && lives(*holder)) fail_in_use(path.parent_path(), who);
     return file;
   }
   throw FileError(fmt::format("{}: cannot be locked: others come and go", path.string()));
@@ -144,6 +138,12 @@ FolderLock::~FolderLock() { unlink(path_.c_str()); }
 
 void FolderLock::free_reserve() {
   (void)(ftruncate(file_, static_cast<off_t>(size_)) == 0);  // then the last word may find no room
+}
+
+void fail_in_use(const fs::path& folder, const std::string& user) {
+  throw FileError(
+      fmt::format("{}: is in use: {} writes into it. Wait until it has ended, or give another folder",
+                  folder.string(), user));
 }
 
 std::string user_of_folder(const fs::path& folder) {

@@ -19,19 +19,6 @@ constexpr std::string_view kCollectionHead =
     "byte_order=\"LittleEndian\">\n<Collection>\n";
 constexpr std::string_view kCollectionTail = "</Collection>\n</VTKFile>\n";
 
-// 0 or an error number.
-int write_at(int file, std::string_view bytes, off_t at) {
-  while (!bytes.empty()) {
-    const ssize_t n = pwrite(file, bytes.data(), bytes.size(), at);
-    if (n == 0) return EIO;
-    if (n < 0 && errno != EINTR) return errno;
-    if (n < 0) continue;
-    bytes.remove_prefix(static_cast<size_t>(n));
-    at += n;
-  }
-  return 0;
-}
-
 std::string frame_name(const std::string& name, size_t i, const std::string& extension) {
   return fmt::format("{}_{:06}.{}", name, i, extension);
 }
@@ -78,11 +65,17 @@ void FrameSeries::begin_collection() {
   if (collection_ < 0) fail_file(path, "continued", errno);
 }
 
+// Text and the closing tags behind the entries there are; 0 or an error number.
+int FrameSeries::write_behind(const std::string& text) {
+  if (lseek(collection_, end_, SEEK_SET) != end_) return errno;
+  size_t done = 0;
+  return write_all(collection_, text + std::string(kCollectionTail), done);
+}
+
 void FrameSeries::add_entry(size_t i) {
   const std::string text = entry(i);
-  if (const int error = write_at(collection_, text + std::string(kCollectionTail), end_); error != 0) {
-    // what was there has its room still
-    (void)write_at(collection_, kCollectionTail, end_);
+  if (const int error = write_behind(text); error != 0) {
+    (void)write_behind("");  // what was there has its room still
     (void)(ftruncate(collection_, end_ + static_cast<off_t>(kCollectionTail.size())) == 0);
     fail_file(folder_.path() / "fields" / (name_ + ".pvd"), "written", error);
   }

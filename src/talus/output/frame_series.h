@@ -27,6 +27,7 @@ class FrameSeries {
   std::string entry(size_t i) const;
   void begin_collection();
   void add_entry(size_t i);
+  int write_behind(const std::string& text);
 
   ResultFolder& folder_;
   std::string name_, extension_;

@@ -199,10 +199,7 @@ std::optional<ResultKind> check_replaced(const fs::path& folder, bool force, Res
   });
   if (empty) return std::nullopt;
   if (!locked)
-    if (const std::string user = user_of_folder(folder); !user.empty())
-      throw FileError(
-          fmt::format("{}: is in use: {} writes into it. Wait until it has ended, or give another folder",
-                      folder.string(), user));
+    if (const std::string user = user_of_folder(folder); !user.empty()) fail_in_use(folder, user);
   if (!force)
     throw FileError(
         fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "

@@ -103,11 +103,7 @@ std::string table_then(ResultFolder& folder, const char* name, int64_t size) {
     return {};
   }
   std::string text = read_text_file(path);
-  if (size < 0 || static_cast<int64_t>(text.size()) < size)
-    throw FileError(
-        fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
-                    path.string(), text.size(), size));
-  text.resize(static_cast<size_t>(size));
+  text.resize(static_cast<size_t>(size));  // check_tables(): it is that long
   folder.write(name, text);
   return text;
 }
@@ -134,19 +130,8 @@ void check_tables(const std::filesystem::path& folder, const Archive& saved) {
   for (const auto& [name, size] : {std::pair("histories.csv", kHistorySize),
                                    std::pair("steps.csv", kStepsSize), std::pair("joints.csv", kJointsSize),
                                    std::pair("bolts.csv", kBoltsSize), std::pair("slips.csv", kSlipsSize)}) {
-    const std::filesystem::path path = folder / name;
     const int64_t then = size_in(saved, size);
-    if (then == 0) continue;
-    if (const std::string kind = unfit_target(path); !kind.empty())
-      throw FileError(
-          fmt::format("{}: is {}: going on would write into what is behind it", path.string(), kind));
-    std::error_code ec;
-    const auto now = static_cast<int64_t>(std::filesystem::file_size(path, ec));
-    if (ec) throw FileError(fmt::format("{}: cannot be continued: {}", path.string(), ec.message()));
-    if (then < 0 || now < then)
-      throw FileError(
-          fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
-                      path.string(), now, then));
+    if (then != 0) check_continued(folder / name, then);
   }
 }
 
@@ -202,17 +187,17 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved
   find_saved();
 }
 
-// Clocks and sums of the results. The sizes of the tables are read where these are opened.
+// The sizes of the tables are read where these are opened.
 template <class X, class Self>
-void Recorder::exchange(X& x, Self& self) {
-  x("recorder.next_history", self.next_history_), x("recorder.next_steps", self.next_steps_);
-  x("recorder.next_frame", self.next_frame_), x("recorder.worst", self.worst_);
-  x("recorder.dumped_failure", self.dumped_failure_);
+void Recorder::Due::exchange(X& x, Self& due) {
+  x("recorder.next_history", due.history), x("recorder.next_steps", due.steps);
+  x("recorder.next_frame", due.frame), x("recorder.worst", due.worst);
+  x("recorder.dumped_failure", due.dumped_failure);
 }
 
 void Recorder::load(const Archive& saved) {
   Loader from(saved);
-  exchange(from, *this);
+  Due::exchange(from, due_);
   joint_summary_.load(from, "recorder.joints", scene_);
   histories_.load(from);
   if (auditor_) auditor_->load(from);
@@ -230,17 +215,11 @@ ResultFolder Recorder::checked(ResultFolder folder, const Scene& scene, const Ar
     Histories(scene, nullptr).load(from);
     JointSummary().load(from, "recorder.joints", scene);
     if (scene.model.output.audit) Auditor(scene).load(from);
-    std::vector<double> worst;
-    from("recorder.worst", worst);
-    if (!worst.empty() && worst.size() != step_columns().size())
-      throw FileError(fmt::format("it has {} values of a step, not {}", worst.size(), step_columns().size()));
-    for (const char* clock : {"recorder.next_history", "recorder.next_steps", "recorder.next_frame"}) {
-      double next = 0;
-      from(clock, next);
-      if (!std::isfinite(next)) throw FileError(fmt::format("\"{}\" is not finite", clock));
-    }
-    bool dumped = false;
-    from("recorder.dumped_failure", dumped);
+    Due due;
+    Due::exchange(from, due);
+    if (!due.worst.empty() && due.worst.size() != step_columns().size())
+      throw FileError(
+          fmt::format("it has {} values of a step, not {}", due.worst.size(), step_columns().size()));
   } catch (const FileError& e) {
     throw FileError(fmt::format(
         "the saved state is damaged: {}. Go on from another one, or run the model anew", e.what()));
@@ -279,7 +258,7 @@ void Recorder::hold_state(const Standing& standing, const State& state) {
 Archive Recorder::archive_of(const Standing& standing, const State& state) const {
   Archive archive = run_archive(scene_, standing, state);
   Saver to(archive);
-  exchange(to, *this);
+  Due::exchange(to, due_);
   joint_summary_.save(to, "recorder.joints");
   histories_.save(to);
   if (auditor_) auditor_->save(to);
@@ -303,14 +282,18 @@ void Recorder::flush_tables() {
 }
 
 // A state counts on the rows and frames before it: they reach the disk first.
-void Recorder::write_step(int64_t step, const Archive& archive) {
+std::filesystem::path Recorder::write_saved(const std::string& name, const Archive& archive) {
   flush_tables();
   folder_.make_folder("saved");
-  const std::string name = fmt::format("saved/step_{:09}.h5", step);
-  const auto path = folder_.note(name);
+  auto path = folder_.note("saved/" + name);
   sync_files_of(folder_.path());
   write_archive(path, archive);
-  left_.state = name;
+  left_.state = "saved/" + name;
+  return path;
+}
+
+void Recorder::write_step(int64_t step, const Archive& archive) {
+  const auto path = write_saved(fmt::format("step_{:09}.h5", step), archive);
   std::erase(saved_, path);
   saved_.push_back(path);
   std::error_code ec;
@@ -325,17 +308,10 @@ void Recorder::keep_state(const Standing& standing, const State& state) {
   const std::lock_guard lock(taking_);
   if (ended_) return;
   const Archive archive = archive_of(standing, state);
-  if (standing.between) {
-    flush_tables();
-    folder_.make_folder("saved");
-    const std::string name = fmt::format("saved/stage_{:02}.h5", standing.result.stages.size());
-    const auto path = folder_.note(name);
-    sync_files_of(folder_.path());
-    write_archive(path, archive);
-    left_.state = name;
-  } else {
+  if (standing.between)
+    write_saved(fmt::format("stage_{:02}.h5", standing.result.stages.size()), archive);
+  else
     write_step(state.step, archive);
-  }
   saved_step_ = state.step;
   last_saved_ = wall_now();
 }
@@ -354,14 +330,14 @@ void Recorder::at(const Instant& i) {
   if (ended_) return;
   const OutputInput& out = scene_.model.output;
   const double t = i.state.time, dt = i.plan.dt;
-  histories_.at(i, is_due(t, dt, out.history_interval, next_history_) || i.last);
+  histories_.at(i, is_due(t, dt, out.history_interval, due_.history) || i.last);
   record_step(i);
-  const bool failure = i.report.failed && !dumped_failure_;
+  const bool failure = i.report.failed && !due_.dumped_failure;
   if (failure || i.state.step == dump_step_) {
     write_dump(i);
-    dumped_failure_ = dumped_failure_ || failure;
+    due_.dumped_failure = due_.dumped_failure || failure;
   }
-  const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, next_frame_);
+  const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, due_.frame);
   if (frame || i.stage_start || i.last) write_frame(i);
   if (auditor_) auditor_->at(i, frame || i.stage_start || i.last);
   // a stage ends at the instant at which the next one starts
@@ -408,16 +384,16 @@ void Recorder::record_step(const Instant& i) {
   // failures add up
   constexpr size_t kFirstWorst = 4, kLastWorst = 8, kFailed = 9;
   std::vector<double> row = step_row(i);
-  if (!worst_.empty()) {
-    for (size_t c = kFirstWorst; c <= kLastWorst; ++c) row[c] = std::max(row[c], worst_[c]);
-    row[kFailed] += worst_[kFailed];
+  if (!due_.worst.empty()) {
+    for (size_t c = kFirstWorst; c <= kLastWorst; ++c) row[c] = std::max(row[c], due_.worst[c]);
+    row[kFailed] += due_.worst[kFailed];
   }
-  if (is_due(i.state.time, i.plan.dt, scene_.model.output.steps_interval, next_steps_) || i.last ||
+  if (is_due(i.state.time, i.plan.dt, scene_.model.output.steps_interval, due_.steps) || i.last ||
       i.report.failed) {
     steps_file_.append(row);
-    worst_.clear();
+    due_.worst.clear();
   } else {
-    worst_ = std::move(row);
+    due_.worst = std::move(row);
   }
 }
 

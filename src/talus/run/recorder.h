@@ -80,12 +80,21 @@ class Recorder : public Observer {
     std::string summary;  // of a run that is interrupted there
   };
 
-  template <class X, class Self>
-  static void exchange(X& x, Self& self);
+  // When what is written next, and what waits for it.
+  struct Due {
+    double history = 0, steps = 0, frame = 0;  // time [s]
+    std::vector<double> worst;                 // of steps.csv columns since its last row
+    bool dumped_failure = false;
+
+    template <class X, class Self>
+    static void exchange(X& x, Self& due);
+  };
+
   static ResultFolder checked(ResultFolder folder, const Scene& scene, const Archive& saved);
   void load(const Archive& saved);
   Archive archive_of(const Standing& standing, const State& state) const;
   std::string summary_of(const RunResult& result) const;
+  std::filesystem::path write_saved(const std::string& name, const Archive& archive);
   void write_step(int64_t step, const Archive& archive);
   void write_held();
   void flush_tables();
@@ -107,10 +116,9 @@ class Recorder : public Observer {
   std::optional<Auditor> auditor_;
   FrameSeries block_frames_, contact_frames_, bolt_frames_;
   std::string bolt_table_;  // bolts.csv so far
-  double next_history_ = 0, next_steps_ = 0, next_frame_ = 0;
+  Due due_;
   std::string joints_, slips_;  // joints.csv and slips.csv so far
   JointSummary joint_summary_;
-  std::vector<double> worst_;  // of steps.csv columns since its last row
   double last_flush_ = 0, last_saved_ = 0;
   int64_t saved_step_ = -1;
   std::vector<std::filesystem::path> saved_;  // between stages
@@ -119,7 +127,6 @@ class Recorder : public Observer {
   Left left_;
   double held_at_ = 0, holding_took_ = 0;  // wall time [s]
   int64_t dump_step_ = -1;
-  bool dumped_failure_ = false;
 };
 
 /// Text of summary.json.

@@ -10,24 +10,18 @@
 #include <thread>
 #include <vector>
 
-#include "talus/base/error.h"
+#include "support/file_errors.h"
 
 namespace test_child {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
 std::string said(const std::function<std::string()>& work, const ChildLimits& limits = {}) {
-  try {
-    work_in_child("map.gpkg", work, limits);
-    return "";
-  } catch (const FileError& e) {
-    return e.what();
-  }
+  return error_of([&] { work_in_child("map.gpkg", work, limits); });
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -40,23 +34,23 @@ TEST_CASE("work in a child: its bytes come back, whatever they are and how many"
 }
 
 TEST_CASE("work in a child: its death is an error with the reason") {
-  CHECK(has(said([]() -> std::string {
-              raise(SIGSEGV);
-              return "";
-            }),
-            "map.gpkg: the library that reads it has crashed"));
-  CHECK(has(said([]() -> std::string { _exit(3); }), "map.gpkg: reading it failed"));
-  CHECK(has(said([]() -> std::string { throw std::runtime_error("x"); }), "map.gpkg: reading it failed"));
-  CHECK(has(said([]() -> std::string { throw std::bad_alloc(); }), "MiB of memory"));
+  CHECK(holds(said([]() -> std::string {
+                raise(SIGSEGV);
+                return "";
+              }),
+              "map.gpkg: the library that reads it has crashed"));
+  CHECK(holds(said([]() -> std::string { _exit(3); }), "map.gpkg: reading it failed"));
+  CHECK(holds(said([]() -> std::string { throw std::runtime_error("x"); }), "map.gpkg: reading it failed"));
+  CHECK(holds(said([]() -> std::string { throw std::bad_alloc(); }), "MiB of memory"));
   const auto sleeps = []() -> std::string {
     std::this_thread::sleep_for(std::chrono::seconds(100));
     return "";
   };
-  CHECK(has(said(sleeps, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
+  CHECK(holds(said(sleeps, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
   const auto turns = []() -> std::string {
     for (volatile int i = 0;;) i = i + 1;
   };
-  CHECK(has(said(turns, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
+  CHECK(holds(said(turns, {.seconds = 1}), "map.gpkg: reading it took more than 1 s"));
 }
 
 TEST_CASE("work in a child: it holds nothing of its parent open") {
@@ -77,8 +71,8 @@ TEST_CASE("work in a child: no more memory than it may have") {
     for (int i = 0; i < 100; ++i) all.emplace_back(size_t{64} << 20, 'x');
     return "";
   };
-  CHECK(has(said(grows, {.memory = size_t{1} << 30}),
-            "map.gpkg: reading it took more than 1024 MiB of memory"));
+  CHECK(holds(said(grows, {.memory = size_t{1} << 30}),
+              "map.gpkg: reading it took more than 1024 MiB of memory"));
 }
 #endif
 

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "support/file_errors.h"
 #include "support/folder.h"
 #include "talus/base/error.h"
 
@@ -30,22 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace talus;
 using namespace talus::test;
-
-void put(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-// Text of the FileError that `action` must throw.
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const FileError& e) {
-    CHECK(e.code() == kExitFile);
-    return e.what();
-  }
-  FAIL("no FileError");
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -130,15 +115,15 @@ TEST_CASE("read_csv names file and line of what it cannot read") {
     put(path, text);
     return error_of([&] { read_csv(path); });
   };
-  CHECK(has(message("a,b\n1,2\n# note\n3,x4\n"), path.string() + ":4: \"x4\" is not a number"));
-  CHECK(has(message("a,b\n1,2\n3,4 m\n"), path.string() + ":3: \"4 m\" is not a number"));
-  CHECK(has(message("a,b\n1,\n"), path.string() + ":2: \"\" is not a number"));
-  CHECK(has(message("a,b\n1\n"), path.string() + ":2: has 1 cells, the header 2"));
-  CHECK(has(message("a,b\n1,2,3\n"), path.string() + ":2: has 3 cells, the header 2"));
-  CHECK(has(message("# nothing\n"), path.string() + ": is empty"));
+  CHECK(holds(message("a,b\n1,2\n# note\n3,x4\n"), path.string() + ":4: \"x4\" is not a number"));
+  CHECK(holds(message("a,b\n1,2\n3,4 m\n"), path.string() + ":3: \"4 m\" is not a number"));
+  CHECK(holds(message("a,b\n1,\n"), path.string() + ":2: \"\" is not a number"));
+  CHECK(holds(message("a,b\n1\n"), path.string() + ":2: has 1 cells, the header 2"));
+  CHECK(holds(message("a,b\n1,2,3\n"), path.string() + ":2: has 3 cells, the header 2"));
+  CHECK(holds(message("# nothing\n"), path.string() + ": is empty"));
   const std::string missing = error_of([&] { read_csv(folder / "none.csv"); });
-  CHECK(has(missing, "none.csv"));
-  CHECK(has(missing, "No such file or directory"));
+  CHECK(holds(missing, "none.csv"));
+  CHECK(holds(missing, "No such file or directory"));
 }
 
 TEST_CASE("a column is found by its name or by the only beginning") {
@@ -149,11 +134,11 @@ TEST_CASE("a column is found by its name or by the only beginning") {
   CHECK(table.column("tip u_y") == std::vector<double>{4});
   CHECK(table.column("tip") == std::vector<double>{3});  // a whole name goes before beginnings
   const std::string two = error_of([&] { table.column("tip u"); });
-  CHECK(has(two, "more than one column begins with \"tip u\""));
-  CHECK(has(two, "tip u_x [m]"));
+  CHECK(holds(two, "more than one column begins with \"tip u\""));
+  CHECK(holds(two, "tip u_x [m]"));
   const std::string none = error_of([&] { table.column("u_x"); });
-  CHECK(has(none, "there is no column \"u_x\""));
-  CHECK(has(none, "tip or tip u_y [m]"));
+  CHECK(holds(none, "there is no column \"u_x\""));
+  CHECK(holds(none, "tip or tip u_y [m]"));
 }
 
 TEST_CASE("a table that meets the end of the disk ends with a whole row, and tells") {
@@ -174,7 +159,7 @@ TEST_CASE("a table that meets the end of the disk ends with a whole row, and tel
         writer.flush();
         _exit(1);
       } catch (const FileError& e) {
-        _exit(has(e.what(), path.string() + ": cannot be written: File too large") ? 0 : 2);
+        _exit(holds(e.what(), path.string() + ": cannot be written: File too large") ? 0 : 2);
       }
     }
     int status = 0;
@@ -229,13 +214,13 @@ TEST_CASE("a table that goes on is cut back to where it was, and is no link to a
     writer.flush();
   }
   CHECK(content(path) == "a,b\n1,2\n7,8\n");
-  CHECK(has(error_of([&] { CsvWriter(path, int64_t{100}); }), "it cannot be continued"));
-  CHECK(has(error_of([&] { CsvWriter(path, int64_t{-1}); }), "it cannot be continued"));
+  CHECK(holds(error_of([&] { CsvWriter(path, int64_t{100}); }), "it cannot be continued"));
+  CHECK(holds(error_of([&] { CsvWriter(path, int64_t{-1}); }), "it cannot be continued"));
   fs::create_symlink(path, folder / "link.csv");
-  CHECK(has(error_of([&] { CsvWriter(folder / "link.csv", int64_t{4}); }), "is a link"));
-  CHECK(has(error_of([&] { CsvWriter(folder / "link.csv", {"a"}); }), "is a link"));
+  CHECK(holds(error_of([&] { CsvWriter(folder / "link.csv", int64_t{4}); }), "is a link"));
+  CHECK(holds(error_of([&] { CsvWriter(folder / "link.csv", {"a"}); }), "is a link"));
   fs::create_hard_link(path, folder / "twin.csv");
-  CHECK(has(error_of([&] { CsvWriter(folder / "twin.csv", int64_t{4}); }), "under 2 names"));
+  CHECK(holds(error_of([&] { CsvWriter(folder / "twin.csv", int64_t{4}); }), "under 2 names"));
   CHECK(content(path) == "a,b\n1,2\n7,8\n");
 }
 

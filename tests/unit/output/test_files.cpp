@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "support/file_errors.h"
 #include "support/folder.h"
 #include "talus/base/error.h"
 
@@ -29,26 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace talus;
 using namespace talus::test;
-
-void put(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-auto count_in(const fs::path& folder) {
-  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
-}
-
-// Text of the FileError that `action` must throw.
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const FileError& e) {
-    CHECK(e.code() == kExitFile);
-    return e.what();
-  }
-  FAIL("no FileError");
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -67,10 +48,10 @@ TEST_CASE("write_file reports path and cause, and keeps the old file") {
   const Folder folder;
   const fs::path missing = folder / "missing" / "a.txt";
   const std::string text = error_of([&] { write_file(missing, "x"); });
-  CHECK(has(text, missing.string()));
-  CHECK(has(text, "No such file or directory"));
+  CHECK(holds(text, missing.string()));
+  CHECK(holds(text, "No such file or directory"));
   fs::create_directories(folder / "taken" / "x");
-  CHECK(has(error_of([&] { write_file(folder / "taken", "x"); }), "taken: is a folder"));
+  CHECK(holds(error_of([&] { write_file(folder / "taken", "x"); }), "taken: is a folder"));
   CHECK(fs::exists(folder / "taken" / "x"));
   CHECK(count_in(folder.path()) == 1);
 }
@@ -79,12 +60,12 @@ TEST_CASE("write_file replaces regular files only, and follows no link") {
   const Folder folder;
   put(folder / "target", "precious");
   fs::create_symlink(folder / "target", folder / "link");
-  CHECK(has(error_of([&] { write_file(folder / "link", "x"); }), "link: is a link"));
+  CHECK(holds(error_of([&] { write_file(folder / "link", "x"); }), "link: is a link"));
   fs::create_symlink(folder / "nowhere", folder / "dangling");
-  CHECK(has(error_of([&] { write_file(folder / "dangling", "x"); }), "dangling: is a link"));
+  CHECK(holds(error_of([&] { write_file(folder / "dangling", "x"); }), "dangling: is a link"));
   REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
-  CHECK(has(error_of([&] { write_file(folder / "pipe", "x"); }), "pipe: is a pipe"));
-  CHECK(has(error_of([&] { write_file("/dev/null", "x"); }), "/dev/null: is a device"));
+  CHECK(holds(error_of([&] { write_file(folder / "pipe", "x"); }), "pipe: is a pipe"));
+  CHECK(holds(error_of([&] { write_file("/dev/null", "x"); }), "/dev/null: is a device"));
   CHECK(content(folder / "target") == "precious");
   CHECK_FALSE(fs::exists(folder / "nowhere"));
   // nor has the name under which it writes ever been a link that someone laid there

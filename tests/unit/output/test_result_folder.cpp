@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "support/file_errors.h"
 #include "support/folder.h"
 #include "talus/base/error.h"
 #include "talus/output/folder_lock.h"
@@ -30,26 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace talus;
 using namespace talus::test;
-
-void put(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-auto count_in(const fs::path& folder) {
-  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
-}
-
-// Text of the FileError that `action` must throw.
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const FileError& e) {
-    CHECK(e.code() == kExitFile);
-    return e.what();
-  }
-  FAIL("no FileError");
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -78,7 +59,7 @@ TEST_CASE("a folder of results: made, refused, replaced") {
     for (const char* name : {"step_notes.txt", "run.log", "my_paraview_state.pvsm", "saved/states.tar",
                              "histories.csv", "fields/mine.pvd"})
       put(folder / name, "precious");
-    CHECK(has(error_of([&] { ResultFolder(folder, false); }), folder.string() + ": exists already"));
+    CHECK(holds(error_of([&] { ResultFolder(folder, false); }), folder.string() + ": exists already"));
     CHECK(content(folder / "summary.json") == "old");
     { ResultFolder results(folder, true); }
     for (const char* name : {"summary.json", "fields/blocks_000000.vtu", "saved/stage_01.h5"})
@@ -119,7 +100,7 @@ TEST_CASE("a folder of results: made, refused, replaced") {
     CHECK(content(base / "outside") == "precious");
     fs::create_directory_symlink(base / "elsewhere", folder / "fields");
     put(folder / ResultFolder::kManifest, "results of talus run\nfields/file\n");
-    CHECK(has(error_of([&] { ResultFolder(folder, true); }), "fields: is a link"));
+    CHECK(holds(error_of([&] { ResultFolder(folder, true); }), "fields: is a link"));
     CHECK(content(base / "elsewhere" / "file") == "precious");
   }
   SUBCASE("a torn line of the manifest names nothing") {
@@ -137,8 +118,8 @@ TEST_CASE("a folder of results: made, refused, replaced") {
   }
   SUBCASE("results of another kind are not replaced") {
     { ResultFolder results(folder, false, ResultKind::kCut); }
-    CHECK(has(error_of([&] { ResultFolder(folder, true); }),
-              "holds results of talus cut, which --force of talus run does not replace"));
+    CHECK(holds(error_of([&] { ResultFolder(folder, true); }),
+                "holds results of talus cut, which --force of talus run does not replace"));
     CHECK_NOTHROW(ResultFolder(folder, true, ResultKind::kCut));
   }
   SUBCASE("a safety run that was killed can be replaced") {
@@ -149,14 +130,14 @@ TEST_CASE("a folder of results: made, refused, replaced") {
     fs::create_directories(folder / "fields");
     put(folder / "fields" / "thesis.tex", "precious");
     put(folder / "run.log", "precious");
-    CHECK(has(error_of([&] { ResultFolder(folder, true); }), "holds no results of talus"));
+    CHECK(holds(error_of([&] { ResultFolder(folder, true); }), "holds no results of talus"));
     CHECK(content(folder / "fields" / "thesis.tex") == "precious");
     CHECK(content(folder / "run.log") == "precious");
   }
   SUBCASE("a file in its place") {
     put(base / "file", "text");
-    CHECK(has(error_of([&] { ResultFolder(base / "file", true); }), "is a file, not a folder"));
-    CHECK(has(error_of([&] { ResultFolder(base / "file" / "in", true); }), "cannot be created"));
+    CHECK(holds(error_of([&] { ResultFolder(base / "file", true); }), "is a file, not a folder"));
+    CHECK(holds(error_of([&] { ResultFolder(base / "file" / "in", true); }), "cannot be created"));
     CHECK(content(base / "file") == "text");
   }
 }
@@ -177,11 +158,11 @@ TEST_CASE("one writer per folder") {
   SUBCASE("a second one is refused by name, whatever it asks for") {
     ResultFolder results(folder, false);
     const std::string who = "process " + std::to_string(getpid()) + " on ";
-    CHECK(has(content(lock), "process " + std::to_string(getpid()) + "\n"));
-    CHECK(has(error_of([&] { ResultFolder(folder, false); }), "is in use: " + who));
-    CHECK(has(error_of([&] { ResultFolder(folder, true); }), "is in use: " + who));
-    CHECK(has(error_of([&] { ResultFolder::go_on(folder); }), "is in use: " + who));
-    CHECK(has(error_of([&] { check_result_folder(folder, true); }), "is in use: " + who));
+    CHECK(holds(content(lock), "process " + std::to_string(getpid()) + "\n"));
+    CHECK(holds(error_of([&] { ResultFolder(folder, false); }), "is in use: " + who));
+    CHECK(holds(error_of([&] { ResultFolder(folder, true); }), "is in use: " + who));
+    CHECK(holds(error_of([&] { ResultFolder::go_on(folder); }), "is in use: " + who));
+    CHECK(holds(error_of([&] { check_result_folder(folder, true); }), "is in use: " + who));
   }
   SUBCASE("one that was killed leaves its lock, which is told and taken over") {
     const pid_t child = fork();
@@ -196,7 +177,7 @@ TEST_CASE("one writer per folder") {
     CHECK(user_of_folder(folder).empty());
     {
       const ResultFolder results = ResultFolder::go_on(folder);
-      CHECK(has(results.stale_lock(), "process " + std::to_string(child) + " on "));
+      CHECK(holds(results.stale_lock(), "process " + std::to_string(child) + " on "));
     }
     CHECK_FALSE(fs::exists(lock));
     CHECK(ResultFolder::go_on(folder).stale_lock().empty());
@@ -205,14 +186,14 @@ TEST_CASE("one writer per folder") {
     fs::create_directories(folder);
     put(lock, "process 1\nhost far.example\nbegun 5\n");
     const std::string said = error_of([&] { ResultFolder::go_on(folder); });
-    CHECK(has(said, "process 1 on far.example"));
-    CHECK(has(said, "remove the file"));
+    CHECK(holds(said, "process 1 on far.example"));
+    CHECK(holds(said, "remove the file"));
   }
   SUBCASE("the lock is no link, and no nonsense in it hurts") {
     fs::create_directories(folder);
     put(base / "target", "precious");
     fs::create_symlink(base / "target", lock);
-    CHECK(has(error_of([&] { ResultFolder::go_on(folder); }), "is a link"));
+    CHECK(holds(error_of([&] { ResultFolder::go_on(folder); }), "is a link"));
     CHECK(content(base / "target") == "precious");
     fs::remove(lock);
     put(lock, std::string(1000, '\0'));

@@ -38,8 +38,8 @@ std::string left_text(const Recorder::Left& left, const std::string& model, cons
   std::string text;
   if (!left.step.empty())
     text += fmt::format("  talus replay {}/{}      (the contact equations of the step)\n", folder, left.step);
-  text += fmt::format("  talus plot {} --blocks velocity --time {:.9g}      (the instant, as a picture)\n",
-                      folder, left.frame);
+  const std::string time = left.frame ? fmt::format(" --time {:.9g}", *left.frame) : "";
+  text += fmt::format("  talus plot {} --blocks velocity{}      (the instant, as a picture)\n", folder, time);
   if (!left.state.empty())
     text += fmt::format("  talus run {} --from {}/{}      (from the last good state, with --set as before)\n",
                         model, folder, left.state);

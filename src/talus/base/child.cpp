@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <new>
 
 #include "talus/base/clock.h"
@@ -36,6 +37,13 @@ void limit(__rlimit_resource resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
+// What this process has mapped [bytes]: a large model's copy has that before it begins.
+size_t address_space() {
+  std::ifstream in("/proc/self/statm");
+  size_t pages = 0;
+  return in >> pages ? pages * static_cast<size_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
 [[noreturn]] void be_child(int out, const std::function<std::string()>& work, const ChildLimits& limits) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
     std::signal(signal, SIG_DFL);
@@ -46,15 +54,11 @@ void limit(__rlimit_resource resource, rlim_t most) {
   close_range(static_cast<unsigned>(out) + 1, ~0u, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
   limit(RLIMIT_CORE, 0);
-  if (!kWatched) limit(RLIMIT_AS, static_cast<rlim_t>(limits.memory));
+  if (!kWatched) limit(RLIMIT_AS, static_cast<rlim_t>(address_space() + limits.memory));
   try {
-    std::string bytes = work();
-    for (std::string_view rest = bytes; !rest.empty();) {
-      const ssize_t n = write(out, rest.data(), rest.size());
-      if (n < 0 && errno != EINTR) _exit(kThrown);
-      if (n > 0) rest.remove_prefix(static_cast<size_t>(n));
-    }
-    _exit(0);
+    const std::string bytes = work();
+    size_t done = 0;
+    _exit(write_all(out, bytes, done) == 0 ? 0 : kThrown);
   } catch (const std::bad_alloc&) {
     _exit(kNoMemory);
   } catch (...) {
@@ -78,12 +82,13 @@ bool read_up_to(int in, double end, std::string& bytes) {
   }
 }
 
-std::string reason_of(int status, const ChildLimits& limits) {
+std::string reason_of(int status, bool late, const ChildLimits& limits) {
   const std::string memory = fmt::format("reading it took more than {} MiB of memory", limits.memory >> 20);
   if (WIFEXITED(status)) return WEXITSTATUS(status) == kNoMemory ? memory : "reading it failed";
   const int signal = WTERMSIG(status);
-  if (signal == SIGXCPU || signal == SIGKILL)
-    return fmt::format("reading it took more than {} s", limits.seconds);
+  if (late || signal == SIGXCPU) return fmt::format("reading it took more than {} s", limits.seconds);
+  if (signal == SIGKILL)
+    return "the process that reads it was killed, as the system does when memory is short";
   return fmt::format("the library that reads it has crashed ({})", strsignal(signal));
 }
 
@@ -100,11 +105,12 @@ std::string work_in_child(const std::string& what, const std::function<std::stri
   if (child == 0) be_child(out, work, limits);
   out.done();
   std::string bytes;
-  if (!read_up_to(in, wall_now() + limits.seconds, bytes)) kill(child, SIGKILL);
+  const bool late = !read_up_to(in, wall_now() + limits.seconds, bytes);
+  if (late) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return bytes;
-  throw FileError(fmt::format("{}: {}", what, reason_of(status, limits)));
+  throw FileError(fmt::format("{}: {}", what, reason_of(status, late, limits)));
 }
 
 }  // namespace talus

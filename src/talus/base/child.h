@@ -9,7 +9,7 @@ namespace talus {
 
 struct ChildLimits {
   int seconds = 300;                // of time, on the clock and of the processor
-  size_t memory = size_t{4} << 30;  // [bytes]
+  size_t memory = size_t{4} << 30;  // [bytes], beside what this process has
 };
 
 /// The bytes that `work` gives, done in a copy of this process. `work` must not throw, change anything outside,

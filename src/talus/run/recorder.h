@@ -69,7 +69,7 @@ class Recorder : public Observer {
   /// Files that a failed run leaves to look at, by their path in the folder; "" for none.
   struct Left {
     std::string state, step;
-    double frame = 0;  // time [s]
+    std::optional<double> frame;  // time [s]
   };
   const Left& left() const { return left_; }
 

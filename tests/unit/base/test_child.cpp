@@ -39,6 +39,11 @@ TEST_CASE("work in a child: its death is an error with the reason") {
                 return "";
               }),
               "map.gpkg: the library that reads it has crashed"));
+  CHECK(holds(said([]() -> std::string {
+                raise(SIGKILL);
+                return "";
+              }),
+              "was killed, as the system does when memory is short"));
   CHECK(holds(said([]() -> std::string { _exit(3); }), "map.gpkg: reading it failed"));
   CHECK(holds(said([]() -> std::string { throw std::runtime_error("x"); }), "map.gpkg: reading it failed"));
   CHECK(holds(said([]() -> std::string { throw std::bad_alloc(); }), "MiB of memory"));
@@ -73,6 +78,11 @@ TEST_CASE("work in a child: no more memory than it may have") {
   };
   CHECK(holds(said(grows, {.memory = size_t{1} << 30}),
               "map.gpkg: reading it took more than 1024 MiB of memory"));
+  // what the parent has counts for nothing
+  const std::string much(size_t{256} << 20, 'y');
+  CHECK(work_in_child("x", [] { return std::string(1000000, 'z'); }, {.memory = size_t{64} << 20}).size() ==
+        1000000);
+  CHECK(much.back() == 'y');
 }
 #endif
 

@@ -196,6 +196,16 @@ TEST_CASE("command run: a run that fails leaves its last good state, from which 
   same(whole, results_in(folder / "whole"));
 }
 
+TEST_CASE("command run --from: copies of states that the user has made stay") {
+  Folder folder;
+  write_model(folder);
+  REQUIRE(shell(folder, "$talus run model.toml -o r -q").code == 0);
+  REQUIRE(shell(folder, "cd r/saved && cp stage_01.h5 step_1.h5 && cp stage_01.h5 step_00mine.h5").code == 0);
+  CHECK(shell(folder, "$talus run model.toml --from r/saved/stage_01.h5 -q").code == 0);
+  CHECK(fs::exists(folder / "r/saved/step_1.h5"));
+  CHECK(fs::exists(folder / "r/saved/step_00mine.h5"));
+}
+
 TEST_CASE("command run --from: what cannot go on is refused") {
   Folder folder;
   write_model(folder);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -86,6 +87,16 @@ constexpr const char *kHistorySize = "recorder.histories_csv", *kStepsSize = "re
 constexpr const char *kJointsSize = "recorder.joints_csv", *kBoltsSize = "recorder.bolts_csv";
 constexpr const char* kSlipsSize = "recorder.slips_csv";
 constexpr size_t kSavedStates = 2;  // between stages
+
+std::string step_name(int64_t step) { return fmt::format("step_{:09}.h5", step); }
+
+// Number of the step in the name of a state between stages; none in any other name, which is the user's.
+std::optional<int64_t> step_in(const std::string& name) {
+  int64_t step = -1;
+  if (name.rfind("step_", 0) != 0) return std::nullopt;
+  std::from_chars(name.data() + 5, name.data() + name.size(), step);
+  return name == step_name(step) ? std::optional(step) : std::nullopt;
+}
 
 int64_t size_in(const Archive& saved, const std::string& name) {
   Loader loader(saved);
@@ -293,7 +304,7 @@ std::filesystem::path Recorder::write_saved(const std::string& name, const Archi
 }
 
 void Recorder::write_step(int64_t step, const Archive& archive) {
-  const auto path = write_saved(fmt::format("step_{:09}.h5", step), archive);
+  const auto path = write_saved(step_name(step), archive);
   std::erase(saved_, path);
   saved_.push_back(path);
   std::error_code ec;
@@ -320,8 +331,7 @@ void Recorder::keep_state(const Standing& standing, const State& state) {
 void Recorder::find_saved() {
   std::error_code ec;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "saved", ec))
-    if (entry.path().filename().string().rfind("step_", 0) == 0 && entry.path().extension() == ".h5")
-      saved_.push_back(entry.path());
+    if (step_in(entry.path().filename().string())) saved_.push_back(entry.path());
   std::sort(saved_.begin(), saved_.end());
 }
 

@@ -32,11 +32,15 @@ constexpr std::array<std::string_view, 19> kNotNegative{
     "reach",   "stiffness",    "limit",           "gauge",       "yield",          "most",   "row_stiffness",
     "relaxed", "share",        "shear_stiffness", "shear_yield", "largest_kinetic"};
 
+// Whoever squares a larger number may get an endless one.
+constexpr double kMostNumber = 1e100;
+
 // One number of a field: whether it may be what it is.
 void judge_number(const std::string& field, double v) {
   if (is_one_of(field, kMayBeNoNumber) && std::isnan(v)) return;
   const bool endless = is_one_of(field, kMayBeEndless);
-  promise_loaded(!std::isnan(v) && (endless || std::isfinite(v)), fmt::format("\"{}\" is {}", field, v));
+  promise_loaded(std::abs(v) <= kMostNumber || (endless && std::isinf(v)),
+                 fmt::format("\"{}\" is {}", field, v));
   promise_loaded(v >= 0 || !is_one_of(field, kNotNegative), fmt::format("\"{}\" is {}", field, v));
 }
 
@@ -88,9 +92,13 @@ void judge_bolts(const State& s, const Scene& scene) {
     promise_loaded(is_below(bolt.input, scene.model.bolts.size()),
                    fmt::format("bolt {} is none of the model's", bolt.input));
     for (size_t k = 0; k < bolt.crossings.size(); ++k) {
-      const BoltSegment& segment = bolt.segments[static_cast<size_t>(bolt.crossings[k].segment)];
-      promise_loaded(segment.crossing == static_cast<int>(k),
+      const auto j = static_cast<size_t>(bolt.crossings[k].segment);
+      promise_loaded(bolt.nodes[j].block != bolt.nodes[j + 1].block, "a bolt crosses the inside of a block");
+      promise_loaded(bolt.segments[j].crossing == static_cast<int>(k),
                      "a segment of a bolt does not know its crossing");
+      for (const Vec2 d : bolt.crossings[k].direction)
+        promise_loaded(std::abs(norm(d) - 1) < 1e-6, "the direction of a bolt is no unit vector");
+      promise_loaded(bolt.crossings[k].row_stiffness > 0, "a bolt crosses a joint without stiffness");
     }
   }
 }

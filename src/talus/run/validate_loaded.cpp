@@ -128,6 +128,9 @@ void judge_standing(const Standing& standing, const State& state, const Prepared
   const RunResult& r = standing.result;
   for (const int64_t count : {r.steps, r.failed_steps, r.second_solver_steps, r.iterations})
     promise_loaded(count >= 0, "it has counted less than nothing");
+  for (const double most :
+       {r.worst_error, r.deepest_drift, r.closed_share, r.largest_left_over, r.largest_energy})
+    promise_loaded(most >= 0, "one of its largest values is negative");
 }
 
 }  // namespace

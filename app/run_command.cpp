@@ -59,19 +59,23 @@ Prepared open_folder(const RunArguments& args, const PreparedRun& prepared) {
   return out;
 }
 
-RunResult run_or_abandon(PreparedRun& prepared, std::optional<SavedRun>& saved, State& state,
-                         Recorder& recorder, Progress& progress, const Workers& workers) {
-  try {
-    RunResult result =
-        saved ? continue_stages(prepared.scene, prepared.plans, saved->standing, state, progress, workers)
-              : run_stages(prepared.scene, prepared.plans, state, progress, workers);
-    progress.finish();
-    recorder.finish(result);
-    return result;
-  } catch (const std::exception& e) {
-    recorder.abandon(e.what());
-    throw;
-  }
+struct Run {
+  RunResult result;
+  int signal = 0;  // that has interrupted it
+};
+
+Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const std::string& from,
+                 Recorder& recorder, std::FILE* out, const Workers& workers) {
+  StoppedBySignals progress(recorder, out, isatty(fileno(out)) != 0);
+  say(out, base_report(prepared.scene) + resolution_report(prepared.scene));
+  State state = saved ? std::move(saved->state) : start_state(prepared.scene);
+  if (saved) say(out, fmt::format("goes on from {}: t = {:.6g} s, step {}\n", from, state.time, state.step));
+  RunResult result =
+      saved ? continue_stages(prepared.scene, prepared.plans, saved->standing, state, progress, workers)
+            : run_stages(prepared.scene, prepared.plans, state, progress, workers);
+  progress.finish();
+  recorder.finish(result);
+  return {std::move(result), progress.signal()};
 }
 
 }  // namespace
@@ -100,6 +104,10 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
   if (args.from.empty()) check_result_folder(args.folder, args.force);
   auto [findings, prepared] = prepare_model(model);
+  std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
+  if (!out) throw FileError("/dev/null: cannot be opened");
+  // before anything is touched: the system may refuse them
+  const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
   auto [folder, saved] = open_folder(args, prepared);
   if (const std::string stale = folder.stale_lock(); !stale.empty())
     fmt::print(stderr, "talus: note: {}\n", stale);
@@ -116,21 +124,20 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw;
   }
   recorder->dump_step(args.dump_step);
-  State state = saved ? std::move(saved->state) : start_state(prepared.scene);
-  std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
-  if (!out) throw FileError("/dev/null: cannot be opened");
-  StoppedBySignals progress(*recorder, out, isatty(fileno(out)) != 0);
-  say(out, base_report(prepared.scene) + resolution_report(prepared.scene));
-  const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
-  if (saved)
-    say(out, fmt::format("goes on from {}: t = {:.6g} s, step {}\n", args.from, state.time, state.step));
-  const RunResult result = run_or_abandon(prepared, saved, state, *recorder, progress, workers);
+  Run run;
+  try {
+    run = run_recorded(prepared, saved, args.from, *recorder, out, workers);
+  } catch (const std::exception& e) {
+    recorder->abandon(e.what());
+    throw;
+  }
+  const RunResult& result = run.result;
   say(out, closing_text(prepared.scene, result, recorder->joints(), name, recorder->audit()));
   if (args.profile) say(out, profile_text(result.profile, result.threads, result.steps));
   if (!result.failure.empty())
     throw NumericalError(fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure,
                                      name, left_text(recorder->left(), model.file, name)));
-  if (result.interrupted) return kExitSignal + progress.signal();
+  if (result.interrupted) return kExitSignal + run.signal;
   const auto audit = recorder->audit();
   return audit && !audit->valid() ? kExitNotValid : kExitOk;
 }

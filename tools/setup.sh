@@ -2,7 +2,7 @@
 # Quick when nothing has changed: one look at the package database, one look of the build tool at the sources.
 
 talus_packages="g++ cmake ninja-build pkgconf python3-minimal libeigen3-dev libgeos-dev libtomlplusplus-dev libcli11-dev libfmt-dev
-  libmuparser-dev libcairo2-dev libtbb-dev libhdf5-dev zlib1g-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
+  libmuparser-dev libcairo2-dev libhdf5-dev zlib1g-dev nlohmann-json3-dev doctest-dev fonts-dejavu-core"
 
 # What the module that reads maps needs; a build without the module is configured anew.
 talus_maps=no

@@ -41,6 +41,27 @@ std::string endless_step(int sweeps = 10000000) {
       fmt::format("[solver]\nmethod = \"gauss_seidel\"\nmax_sweeps = {}\nsecond_solver = false\n", sweeps));
 }
 
+// Results whose frames and histories take long to read.
+void write_long_results(const Folder& f) {
+  write_file(f / "m.toml", kShakenBricks);
+  REQUIRE(shell(f, "$talus run m.toml -o r -q && $talus report r").code == 0);
+  for (const auto& [name, end] : {std::pair("blocks", "vtu"), std::pair("contacts", "vtp")}) {
+    std::string list =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+        "byte_order=\"LittleEndian\">\n<Collection>\n";
+    for (int i = 0; i < 300000; ++i)
+      list += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}_000001.{}\"/>\n",
+                          1e-6 * i, name, end);
+    write_file(f / fmt::format("r/fields/{}.pvd", name), list + "</Collection>\n</VTKFile>\n");
+  }
+  const std::string histories = content(f / "r/histories.csv");
+  const size_t head = histories.find('\n') + 1;
+  const std::string row = histories.substr(head, histories.find('\n', head) + 1 - head);
+  std::string table = histories.substr(0, head);
+  for (int i = 0; i < 1000000; ++i) table += row;
+  write_file(f / "r/histories.csv", table);
+}
+
 // A shell line that starts the run in the background and waits until it has written something.
 const std::string kStart =
     "$talus run long.toml -o out > said.txt 2>&1 & p=$!; "
@@ -101,6 +122,32 @@ TEST_CASE("reliability: a signal inside an endless step is heard, and the state 
   fs::remove_all(f / "out");
   const Outcome twice = shell(f, start + "kill -INT $p; kill -INT $p; wait $p");
   CHECK(twice.code == 130);
+}
+
+TEST_CASE("reliability: a long cut, report or audit ends at once and leaves nothing unfinished") {
+  const Folder f;
+  write_long_results(f);
+  const std::string before = content(f / "r/report.html");
+  const std::string fine = "--set joint_set.bedding.spacing=0.1 --set joint_set.cross.spacing=0.1";
+  for (const std::string& line :
+       {fmt::format("$talus cut {}/examples/slope/slope.toml -o cut {}", TALUS_SOURCE_DIR, fine),
+        std::string("$talus report r"), std::string("$talus audit r")}) {
+    INFO(line);
+    const Outcome o =
+        shell(f, line +
+                     " > said.txt & p=$!; sleep 0.7; b=$(date +%s%N); kill -TERM $p; wait $p; c=$?; "
+                     "e=$(date +%s%N); echo took $(( (e - b) / 1000000 )); exit $c");
+    CHECK(o.code == 143);
+    const size_t at = o.text.find("took ");
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stoi(o.text.substr(at + 5)) < 1000);
+  }
+  for (const auto& e : fs::recursive_directory_iterator(f.path())) {
+    INFO(e.path().string());
+    CHECK(!is_unfinished_file(e.path()));
+    CHECK(e.path().filename() != "talus_lock.txt");
+  }
+  CHECK((content(f / "r/report.html") == before));
 }
 
 TEST_CASE("reliability: one run per folder") {
@@ -298,6 +345,27 @@ TEST_CASE("reliability: a record whose numbers overflow is refused, and nothing 
 }
 
 #ifndef __SANITIZE_ADDRESS__  // which takes room for shadows of all memory
+TEST_CASE(
+    "reliability: threads that cannot be started are told before anything is written, or in the summary") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  int told = 0;
+  for (int n = 1;; ++n) {
+    fs::remove_all(f / "out");
+    const Outcome o =
+        shell(f, fmt::format("rm -f told; LD_PRELOAD='{}' TALUS_FAULT=thread:{} "
+                             "TALUS_FAULT_TOLD=$PWD/told $talus run m.toml -o out -q --threads 4",
+                             TALUS_FAULTS, n));
+    if (!fs::exists(f / "told")) break;
+    INFO(n, ": ", o.text);
+    CHECK(o.code == 7);
+    has(o.text, "no more threads can be started");
+    CHECK((!fs::exists(f / "out") || status_of(f / "out") == "failed"));
+    ++told;
+  }
+  CHECK(told == 4);  // three helpers, and the one that waits for signals
+}
+
 TEST_CASE("reliability: no memory is an exit code of its own") {
   const Folder f;
   std::string text = kShakenBricks;

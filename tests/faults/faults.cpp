@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -49,7 +50,7 @@ bool fails(const char* kind, std::atomic<long>& count) {
 
 // From mallopt() on, which main() calls first: what fails before there is nobody to tell of.
 std::atomic<bool> begun{false};
-std::atomic<long> writes{0}, renames{0}, syncs{0}, opens{0}, allocations{0};
+std::atomic<long> writes{0}, renames{0}, syncs{0}, opens{0}, allocations{0}, threads{0};
 
 template <class F>
 F next(const char* name) {
@@ -115,6 +116,13 @@ int open(const char* path, int flags, ...) {
   const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(rest, mode_t) : 0;
   va_end(rest);
   return open64(path, flags, mode);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* how, void* (*start)(void*),
+                   void* given) noexcept {
+  if (fails("thread", threads)) return EAGAIN;
+  static const auto create = next<decltype(&pthread_create)>("pthread_create");
+  return create(thread, how, start, given);
 }
 
 }  // extern "C"

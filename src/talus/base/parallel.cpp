@@ -1,14 +1,12 @@
 #include "talus/base/parallel.h"
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
-
+#include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 namespace talus {
 
@@ -19,14 +17,13 @@ constexpr int kLooks = 2000;
 
 class Waiting {
  public:
+  bool is_long() const { return looks_ >= kLooks; }
   void look_again() {
-    if (++looks_ < kLooks) {
+    if (is_long()) return std::this_thread::yield();
+    ++looks_;
 #if defined(__x86_64__) || defined(__i386__)
-      __builtin_ia32_pause();
+    __builtin_ia32_pause();
 #endif
-      return;
-    }
-    std::this_thread::yield();
   }
 
  private:
@@ -38,13 +35,24 @@ class Waiting {
 // One job at a time, whose items are claimed one by one by whoever is there. The caller can do all of them:
 // no thread ever waits for one that has not come.
 struct Workers::Team {
-  // the library starts no more threads than the machine has processors unless it is told to: a run asked for
-  // four threads on two processors gets four
-  explicit Team(int threads)
-      : limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads)), arena(threads) {}
+  // Throws std::system_error when the system starts no more threads.
+  explicit Team(int threads) {
+    try {
+      for (int i = 1; i < threads; ++i) helpers.emplace_back([this] { stand_by(); });
+    } catch (...) {
+      dismiss();
+      throw;
+    }
+  }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+  ~Team() { dismiss(); }
 
-  tbb::global_control limit;
-  tbb::task_arena arena;
+  std::vector<std::thread> helpers;
+  std::mutex calling;
+  std::condition_variable called;
+  std::atomic<uint64_t> calls{0};  // to stand by
+  std::atomic<bool> over{false};
 
   std::atomic<uint64_t> round{0};  // odd: a job is open
   std::atomic<int> inside{0};      // helpers that may be looking at the job
@@ -84,6 +92,35 @@ struct Workers::Team {
     }
   }
 
+  // The life of a helper. The next call is often near: it looks for a while before it sleeps.
+  void stand_by() {
+    for (uint64_t seen = 0;; seen = calls, help()) {
+      for (Waiting near; calls == seen && !over && !near.is_long();) near.look_again();
+      std::unique_lock<std::mutex> lock(calling);
+      called.wait(lock, [&] { return calls != seen || over; });
+      if (over) return;
+    }
+  }
+
+  void call() {
+    leaving = false;
+    {
+      const std::lock_guard<std::mutex> lock(calling);
+      ++calls;
+    }
+    called.notify_all();
+  }
+
+  void dismiss() {
+    leaving = true;
+    {
+      const std::lock_guard<std::mutex> lock(calling);
+      over = true;
+    }
+    called.notify_all();
+    for (std::thread& helper : helpers) helper.join();
+  }
+
   void run(size_t items, const std::function<void(size_t)>& what) {
     task = &what, count = items, next = 0, done = 0, failure = nullptr;
     ++round;
@@ -96,31 +133,20 @@ struct Workers::Team {
 };
 
 Workers::Workers(int threads) {
-  if (threads == 0) threads = tbb::info::default_concurrency();
+  if (threads == 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (threads > 1) team_ = std::make_shared<Team>(threads);
 }
 
-int Workers::threads() const { return team_ ? team_->arena.max_concurrency() : 1; }
+int Workers::threads() const { return team_ ? static_cast<int>(team_->helpers.size()) + 1 : 1; }
 
 void Workers::together(const std::function<void()>& body) const {
   if (!team_ || team_->standing_by) return body();
-  Team& team = *team_;
-  team.arena.execute([&] {
-    team.leaving = false;
-    team.standing_by = true;
-    tbb::task_group helpers;
-    for (int i = 1; i < threads(); ++i) helpers.run([&team] { team.help(); });
-    std::exception_ptr failure;
-    try {
-      body();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    team.leaving = true;
-    helpers.wait();  // those that never came look in, see that all is done, and go
-    team.standing_by = false;
-    if (failure) std::rethrow_exception(failure);
-  });
+  struct Standing {
+    Team& team;
+    explicit Standing(Team& t) : team(t) { team.standing_by = true, team.call(); }
+    ~Standing() { team.leaving = true, team.standing_by = false; }
+  } const helpers(*team_);
+  body();
 }
 
 void Workers::run(size_t count, const std::function<void(size_t)>& task) const {

@@ -13,6 +13,7 @@ namespace talus {
 class Workers {
  public:
   /// @param threads  including the caller; 0 = as many as the machine has processors
+  /// Throws std::system_error when the system starts no more threads.
   explicit Workers(int threads = 1);
 
   int threads() const;

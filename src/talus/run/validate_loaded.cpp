@@ -32,6 +32,9 @@ constexpr std::array<std::string_view, 19> kNotNegative{
     "reach",   "stiffness",    "limit",           "gauge",       "yield",          "most",   "row_stiffness",
     "relaxed", "share",        "shear_stiffness", "shear_yield", "largest_kinetic"};
 
+// Far more than any run counts, and room for counting on.
+constexpr int64_t kMostInt = 1 << 30, kMostCount = int64_t{1} << 60;
+
 // Whoever squares a larger number may get an endless one.
 constexpr double kMostNumber = 1e100;
 
@@ -62,6 +65,9 @@ void judge_field(const std::string& field, const auto& value) {
     for (const auto& element : value) judge_field(field, element);
   } else if constexpr (std::is_floating_point_v<T>) {
     judge_number(field, value);
+  } else if constexpr (std::is_same_v<T, int> || std::is_same_v<T, int64_t>) {
+    const int64_t most = std::is_same_v<T, int> ? kMostInt : kMostCount;
+    promise_loaded(value >= -most && value <= most, fmt::format("\"{}\" is {}", field, value));
   } else if constexpr (!std::is_arithmetic_v<T> && !std::is_enum_v<T>) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0);
     std::array<double, sizeof(T) / sizeof(double)> parts;
@@ -127,7 +133,9 @@ void judge_standing(const Standing& standing, const State& state, const Prepared
       fmt::format("it stands at {} s, and {} steps of its stage end at {} s", state.time, now.steps, time));
   const RunResult& r = standing.result;
   for (const int64_t count : {r.steps, r.failed_steps, r.second_solver_steps, r.iterations})
-    promise_loaded(count >= 0, "it has counted less than nothing");
+    promise_loaded(count >= 0 && count <= kMostCount, "it has counted less than nothing, or endlessly");
+  for (const int count : {r.most_contacts, r.most_iterations, r.candidate_rebuilds})
+    promise_loaded(count >= 0 && count <= kMostInt, "it has counted less than nothing, or endlessly");
   for (const double most :
        {r.worst_error, r.deepest_drift, r.closed_share, r.largest_left_over, r.largest_energy})
     promise_loaded(most >= 0, "one of its largest values is negative");

@@ -4,12 +4,13 @@
 
 #include "talus/audit/read_results.h"
 #include "talus/base/error.h"
+#include "talus/base/name.h"
 
 namespace talus::app {
 
 int audit_command(const std::string& folder, int threads) {
   const audit::FolderAudit a = audit::audit_folder(folder, Workers(threads));
-  for (const std::string& line : a.report.lines(a.names)) fmt::print("{}\n", line);
+  for (const std::string& line : a.report.lines(a.names)) fmt::print("{}\n", shown_name(line));
   fmt::print(
       "{}: {} frames looked at, {}; largest unexplained overlap {:.2g} of the smaller block, deepest closure "
       "{:.2g} % of its thickness\n",

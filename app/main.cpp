@@ -28,6 +28,7 @@
 #include "run_command.h"
 #include "safety_command.h"
 #include "signals.h"
+#include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/talus.h"
@@ -216,7 +217,8 @@ int code_of(int argc, char** argv) {
   try {
     return verb_of_line(argc, argv);
   } catch (const talus::Error& e) {
-    fmt::print(stderr, "{}{}\n", e.code() == talus::kExitInput ? "" : "talus: ", e.what());
+    fmt::print(stderr, "{}{}\n",
+               e.code() == talus::kExitInput ? "" : "talus: ", talus::shown_name(e.what(), "\n\t"));
     return e.code();
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "talus: not enough memory; talus check predicts what a model needs\n");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "signals.h"
+#include "talus/base/name.h"
 #include "talus/run/base_report.h"
 #include "talus/run/progress.h"
 #include "talus/run/resolution.h"
@@ -24,13 +25,14 @@ RunNotes notes_of(const ModelArguments& model, const Findings& findings) {
 // Stops the run when a signal asks for it.
 class StoppedBySignals : public Progress {
  public:
-  StoppedBySignals(Recorder& recorder, std::FILE* out, bool terminal)
-      : Progress(recorder, out, terminal), signals_([&recorder] { recorder.end_as_held(); }) {}
+  StoppedBySignals(StopSignals& signals, Recorder& recorder, std::FILE* out, bool terminal)
+      : Progress(recorder, out, terminal), signals_(signals) {
+    signals_.listen([&recorder] { recorder.end_as_held(); });
+  }
   bool stop() override { return signals_.hear() != 0 || Progress::stop(); }
-  int signal() const { return signals_.asked(); }
 
  private:
-  StopSignals signals_;
+  StopSignals& signals_;
 };
 
 // The command to look at each thing that a failed run has left.
@@ -65,17 +67,18 @@ struct Run {
 };
 
 Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const std::string& from,
-                 Recorder& recorder, std::FILE* out, const Workers& workers) {
-  StoppedBySignals progress(recorder, out, isatty(fileno(out)) != 0);
+                 Recorder& recorder, StopSignals& signals, std::FILE* out, const Workers& workers) {
+  StoppedBySignals progress(signals, recorder, out, isatty(fileno(out)) != 0);
   say(out, base_report(prepared.scene) + resolution_report(prepared.scene));
   State state = saved ? std::move(saved->state) : start_state(prepared.scene);
   if (saved) say(out, fmt::format("goes on from {}: t = {:.6g} s, step {}\n", from, state.time, state.step));
   RunResult result =
       saved ? continue_stages(prepared.scene, prepared.plans, saved->standing, state, progress, workers)
             : run_stages(prepared.scene, prepared.plans, state, progress, workers);
+  signals.run_has_ended();
   progress.finish();
   recorder.finish(result);
-  return {std::move(result), progress.signal()};
+  return {std::move(result), signals.asked()};
 }
 
 }  // namespace
@@ -108,11 +111,13 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (!out) throw FileError("/dev/null: cannot be opened");
   // before anything is touched: the system may refuse them
   const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
+  StopSignals signals;
   auto [folder, saved] = open_folder(args, prepared);
   if (const std::string stale = folder.stale_lock(); !stale.empty())
     fmt::print(stderr, "talus: note: {}\n", stale);
   const std::string name = folder.path().string();
   const RunNotes notes = notes_of(model, findings);
+  if (saved) Recorder::check(folder, prepared.scene, saved->archive);
   std::optional<Recorder> recorder;
   try {
     if (saved)
@@ -126,13 +131,15 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   recorder->dump_step(args.dump_step);
   Run run;
   try {
-    run = run_recorded(prepared, saved, args.from, *recorder, out, workers);
+    run = run_recorded(prepared, saved, args.from, *recorder, signals, out, workers);
   } catch (const std::exception& e) {
     recorder->abandon(e.what());
     throw;
   }
   const RunResult& result = run.result;
-  say(out, closing_text(prepared.scene, result, recorder->joints(), name, recorder->audit()));
+  // a state may have come with texts of somebody else's
+  say(out,
+      shown_name(closing_text(prepared.scene, result, recorder->joints(), name, recorder->audit()), "\n"));
   if (args.profile) say(out, profile_text(result.profile, result.threads, result.steps));
   if (!result.failure.empty())
     throw NumericalError(fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure,

@@ -60,10 +60,14 @@ extern "C" void ask_to_stop(int signal) {
 
 void end_on_signals() { on_signals(clean_up_and_end); }
 
-StopSignals::StopSignals(std::function<void()> end_now) {
+StopSignals::StopSignals() {
   asked_by = 0;
   sem_init(&asking, 0, 0);
-  watcher_ = std::thread([this, end = std::move(end_now)] { watch(end); });
+  watcher_ = std::thread([this] { watch(); });
+}
+
+void StopSignals::listen(std::function<void()> end_now) {
+  end_now_ = std::move(end_now);
   on_signals(ask_to_stop);
 }
 
@@ -90,7 +94,13 @@ int StopSignals::hear() {
   return asked_by;
 }
 
-void StopSignals::watch(const std::function<void()>& end_now) {
+void StopSignals::run_has_ended() {
+  const std::lock_guard lock(mutex_);
+  heard_ = true;
+  changed_.notify_all();
+}
+
+void StopSignals::watch() {
   while (sem_wait(&asking) != 0) continue;
   {
     std::unique_lock lock(mutex_);
@@ -98,9 +108,13 @@ void StopSignals::watch(const std::function<void()>& end_now) {
       if (changed_.wait_for(lock, kForEnd, [this] { return over_; })) return;
   }
   try {
-    end_now();
+    end_now_();
+  } catch (const Error& e) {
+    std::fprintf(stderr, "talus: %s\n", e.what());
+    _exit(e.code());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "talus: %s\n", e.what());
+    _exit(kExitResources);
   }
   _exit(kExitSignal + asked_by);
 }

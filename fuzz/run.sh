@@ -4,7 +4,7 @@
 # Usage: [AT_ONCE=2] fuzz/run.sh [SECONDS [READER...]]     (default: 600 seconds each)
 set -eu
 cd "$(dirname "$0")/.."
-readers='model msh dxf record history blocks vtk table replay csv series frame summary state geojson'
+readers='model msh dxf record history blocks vtk table replay csv series frame picture summary state geojson'
 seconds=${1:-600} at_once=${AT_ONCE:-2}
 [ $# = 0 ] || shift
 [ -e build/fuzz/build.ninja ] || cmake --preset fuzz >/dev/null

@@ -23,6 +23,7 @@
 #include "talus/output/csv.h"
 #include "talus/output/read_vtk.h"
 #include "talus/output/text_table.h"
+#include "talus/plot/block_picture.h"
 #include "talus/record/history_file.h"
 #include "talus/record/read_record.h"
 #include "talus/report/frames.h"
@@ -59,7 +60,7 @@ name = "across"
 points = [[1, -1], [3, 3]]
 )";
 
-/// A frame as pictures, reports and the audit of a folder take it.
+/// A frame as the report takes it.
 inline void take_frame(const std::string& text) {
   const auto path = scratch_file(text);
   report::FrameReader reader;
@@ -76,6 +77,14 @@ inline void take_frame(const std::string& text) {
   taken += tried([&] { report::read_contacts(path).packed({}); });
   taken += tried([&] { report::read_bolts(path).packed({}); });
   if (taken == 0) throw FileError("no frame");
+}
+
+/// A frame as a picture takes it.
+inline void take_picture(const std::string& text) {
+  plot::BlockPicture picture;
+  picture.blocks = parse_vtk("blocks.vtu", text);
+  plot::write_block_picture(
+      picture, std::filesystem::temp_directory_path() / ("talus_picture_" + std::to_string(getpid())));
 }
 
 /// summary.json as the report takes it.
@@ -207,6 +216,7 @@ inline const std::map<std::string, std::function<void(const std::string&)>>& rea
        }},
       {"series", [](const std::string& text) { parse_series("fields/blocks.pvd", text); }},
       {"frame", take_frame},
+      {"picture", take_picture},
       {"summary", take_summary},
       {"state", take_state},
 #ifdef TALUS_WITH_MAPS

@@ -114,14 +114,6 @@ TEST_CASE("regression: a bond between two blocks does not depend on a third") {
   CHECK(scene_of({a, b, small}, 1).bonds.faces.size() == 1);
 }
 
-TEST_CASE("regression: write_file removes its temporary file when it cannot be renamed") {
-  const fs::path folder = fresh_folder("rename");
-  fs::create_directories(folder / "taken" / "x");
-  CHECK_THROWS_AS(write_file(folder / "taken", "x"), FileError);
-  CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
-  fs::remove_all(folder);
-}
-
 TEST_CASE("regression: the inertia of an accepted sliver is positive and does not depend on its direction") {
   for (const double thin : {1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
     const Polygon flat{{0, 0}, {1, 0}, {0.4, thin}};

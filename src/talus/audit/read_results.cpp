@@ -8,11 +8,11 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "talus/audit/check_frame.h"
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
+#include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
 #include "talus/output/read_vtk.h"
@@ -107,11 +107,27 @@ class Reader {
     // the summary does not hold the slop, nor what stages change
     rules_.slop = 1e-7;
     if (!fs::exists(folder_ / "model.toml", ec)) return;
-    const std::string model = read_text_file(folder_ / "model.toml");
-    static const std::regex slop(R"((^|\n)\s*slop\s*=\s*([0-9.eE+-]+))");
-    if (std::smatch found; std::regex_search(model, found, slop)) rules_.slop = std::stod(found[2]);
-    static const std::regex change(R"((^|\n)\s*\[\[change\]\])");
-    laws_change_ = std::regex_search(model, change);
+    read_model(read_text_file(folder_ / "model.toml"));
+  }
+
+  void read_model(std::string_view model) {
+    for (int number = 1; !model.empty(); ++number) {
+      const size_t end = std::min(model.find('\n'), model.size());
+      std::string_view line = trimmed(model.substr(0, end));
+      model.remove_prefix(std::min(end + 1, model.size()));
+      laws_change_ = laws_change_ || line.rfind("[[change]]", 0) == 0;
+      if (line.rfind("slop", 0) != 0) continue;
+      line = trimmed(line.substr(4));
+      if (line.empty() || line[0] != '=') continue;
+      line = trimmed(line.substr(1));
+      line = line.substr(0, line.find_first_not_of("0123456789.eE+-"));
+      if (line.empty()) continue;  // with a unit
+      if (line[0] == '+') line.remove_prefix(1);
+      const auto [stop, status] = std::from_chars(line.data(), line.data() + line.size(), rules_.slop);
+      if (status != std::errc{} || stop != line.data() + line.size())
+        throw FileError(fmt::format("{}:{}: slop is \"{}\", which is no number",
+                                    (folder_ / "model.toml").string(), number, line.substr(0, 40)));
+    }
   }
 
   void read_names() {

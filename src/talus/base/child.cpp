@@ -60,7 +60,9 @@ size_t address_space() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (out > 3) close_range(3, static_cast<unsigned>(out) - 1, 0);
   close_range(static_cast<unsigned>(out) + 1, ~0u, 0);
-  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds));
+  const auto seconds = static_cast<rlim_t>(limits.seconds);
+  const rlimit processor{seconds, seconds + 5};  // at the first one SIGXCPU, at the second SIGKILL
+  setrlimit(RLIMIT_CPU, &processor);
   limit(RLIMIT_CORE, 0);
   if (!kWatched) limit(RLIMIT_AS, static_cast<rlim_t>(address_space() + limits.memory));
   try {
@@ -92,9 +94,11 @@ bool read_up_to(int in, double end, std::string& bytes) {
 
 std::string reason_of(int status, bool late, const ChildLimits& limits) {
   const std::string memory = fmt::format("reading it took more than {} MiB of memory", limits.memory >> 20);
+  const std::string time = fmt::format("reading it took more than {} s", limits.seconds);
+  if (late) return time;
   if (WIFEXITED(status)) return WEXITSTATUS(status) == kNoMemory ? memory : "reading it failed";
   const int signal = WTERMSIG(status);
-  if (late || signal == SIGXCPU) return fmt::format("reading it took more than {} s", limits.seconds);
+  if (signal == SIGXCPU) return time;
   if (signal == SIGKILL)
     return "the process that reads it was killed, as the system does when memory is short";
   return fmt::format("the library that reads it has crashed ({})", strsignal(signal));
@@ -118,7 +122,7 @@ std::string work_in_child(const std::string& what, const std::function<std::stri
   if (late) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return bytes;
+  if (!late && WIFEXITED(status) && WEXITSTATUS(status) == 0) return bytes;
   throw FileError(fmt::format("{}: {}", what, reason_of(status, late, limits)));
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "talus/base/error.h"
 
 namespace talus {
@@ -9,6 +11,8 @@ namespace talus {
 const std::string& checked_json(const std::string& name, const std::string& text) {
   int depth = 0;
   bool quoted = false;
+  std::array<size_t, kMostJsonDepth + 1> keys{};
+  size_t looks = 0;  // a reader that keeps keys in their order looks through all before it adds one
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (quoted) {
@@ -21,6 +25,11 @@ const std::string& checked_json(const std::string& name, const std::string& text
     } else if (c == '[' || c == '{') {
       if (++depth > kMostJsonDepth)
         throw FileError(fmt::format("{}: is nested more than {} deep", name, kMostJsonDepth));
+      if (depth > 0) keys[static_cast<size_t>(depth)] = 0;
+    } else if (c == ':' && depth > 0) {
+      looks += keys[static_cast<size_t>(depth)]++;
+      if (looks > kMostJsonLooks)
+        throw FileError(fmt::format("{}: has more keys in one object than are read", name));
     } else if (c == ']' || c == '}') {
       --depth;
     }

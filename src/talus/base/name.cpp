@@ -37,7 +37,9 @@ std::string shown_name(std::string_view name, std::string_view kept) {
   std::string out;
   for (size_t i = 0; i < name.size(); ++i) {
     const auto byte = static_cast<unsigned char>(name[i]);
-    if (is_control(name, i) && byte < 0x80 && kept.find(name[i]) == std::string_view::npos)
+    if (is_control(name, i) && byte >= 0x80)
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(name[++i]));
+    else if (is_control(name, i) && kept.find(name[i]) == std::string_view::npos)
       out += fmt::format("\\x{:02x}", byte);
     else
       out += name[i];

@@ -12,7 +12,8 @@ inline constexpr size_t kLongestName = 100;
 /// What makes a text no name, as the end of a sentence ("\"a/b\" is no name: ..."); "" for a name.
 std::string name_defect(std::string_view name);
 
-/// A name as a message shows it: control characters, but for those of `kept`, as \xXX.
+/// A name, or any text from outside, as a message shows it: control characters, but for those of `kept`, as
+/// \xXX or \uXXXX.
 std::string shown_name(std::string_view name, std::string_view kept = "");
 
 /// A file name for a text of any kind, in no folder but its own: bytes that file names should not hold stand as

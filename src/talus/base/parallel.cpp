@@ -132,8 +132,10 @@ struct Workers::Team {
   }
 };
 
+int processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
 Workers::Workers(int threads) {
-  if (threads == 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (threads == 0) threads = processors();
   if (threads > 1) team_ = std::make_shared<Team>(threads);
 }
 

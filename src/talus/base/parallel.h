@@ -9,6 +9,9 @@
 
 namespace talus {
 
+/// Processors that this process may use, at least 1.
+int processors();
+
 /// A team of threads. Copies share it; a team of one runs everything in the caller.
 class Workers {
  public:

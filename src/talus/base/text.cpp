@@ -54,6 +54,13 @@ std::string join_or(const std::vector<std::string>& words) {
   return out;
 }
 
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 std::string readable_bytes(double bytes) {
   const char* unit[] = {"B", "kB", "MB", "GB", "TB"};
   int i = 0;

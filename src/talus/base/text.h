@@ -14,6 +14,9 @@ std::string closest_name(std::string_view word, const std::vector<std::string>& 
 /// "a, b or c"
 std::string join_or(const std::vector<std::string>& words);
 
+/// Text without blanks at its ends.
+std::string_view trimmed(std::string_view text);
+
 /// "950 B", "12.3 kB", "4.5 MB"
 std::string readable_bytes(double bytes);
 

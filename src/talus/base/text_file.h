@@ -9,8 +9,8 @@ namespace talus {
 
 /// Largest file that is read as text [bytes].
 inline constexpr size_t kMostText = size_t{4} << 30;
-/// Largest that people write: models, records, tables of histories [bytes].
-inline constexpr size_t kMostModelText = size_t{256} << 20;
+/// Largest list of results [bytes].
+inline constexpr size_t kMostResultList = size_t{256} << 20;
 
 /// Reads a whole regular file. Throws FileError naming the path and the cause: there is none, it is a folder,
 /// a pipe or a device (which may have no end), or longer than `most` bytes.

@@ -144,7 +144,7 @@ void validate(const State& s, const BlockSet& blocks) {
   promise_length_or_none(s.initial_stress, n, "initial stresses");
   promise_length_or_none(s.kept_force, n, "forces of excavated blocks");
   promise_length_or_none(s.displacement_start, n, "displacements at the start");
-  promise_length_or_none(s.strain_part_start, n, "strains at the start");
+  promise_length(s.strain_part_start, s.displacement_start.size(), "strains at the start");
   promise_length(s.bond_force, 2 * s.face.size(), "forces of faces");
   promise_length(s.column_rate, s.column_displacement.size(), "rates of columns");
   validate_candidates(s.candidates, n);

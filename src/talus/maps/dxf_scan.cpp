@@ -5,15 +5,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "talus/base/text.h"
+
 namespace talus::maps {
 
 namespace {
-
-std::string_view trimmed(std::string_view s) {
-  const size_t from = s.find_first_not_of(" \t\r");
-  if (from == std::string_view::npos) return {};
-  return s.substr(from, s.find_last_not_of(" \t\r") - from + 1);
-}
 
 // Lines of the text, LF or CRLF, numbered from 1.
 class Lines {

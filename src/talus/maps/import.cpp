@@ -20,7 +20,9 @@ std::string section_name(const std::string& text, std::set<std::string>& used) {
   std::string name;
   constexpr std::string_view kWrong = ".,\"[]*/\\";
   constexpr size_t kLongest = kLongestName - 20;  // features are numbered behind it
-  for (const char c : text.substr(0, kLongest)) {
+  size_t end = std::min(text.size(), kLongest);
+  while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  for (const char c : text.substr(0, end)) {
     const auto byte = static_cast<unsigned char>(c);
     name += kWrong.find(c) != std::string_view::npos || byte < 0x20 || byte == 0x7f ? '_' : c;
   }

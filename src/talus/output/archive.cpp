@@ -230,7 +230,11 @@ Archive parse_archive(const std::string& name, const std::string& bytes) {
   return archive;
 }
 
-Archive read_archive(const fs::path& path) { return parse_archive(path.string(), read_text_file(path)); }
+Archive read_archive(const fs::path& path) {
+  // as long as the memory that wrote it allowed
+  constexpr size_t kMost = size_t{1} << 40;
+  return parse_archive(path.string(), read_text_file(path, kMost));
+}
 
 namespace archive_detail {
 

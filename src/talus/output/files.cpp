@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 
 #include "talus/base/descriptor.h"
@@ -76,6 +78,14 @@ void check_continued(const fs::path& path, int64_t size) {
     throw FileError(
         fmt::format("{}: has {} bytes, and had {} when the state was saved: it cannot be continued",
                     path.string(), there.st_size, size));
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+  char last = '\n';
+  if (file < 0 || (size > 0 && pread(file, &last, 1, size - 1) != 1)) fail_file(path, "read", errno);
+  if (last != '\n')
+    throw FileError(
+        fmt::format("{}: has no row that ends at its byte {}, where one ended when the state was saved: it "
+                    "cannot be continued",
+                    path.string(), size));
 }
 
 void write_file(const fs::path& path, std::string_view content, Reach reach) {
@@ -109,6 +119,14 @@ void sync_folder(const fs::path& folder) {
 void sync_files_of(const fs::path& folder) {
   const Descriptor file(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (file < 0 || syncfs(file) != 0) fail_file(folder, "brought to the disk", errno);
+}
+
+bool is_being_written(const fs::path& unfinished) {
+  const std::string name = unfinished.filename().string();
+  const char* number = name.c_str() + kUnfinishedBegin.size();
+  long process = 0;
+  std::from_chars(number, name.c_str() + name.size(), process);
+  return process > 0 && (kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM);
 }
 
 bool is_unfinished_file(const fs::path& path) {

@@ -8,10 +8,12 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <thread>
 
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
@@ -104,6 +106,11 @@ Descriptor open_lock(const fs::path& path) {
     if (!same_file(file, path)) continue;
     const std::optional<Holder> holder = read_holder(path);
     const std::string who = holder ? holder->text() : "another process";
+    // somebody who only looks whether the folder is in use holds it for a moment
+    if (held == Grip::kTaken && holder && !lives(*holder) && i + 1 < kTries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      continue;
+    }
     if (held == Grip::kTaken) fail_in_use(path.parent_path(), who);
     if (holder && holder->host != this_host())
       throw FileError(

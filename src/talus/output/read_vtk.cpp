@@ -153,11 +153,13 @@ std::vector<SeriesEntry> parse_series(const fs::path& pvd, std::string_view all,
   if (cut_short) *cut_short = tail == std::string_view::npos;
   all = all.substr(0, tail);
   constexpr std::string_view kBegin = "<DataSet";
-  for (size_t at = all.find(kBegin); at != std::string_view::npos; at = all.find(kBegin, at + 1)) {
+  for (size_t at = all.find(kBegin); at != std::string_view::npos; at = all.find(kBegin, at)) {
     const size_t close = all.find('>', at);
     if (close == std::string_view::npos && tail == std::string_view::npos) break;  // being written
     if (close == std::string_view::npos) refuse(pvd.string(), "has an entry without end");
     const std::string_view head = all.substr(at, close - at);
+    at = close;
+    if (head.find('<', 1) != std::string_view::npos) refuse(pvd.string(), "has an entry without end");
     SeriesEntry entry;
     if (!parse_number(attribute(head, "timestep"), entry.time) || !std::isfinite(entry.time))
       refuse(pvd.string(), "has an entry without time");

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -37,9 +38,43 @@ bool is_frame(const std::string& name) {
   return name.rfind("fields/", 0) == 0 && fs::path(name).extension() != ".pvd";
 }
 
-// Bytes up to the end of the last line that has one.
-off_t whole_lines(const fs::path& path) {
-  return static_cast<off_t>(read_text_file(path, kMostModelText).rfind('\n') + 1);
+// Lets nobody else write lines while it exists; on a file system without locks it does nothing.
+class Turn {
+ public:
+  explicit Turn(int file) : file_(file) {
+    while (flock(file_, LOCK_EX) != 0 && errno == EINTR) continue;
+  }
+  ~Turn() { (void)flock(file_, LOCK_UN); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  int file_;
+};
+
+Descriptor open_lines(const fs::path& path) {
+  Descriptor file(open(path.c_str(), O_RDWR | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
+  if (file < 0) fail_file(path, "written", errno);
+  return file;
+}
+
+// Adds a line, behind the last one that is whole. Throws FileError; then no part of it stays.
+void add_line(int file, const fs::path& path, const std::string& line) {
+  const Turn mine(file);
+  struct stat there {};
+  if (fstat(file, &there) != 0) fail_file(path, "written", errno);
+  off_t size = there.st_size;
+  char last = '\n';
+  if (size > 0 && pread(file, &last, 1, size - 1) != 1) fail_file(path, "read", errno);
+  if (last != '\n') {  // what a killed process or a full disk left of a line
+    size = static_cast<off_t>(read_text_file(path, kMostResultList).rfind('\n') + 1);
+    if (ftruncate(file, size) != 0) fail_file(path, "cut back", errno);
+  }
+  size_t done = 0;
+  if (const int error = write_all(file, line + "\n", done); error != 0) {
+    (void)(ftruncate(file, size) == 0);  // else readers leave out a line without end
+    fail_file(path, "written", error);
+  }
 }
 
 // A path that stays inside the folder.
@@ -55,7 +90,7 @@ std::optional<Manifest> read_manifest(const fs::path& folder) {
   const fs::path path = folder / ResultFolder::kManifest;
   std::error_code ec;
   if (!fs::exists(path, ec)) return std::nullopt;
-  const std::string text = read_text_file(path, kMostModelText);
+  const std::string text = read_text_file(path, kMostResultList);
   Manifest m;
   size_t begin = 0;
   for (size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -146,7 +181,7 @@ void remove_unfinished_in(const fs::path& folder) {
   std::error_code ec;
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(folder, ec))
-    if (is_unfinished_file(entry.path())) left.push_back(entry.path());
+    if (is_unfinished_file(entry.path()) && !is_being_written(entry.path())) left.push_back(entry.path());
   for (const fs::path& path : left) fs::remove(path, ec);
 }
 
@@ -170,6 +205,8 @@ void remove_result(const fs::path& folder, const fs::path& name) {
   if (unlink(at.c_str()) != 0 && errno != ENOENT) fail_file(at, "removed", errno);
 }
 
+// All but the manifest, which is replaced by that of the new results: a process killed in between leaves a
+// folder that says whose it is.
 void remove_results(const fs::path& folder, ResultKind kind) {
   const auto manifest = read_manifest(folder);
   const std::vector<std::string> names = manifest ? manifest->names : results_by_name(folder, kind);
@@ -183,7 +220,6 @@ void remove_results(const fs::path& folder, ResultKind kind) {
     remove_unfinished_in(inside);
     rmdir(inside.c_str());  // stays when the user has something in it
   }
-  remove_result(folder, ResultFolder::kManifest);
 }
 
 // The kind of what is there; checks that a result of `kind` may replace it.
@@ -194,12 +230,13 @@ std::optional<ResultKind> check_replaced(const fs::path& folder, bool force, Res
     throw FileError(fmt::format("{}: is a file, not a folder", folder.string()));
   const auto entries = fs::directory_iterator(folder, ec);
   if (ec) fail_file(folder, "read", ec.value());
-  const bool empty = std::none_of(begin(entries), end(entries), [locked](const auto& entry) {
-    return !locked || entry.path().filename() != FolderLock::kName;
-  });
-  if (empty) return std::nullopt;
   if (!locked)
     if (const std::string user = user_of_folder(folder); !user.empty()) fail_in_use(folder, user);
+  // a process killed before it wrote anything leaves its lock, or a file that it had not finished
+  const bool empty = std::none_of(begin(entries), end(entries), [](const auto& entry) {
+    return entry.path().filename() != FolderLock::kName && !is_unfinished_file(entry.path());
+  });
+  if (empty) return std::nullopt;
   if (!force)
     throw FileError(
         fmt::format("{}: exists already; nothing was run. Give another folder with -o, or --force to "
@@ -225,7 +262,6 @@ std::optional<ResultKind> check_replaced(const fs::path& folder, bool force, Res
 struct ResultFolder::Parts {
   std::optional<FolderLock> lock;
   Descriptor manifest;
-  off_t size = 0;               // of the manifest [bytes]
   std::set<std::string> noted;  // but for frames, which are many and each noted once
 };
 
@@ -244,7 +280,10 @@ ResultFolder::ResultFolder(const fs::path& folder, bool force, ResultKind kind) 
   if (ec) fail_file(folder, "created", ec.value());
   lock();
   // once more: between the first look and the lock another process may have come and gone
-  if (const auto there = check_replaced(folder, force, kind, true)) remove_results(folder, *there);
+  if (const auto there = check_replaced(folder, force, kind, true))
+    remove_results(folder, *there);
+  else
+    remove_unfinished_in(folder);
   open_manifest(fmt::format("{}{}\n", kBegin, kKindName[static_cast<size_t>(kind)]));
 }
 
@@ -273,10 +312,7 @@ void ResultFolder::lock() { parts_->lock.emplace(path_); }
 void ResultFolder::open_manifest(const std::string& begin) {
   const fs::path path = path_ / kManifest;
   if (!begin.empty()) write_file(path, begin);
-  parts_->manifest = Descriptor(open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
-  if (parts_->manifest < 0) fail_file(path, "written", errno);
-  parts_->size = whole_lines(path);
-  if (ftruncate(parts_->manifest, parts_->size) != 0) fail_file(path, "cut back", errno);
+  parts_->manifest = open_lines(path);
 }
 
 std::string ResultFolder::stale_lock() const {
@@ -289,13 +325,12 @@ std::string ResultFolder::stale_lock() const {
 fs::path ResultFolder::note(const std::string& name) {
   TALUS_ASSERT(is_inside(name));
   if (!is_frame(name) && !parts_->noted.insert(name).second) return path_ / name;
-  size_t done = 0;
-  if (const int error = write_all(parts_->manifest, name + "\n", done); error != 0) {
+  try {
+    add_line(parts_->manifest, path_ / kManifest, name);
+  } catch (...) {
     parts_->noted.erase(name);
-    (void)(ftruncate(parts_->manifest, parts_->size) == 0);  // else readers leave out a line without end
-    fail_file(path_ / kManifest, "written", error);
+    throw;
   }
-  parts_->size += static_cast<off_t>(done);
   return path_ / name;
 }
 
@@ -330,13 +365,7 @@ void note_result(const fs::path& folder, const fs::path& file) {
   if (std::find(manifest->names.begin(), manifest->names.end(), inside.string()) != manifest->names.end())
     return;
   const fs::path path = folder / ResultFolder::kManifest;
-  const Descriptor out(open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
-  // a line that a full disk cut short, unless a run is just writing it
-  if (out >= 0 && user_of_folder(folder).empty() && ftruncate(out, whole_lines(path)) != 0)
-    fail_file(path, "cut back", errno);
-  size_t done = 0;
-  const int error = out < 0 ? errno : write_all(out, inside.string() + "\n", done);
-  if (error != 0) fail_file(path, "written", error);
+  add_line(open_lines(path), path, inside.string());
 }
 
 void note_figure(const fs::path& folder, const fs::path& stem) {

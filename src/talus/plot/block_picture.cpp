@@ -108,8 +108,9 @@ void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
   const auto& stress = f.at("stress xx yy xy [Pa]", 3, static_cast<long>(ends.tuples()));
   size_t v = 0;
   for (size_t b = 0; b < ends.tuples(); ++b) {
-    const auto end =
-        static_cast<size_t>(std::clamp(ends.values[b], static_cast<double>(v), static_cast<double>(corners)));
+    if (!(ends.values[b] >= static_cast<double>(v + 3) && ends.values[b] <= static_cast<double>(corners)))
+      throw FileError(f.file + ": a block has less than three corners, or more than there are");
+    const auto end = static_cast<size_t>(ends.values[b]);
     Shape shape;
     Vec2 u, rate;
     const size_t begin = v;
@@ -118,7 +119,6 @@ void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
       shape.polygon.push_back(point_at(points, v) + (picture.deformation - 1) * d);
       u += d, rate += point_at(velocity, v);
     }
-    if (v - begin < 3) throw FileError(f.file + ": a block has less than three corners");
     const auto n = static_cast<double>(v - begin);
     const double* t = &stress.values[3 * b];
     if (s.quantity) shape.value = block_quantities_of(u / n, rate / n, {t[0], t[2], t[2], t[1]})[quantity];

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/text.h"
 #include "talus/record/units.h"
 
 namespace talus::record {
@@ -45,6 +46,14 @@ Lines split_lines(const std::string& file, const std::string& text) {
 void fail(const Lines& lines, size_t number, const std::string& text, const std::string& hint) {
   const std::string place = number > 0 ? fmt::format("{}:{}", lines.file, number) : lines.file;
   throw InputError(fmt::format("{}: error: {}\n      = {}", place, text, hint));
+}
+
+void check_header_line(const Lines& lines, size_t number) {
+  constexpr size_t kMost = 1000;  // [bytes]
+  const size_t size = lines.line[number - 1].size();
+  if (size > kMost)
+    fail(lines, number, fmt::format("a line of the header has {} bytes, more than {}", size, kMost),
+         "correct the line, or fetch the record again");
 }
 
 double number_at(const Lines& lines, size_t number, std::string_view token, std::string_view what) {

@@ -22,6 +22,9 @@ Lines split_lines(const std::string& file, const std::string& text);
 /// @param number  line from 1; 0: the file as a whole
 [[noreturn]] void fail(const Lines& lines, size_t number, const std::string& text, const std::string& hint);
 
+/// Throws by fail() where a line is longer than headers are: what takes them apart goes as deep as they are long.
+void check_header_line(const Lines& lines, size_t number);
+
 /// The number that `token` is (also ".5", "+1.2E-03", "1.2D-3"). Throws by fail() on text, nan, inf and
 /// numbers too large for a double; `what` names the thing in the message.
 double number_at(const Lines& lines, size_t number, std::string_view token, std::string_view what);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <regex>
 
+#include "talus/base/text.h"
 #include "talus/record/formats.h"
 
 namespace talus::record {
@@ -25,6 +26,7 @@ Entry find_entry(const Lines& lines, std::string_view label) {
   for (size_t n = 1; n <= std::min(lines.count(), kKnetHeader); ++n) {
     const std::string& line = lines.line[n - 1];
     if (lower_case(line).rfind(label, 0) != 0) continue;
+    check_header_line(lines, n);
     return {
         n, line.size() > kLabelWidth ? std::string(trimmed(std::string_view(line).substr(kLabelWidth))) : ""};
   }

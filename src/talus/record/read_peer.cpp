@@ -7,6 +7,7 @@
 #include <charconv>
 #include <regex>
 
+#include "talus/base/text.h"
 #include "talus/record/formats.h"
 
 namespace talus::record {
@@ -31,6 +32,7 @@ Counts find_counts(const Lines& lines) {
   for (size_t n = 1; n <= std::min(lines.count(), kPeerHeader); ++n) {
     const std::string& line = lines.line[n - 1];
     if (lower_case(line).find("npts") == std::string::npos) continue;
+    check_header_line(lines, n);
     std::smatch match;
     if (!std::regex_search(line, match, kNamed) && !std::regex_match(line, match, kOld))
       fail(lines, n, fmt::format("count and time step are not understood: \"{}\"", trimmed(line)),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <regex>
 
+#include "talus/base/text.h"
 #include "talus/record/formats.h"
 #include "talus/record/table.h"
 
@@ -42,6 +43,7 @@ JmaHeader read_jma_header(const Lines& lines) {
     std::string value(trimmed(line.substr(equal + 1)));
     while (!value.empty() && (value.back() == ',' || value.back() == ' ')) value.pop_back();
     if (key.rfind("sampling rate", 0) == 0) {
+      check_header_line(lines, n);
       std::smatch match;
       if (!std::regex_match(value, match, kRate))
         fail(lines, n, fmt::format("the sampling rate \"{}\" is not understood", value),

@@ -1,4 +1,5 @@
 #include "talus/record/table.h"
+#include "talus/base/text.h"
 
 #include <fmt/format.h>
 

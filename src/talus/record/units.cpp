@@ -1,4 +1,5 @@
 #include "talus/record/units.h"
+#include "talus/base/text.h"
 
 #include <array>
 #include <cctype>
@@ -110,13 +111,6 @@ Title parse_title(std::string_view title) {
   }
   out.name = std::string(rest);
   return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 std::string lower_case(std::string_view text) {

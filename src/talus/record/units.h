@@ -39,8 +39,6 @@ struct Title {
 };
 Title parse_title(std::string_view title);
 
-/// Text without blanks at its ends.
-std::string_view trimmed(std::string_view text);
 /// Text in lower case (ASCII letters only).
 std::string lower_case(std::string_view text);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "talus/base/error.h"
 #include "talus/geometry/polygon.h"
@@ -124,7 +125,8 @@ std::vector<Span> BlockFrame::spans() const {
   for (size_t i = 0; i < present.size(); ++i) {
     if (!present[i]) continue;
     const auto all = block_quantities_of(displacement[i], velocity[i], stress[i]);
-    for (size_t q = 0; q < values.size(); ++q) values[q].push_back(all[q]);
+    for (size_t q = 0; q < values.size(); ++q)
+      if (std::isfinite(all[q])) values[q].push_back(all[q]);
   }
   std::vector<Span> out;
   for (std::vector<double>& v : values) {
@@ -152,9 +154,12 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   std::vector<Vec2> zero(now.size());
   for (size_t v = 0; v < now.size(); ++v) zero[v] = now[v] - moved[v];
 
-  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k)
+  std::set<int> seen;
+  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
     if (end[k] < static_cast<int>(begin) + 3 || end[k] > corners || id[k] < 0)
       refuse(file, "a block has less than three corners, or no number");
+    if (!seen.insert(id[k]).second) refuse(file, "a block is there twice");
+  }
   for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
     const double area = signed_area(std::span(zero).subspan(begin, static_cast<size_t>(end[k]) - begin));
     if (!std::isfinite(area) || area == 0) refuse(file, "a block has no area");

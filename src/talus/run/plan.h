@@ -19,6 +19,8 @@ struct StagePlan {
   double clamp_dt = 0;     // undamped step that clamped blocks must allow [s]
   int clamped = 0;         // blocks whose moments are raised
   double largest_clamp = 1;
+
+  bool operator==(const StagePlan&) const = default;
 };
 
 /// Plans every stage of the scene. A step above the stable limit, or none where none can be derived, is a

@@ -88,6 +88,7 @@ constexpr const char *kJointsSize = "recorder.joints_csv", *kBoltsSize = "record
 constexpr const char* kSlipsSize = "recorder.slips_csv";
 constexpr size_t kSavedStates = 2;  // between stages
 
+std::string dump_name(int64_t step) { return fmt::format("step_{}.json", step); }
 std::string step_name(int64_t step) { return fmt::format("step_{:09}.h5", step); }
 
 // Number of the step in the name of a state between stages; none in any other name, which is the user's.
@@ -115,7 +116,7 @@ std::string table_then(ResultFolder& folder, const char* name, int64_t size) {
   }
   std::string text = read_text_file(path);
   text.resize(static_cast<size_t>(size));  // check_tables(): it is that long
-  folder.write(name, text);
+  folder.write(name, text, Reach::kDisk);
   return text;
 }
 
@@ -142,6 +143,8 @@ void check_tables(const std::filesystem::path& folder, const Archive& saved) {
                                    std::pair("steps.csv", kStepsSize), std::pair("joints.csv", kJointsSize),
                                    std::pair("bolts.csv", kBoltsSize), std::pair("slips.csv", kSlipsSize)}) {
     const int64_t then = size_in(saved, size);
+    const bool grows = std::string_view(name) == "histories.csv" || std::string_view(name) == "steps.csv";
+    if (then == 0 && grows) throw FileError(fmt::format("the saved state is damaged: {} had no title", name));
     if (then != 0) check_continued(folder / name, then);
   }
 }
@@ -178,7 +181,7 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, RunNotes notes)
 
 Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved, RunNotes notes)
     : scene_(scene),
-      folder_(checked(std::move(folder), scene, saved)),
+      folder_(taken_up(std::move(folder), scene, saved)),
       notes_(std::move(notes)),
       model_(model_in_numbers(scene).dump()),
       history_file_(folder_.note("histories.csv"), size_in(saved, kHistorySize)),
@@ -193,7 +196,6 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved
       last_flush_(wall_now()),
       last_saved_(wall_now()) {
   if (scene.model.output.audit) auditor_.emplace(scene);
-  folder_.write("summary.json", running_text(scene), Reach::kDisk);
   load(saved);
   find_saved();
 }
@@ -219,8 +221,7 @@ void Recorder::load(const Archive& saved) {
   if (!scene_.model.bolts.empty()) bolt_frames_.go_on(times);
 }
 
-// Whatever is wrong with the state or the results shows before any of them is cut back.
-ResultFolder Recorder::checked(ResultFolder folder, const Scene& scene, const Archive& saved) {
+void Recorder::check(const ResultFolder& folder, const Scene& scene, const Archive& saved) {
   try {
     Loader from(saved);
     Histories(scene, nullptr).load(from);
@@ -237,6 +238,12 @@ ResultFolder Recorder::checked(ResultFolder folder, const Scene& scene, const Ar
   }
   check_tables(folder.path(), saved);
   check_frames(folder.path(), saved, !scene.model.bolts.empty());
+}
+
+// Before any of the results is cut back.
+ResultFolder Recorder::taken_up(ResultFolder folder, const Scene& scene, const Archive& saved) {
+  check(folder, scene, saved);
+  folder.write("summary.json", running_text(scene), Reach::kDisk);
   return folder;
 }
 
@@ -344,7 +351,8 @@ void Recorder::at(const Instant& i) {
   record_step(i);
   const bool failure = i.report.failed && !due_.dumped_failure;
   if (failure || i.state.step == dump_step_) {
-    write_dump(i);
+    const std::string name = write_dump(i);
+    if (failure) left_.step = name;
     due_.dumped_failure = due_.dumped_failure || failure;
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, due_.frame);
@@ -372,7 +380,8 @@ void Recorder::at(const Instant& i) {
 void Recorder::fails(const Instant& i) {
   const std::lock_guard lock(taking_);
   if (ended_) return;
-  if (left_.step.empty()) write_dump(i);
+  // a step that failed before, and did not end the run, is not the one to look at
+  if (left_.step != dump_name(i.state.step)) left_.step = write_dump(i);
   left_.frame = i.state.time;
   if (block_frames_.times().empty() || block_frames_.times().back() < i.state.time) write_frame(i);
   write_joints(i, i.stage);
@@ -380,13 +389,13 @@ void Recorder::fails(const Instant& i) {
                                              bolt_lines(scene_, i.state, i.stage), joint_lines(scene_, i)));
 }
 
-// The equations of a step as a file; of a very large one only when it was asked for.
-void Recorder::write_dump(const Instant& i) {
+// The equations of a step as a file, whose name it gives; of a very large one only when it was asked for.
+std::string Recorder::write_dump(const Instant& i) {
   constexpr size_t kMostPoints = 200000;
-  if (i.work.rows.points.size() > kMostPoints && i.state.step != dump_step_) return;
-  const std::string name = fmt::format("step_{}.json", i.state.step);
+  if (i.work.rows.points.size() > kMostPoints && i.state.step != dump_step_) return "";
+  const std::string name = dump_name(i.state.step);
   folder_.write(name, problem_text(i));
-  if (i.state.step != dump_step_ || i.report.failed) left_.step = name;
+  return name;
 }
 
 void Recorder::record_step(const Instant& i) {
@@ -416,6 +425,8 @@ void Recorder::write_frame(const Instant& i) {
     bolt_frames_.add(i.state.time, bolts_vtp(bolt_lines(scene_, i.state, i.stage), i.state.time));
 }
 
+// Tables that are replaced as a whole reach the disk at once: states that are there already count on them.
+
 // The bolts at the end of a stage: at the last instant, or at the first of the stage after it.
 void Recorder::write_bolts(const Instant& i) {
   if (scene_.model.bolts.empty()) return;
@@ -423,7 +434,7 @@ void Recorder::write_bolts(const Instant& i) {
   if (bolt_table_.empty()) bolt_table_ = bolts_csv_head();
   bolt_table_ += bolts_csv_rows(scene_.model.stages[static_cast<size_t>(stage)].name, i.state.time,
                                 bolt_lines(scene_, i.state, stage));
-  folder_.write("bolts.csv", bolt_table_);
+  folder_.write("bolts.csv", bolt_table_, Reach::kDisk);
 }
 
 void Recorder::write_joints(const Instant& i, int stage) {
@@ -439,14 +450,14 @@ void Recorder::write_joints(const Instant& i, int stage) {
     joints_ += joint_row(scene_, *point, name, i.state.time);
   }
   joint_summary_.time = i.state.time;
-  folder_.write("joints.csv", joints_);
+  folder_.write("joints.csv", joints_, Reach::kDisk);
 
   const std::vector<SlippedJoint> list = slipped.sorted();
   if (slips_.empty()) slips_ = slips_header();
   for (const SlippedJoint& joint : list) slips_ += slips_row(scene_, joint, name, i.state.time);
   joint_summary_.slipped_joints = static_cast<int>(list.size());
   if (!list.empty()) joint_summary_.most_residual = list[0].most;
-  folder_.write("slips.csv", slips_);
+  folder_.write("slips.csv", slips_, Reach::kDisk);
 }
 
 std::optional<audit::Report> Recorder::audit() const {
@@ -460,6 +471,7 @@ void Recorder::finish(const RunResult& result) {
   flush_tables();
   if (!result.failure.empty()) write_held();
   folder_.write("summary.json", summary_of(result), Reach::kDisk);
+  ended_ = true;
 }
 
 namespace {
@@ -478,11 +490,15 @@ std::string failed_text(const std::string& summary, const std::string& why, cons
 void Recorder::abandon(const std::string& why) noexcept {
   const std::lock_guard lock(taking_);
   if (ended_) return;
-  folder_.free_reserve();
   try {
     flush_tables();
   } catch (const std::exception&) {  // the rows of the last second; the table stays whole
   }
+  write_last_word(why);
+}
+
+void Recorder::write_last_word(const std::string& why) noexcept {
+  folder_.free_reserve();
   try {
     folder_.write("summary.json",
                   failed_text(held_ ? held_->summary : running_text(scene_), why, left_.state), Reach::kDisk);
@@ -494,7 +510,9 @@ void Recorder::abandon_begun(const std::filesystem::path& folder, const std::str
   try {
     const std::string summary = read_text_file(folder / "summary.json");
     if (nlohmann::json::parse(summary).value("status", "") != "running") return;
-    ResultFolder::go_on(folder).write("summary.json", failed_text(summary, why, ""), Reach::kDisk);
+    ResultFolder results = ResultFolder::go_on(folder);
+    results.free_reserve();
+    results.write("summary.json", failed_text(summary, why, ""), Reach::kDisk);
   } catch (const std::exception&) {  // the same
   }
 }
@@ -502,11 +520,19 @@ void Recorder::abandon_begun(const std::filesystem::path& folder, const std::str
 void Recorder::end_as_held() {
   const std::lock_guard lock(taking_);
   if (ended_) return;
+  const std::string text = held_ ? held_->summary : running_text(scene_);
+  try {
+    write_held();
+    auto summary = nlohmann::ordered_json::parse(text);
+    summary["status"] = "interrupted";
+    folder_.write("summary.json", summary.dump(2) + "\n", Reach::kDisk);
+  } catch (const std::exception& e) {
+    write_last_word(e.what());
+    ended_ = true;
+    folder_.release();
+    throw;
+  }
   ended_ = true;
-  write_held();
-  auto summary = nlohmann::ordered_json::parse(held_ ? held_->summary : running_text(scene_));
-  summary["status"] = "interrupted";
-  folder_.write("summary.json", summary.dump(2) + "\n", Reach::kDisk);
   folder_.release();
 }
 

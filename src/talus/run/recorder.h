@@ -25,10 +25,13 @@ class Recorder : public Observer {
  public:
   /// @param folder  ready for results
   Recorder(const Scene& scene, ResultFolder folder, RunNotes notes = {});
-  /// Goes on in the folder of a saved run: what was written after the state was saved is cut off. Throws
-  /// FileError when the folder is not as it was.
+  /// Goes on in the folder of a saved run: what was written after the state was saved is cut off. Throws as
+  /// check().
   Recorder(const Scene& scene, ResultFolder folder, const Archive& saved, RunNotes notes = {});
   ~Recorder() override;
+  /// Throws FileError when the results in the folder are not as they were when the state was saved, or the
+  /// state is damaged. Changes nothing.
+  static void check(const ResultFolder& folder, const Scene& scene, const Archive& saved);
 
   /// Saves the state in saved/: stage_NN.h5 at the end of each stage; in between at intervals of wall time
   /// step_N.h5, of which the last two stay.
@@ -63,7 +66,8 @@ class Recorder : public Observer {
 
   /// Ends the results as if the run had been interrupted when its state was last held in memory, and saves
   /// that state: for a process that has to end while a step goes on. May be called from another thread; no
-  /// result is taken any more, and the folder is free for others.
+  /// result is taken any more, and the folder is free for others. Throws when that cannot be written;
+  /// summary.json then says why.
   void end_as_held();
 
   /// Files that a failed run leaves to look at, by their path in the folder; "" for none.
@@ -90,7 +94,8 @@ class Recorder : public Observer {
     static void exchange(X& x, Self& due);
   };
 
-  static ResultFolder checked(ResultFolder folder, const Scene& scene, const Archive& saved);
+  static ResultFolder taken_up(ResultFolder folder, const Scene& scene, const Archive& saved);
+  void write_last_word(const std::string& why) noexcept;
   void load(const Archive& saved);
   Archive archive_of(const Standing& standing, const State& state) const;
   std::string summary_of(const RunResult& result) const;
@@ -100,7 +105,7 @@ class Recorder : public Observer {
   void flush_tables();
   void find_saved();
   void record_step(const Instant& instant);
-  void write_dump(const Instant& instant);
+  std::string write_dump(const Instant& instant);
   void write_frame(const Instant& instant);
   void write_bolts(const Instant& instant);
   void write_joints(const Instant& instant, int stage);

@@ -408,7 +408,7 @@ RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, con
 int threads_for(int blocks) {
   // below this many blocks to a thread the handing over of work costs as much as it gains
   constexpr int kBlocksPerThread = 2000;
-  return std::clamp(blocks / kBlocksPerThread, 1, Workers(0).threads());
+  return std::clamp(blocks / kBlocksPerThread, 1, processors());
 }
 
 std::string profile_text(const Profile& profile, int threads, int64_t steps) {

@@ -201,12 +201,14 @@ TEST_CASE("one writer per folder") {
   }
   SUBCASE("what killed writers did not finish is cleared away") {
     fs::create_directories(folder / "saved");
-    put(folder / ".talus-1-0.part", "x");
-    put(folder / "saved" / ".talus-1-1.part", "x");
+    put(folder / ".talus-1-7.part", "half");
+    put(folder / ".talus-99999999-0.part", "x");
+    put(folder / "saved" / ".talus-99999999-1.part", "x");
     put(folder / "mine.part", "x");
     { ResultFolder results = ResultFolder::go_on(folder); }
-    CHECK_FALSE(fs::exists(folder / ".talus-1-0.part"));
-    CHECK_FALSE(fs::exists(folder / "saved" / ".talus-1-1.part"));
+    CHECK_FALSE(fs::exists(folder / ".talus-99999999-0.part"));
+    CHECK(fs::exists(folder / ".talus-1-7.part"));  // its process lives
+    CHECK_FALSE(fs::exists(folder / "saved" / ".talus-99999999-1.part"));
     CHECK(fs::exists(folder / "mine.part"));
   }
 }

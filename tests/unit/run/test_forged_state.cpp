@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -164,6 +165,41 @@ void forge_each(int count) {
 }
 
 }  // namespace
+
+TEST_CASE("forged states: what would be found late is refused at once") {
+  const Saved saved;
+  const Archive right = read_archive(saved.folder / "whole" / "saved" / saved.state.string());
+  const auto refused = [&](const char* what, const std::function<void(Archive&)>& forge) {
+    INFO(what);
+    Archive wrong = right;
+    forge(wrong);
+    CHECK(go_on(saved, wrong) == End::kRefused);
+  };
+  refused("a boundary that there is not sets the step",
+          [](Archive& a) { a.numbers.at("run.stages.bound_column").back() = 0; });
+  refused("the plan of a stage that is over",
+          [](Archive& a) { a.numbers.at("run.stages.plan_steps")[0] += 1; });
+  refused("displacements at the start without strains",
+          [](Archive& a) { a.numbers.at("state.strain_part_start").clear(); });
+  refused("a block that is excavated by then touches something", [&](Archive& a) {
+    const auto prop = static_cast<double>(saved.prepare().scene.layout.blocks_called("prop")[0]);
+    REQUIRE(!a.numbers.at("state.candidates.reach").empty());
+    std::vector<double>& first = a.numbers.at("state.pairs.a");
+    const auto &begin = a.numbers.at("state.pairs.begin"), &count = a.numbers.at("state.pairs.count");
+    size_t p = 0;  // where the order of pairs stays
+    while (p < first.size() && !(first[p] > prop && (p == 0 || first[p - 1] < prop))) ++p;
+    REQUIRE(p < first.size());
+    for (const char* side : {"block_a", "block_b"}) {
+      std::vector<double>& block = a.numbers.at(std::string("state.contacts.") + side);
+      for (auto c = static_cast<size_t>(begin[p]); c < static_cast<size_t>(begin[p] + count[p]); ++c)
+        if (block[c] == first[p]) block[c] = prop;
+    }
+    first[p] = prop;
+  });
+  refused("a table that ends in a number",
+          [](Archive& a) { a.numbers.at("recorder.histories_csv")[0] -= 3; });
+  refused("a table without title", [](Archive& a) { a.numbers.at("recorder.steps_csv")[0] = 0; });
+}
 
 TEST_CASE("states of runs that are stopped at the begin of a stage are taken up") {
   struct StopsAtStage : Observer {

@@ -4,14 +4,14 @@
 
 #include "talus/audit/read_results.h"
 #include "talus/base/error.h"
-#include "talus/base/name.h"
+#include "tell.h"
 
 namespace talus::app {
 
 int audit_command(const std::string& folder, int threads) {
   const audit::FolderAudit a = audit::audit_folder(folder, Workers(threads));
-  for (const std::string& line : a.report.lines(a.names)) fmt::print("{}\n", shown_name(line));
-  fmt::print(
+  for (const std::string& line : a.report.lines(a.names)) show("{}\n", line);
+  show(
       "{}: {} frames looked at, {}; largest unexplained overlap {:.2g} of the smaller block, deepest closure "
       "{:.2g} % of its thickness\n",
       folder, a.report.frames,

@@ -16,6 +16,7 @@
 #include "talus/plot/cut_picture.h"
 #include "talus/plot/map_picture.h"
 #include "talus/run/check_monitors.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -27,7 +28,7 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   const maps::ExpandedModel expanded =
       maps::expand_model(file, text_of_file, overrides, maps::read_drawing, map_findings);
   map_findings.throw_if_errors();
-  if (map_findings.warning_count() > 0) fmt::print(stderr, "{}", map_findings.render());
+  if (map_findings.warning_count() > 0) tell(map_findings.render());
   const std::string& text = expanded.text;
   Findings findings(file, text);
   Model model = read_model(file, text, expanded.overrides, findings);
@@ -43,7 +44,7 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   const Layout layout = checked_layout(model, cut, findings);
   check_monitors(model, layout, findings);
   findings.throw_if_errors();
-  if (findings.warning_count() > 0) fmt::print(stderr, "{}", findings.render());
+  if (findings.warning_count() > 0) tell(findings.render());
 
   ResultFolder out(folder, force, ResultKind::kCut);
   const CutStatistics statistics = cut_statistics(model, cut);
@@ -57,7 +58,7 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   out.write("report.txt", report);
   plot::write_cut_picture(model, cut, layout, out.note_picture("cut"));
   if (expanded.has_maps) plot::write_map_picture(expanded.report, out.note_picture("map"));
-  fmt::print(
+  show(
       "{}\nwritten to {}: cut.png and cut.svg (picture), {}blocks.json (for cut.blocks), blocks.csv, "
       "slivers.csv, report.txt, cut.json, model.toml{}\n",
       report, folder, expanded.has_maps ? "map.png and map.svg (maps before and after cleaning), " : "",

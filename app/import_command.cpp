@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <numbers>
 
 #include "talus/base/error.h"
@@ -10,6 +11,7 @@
 #include "talus/model/units.h"
 #include "talus/output/files.h"
 #include "talus/plot/map_picture.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -63,10 +65,13 @@ int import_command(const ImportArguments& args) {
     throw Error(kExitUsage, "--curve-step: must be from 1 deg to 90 deg");
   request.maps.has_origin = args.origin.size() == 2;
   if (request.maps.has_origin) request.maps.origin = {args.origin[0], args.origin[1]};
+  std::error_code ec;
+  if (std::filesystem::equivalent(args.file, args.output, ec))
+    throw Error(kExitUsage, fmt::format("-o {}: is the map itself; give another name", args.output));
   Findings findings(args.file, "");
   const maps::MapSections made = maps::import_map(request, maps::read_drawing, findings);
   findings.throw_if_errors();
-  fmt::print(stderr, "{}{}", findings.render(), map_report_text(made.report));
+  tell("{}{}", findings.render(), map_report_text(made.report));
   if (!args.picture.empty()) plot::write_map_picture(made.report, args.picture);
   if (args.output.empty() || args.output == "-")
     fmt::print("{}", made.text);

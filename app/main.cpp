@@ -28,10 +28,10 @@
 #include "run_command.h"
 #include "safety_command.h"
 #include "signals.h"
-#include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/talus.h"
+#include "tell.h"
 #include "verify_command.h"
 
 namespace {
@@ -161,8 +161,8 @@ int verb_of_line(int argc, char** argv) {
     verbs.push_back(verb->get_name());
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
     const std::string near = talus::closest_name(argv[1], verbs);
-    fmt::print(
-        stderr, "talus: unknown verb \"{}\"; {}\n", argv[1],
+    talus::app::tell(
+        "talus: unknown verb \"{}\"; {}\n", argv[1],
         near.empty() ? "there is " + talus::join_or(verbs) : fmt::format("did you mean \"{}\"?", near));
     return talus::kExitUsage;
   }
@@ -217,17 +217,16 @@ int code_of(int argc, char** argv) {
   try {
     return verb_of_line(argc, argv);
   } catch (const talus::Error& e) {
-    fmt::print(stderr, "{}{}\n",
-               e.code() == talus::kExitInput ? "" : "talus: ", talus::shown_name(e.what(), "\n\t"));
+    talus::app::tell("{}{}\n", e.code() == talus::kExitInput ? "" : "talus: ", e.what());
     return e.code();
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "talus: not enough memory; talus check predicts what a model needs\n");
+    talus::app::tell("talus: not enough memory; talus check predicts what a model needs\n");
     return talus::kExitResources;
   } catch (const std::length_error&) {
-    fmt::print(stderr, "talus: not enough memory: something would be larger than memory can be\n");
+    talus::app::tell("talus: not enough memory: something would be larger than memory can be\n");
     return talus::kExitResources;
   } catch (const std::filesystem::filesystem_error& e) {
-    fmt::print(stderr, "talus: {}: {}\n", e.path1().string(), e.code().message());
+    talus::app::tell("talus: {}: {}\n", e.path1().string(), e.code().message());
     return talus::kExitFile;
   } catch (const std::system_error& e) {
     if (std::ferror(stdout)) {
@@ -235,10 +234,10 @@ int code_of(int argc, char** argv) {
       return talus::kExitOk;  // with_output_checked() judges it
     }
     if (e.code() != std::errc::resource_unavailable_try_again) throw;
-    fmt::print(stderr,
-               "talus: no more threads can be started: {}. Give --threads 1, or raise the limit of "
-               "processes (ulimit -u)\n",
-               e.code().message());
+    talus::app::tell(
+        "talus: no more threads can be started: {}. Give --threads 1, or raise the limit of "
+        "processes (ulimit -u)\n",
+        e.code().message());
     return talus::kExitResources;
   }
 }

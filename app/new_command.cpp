@@ -6,6 +6,7 @@
 
 #include "data_files.h"
 #include "talus/base/error.h"
+#include "talus/base/name.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
 
@@ -33,6 +34,9 @@ int new_command(const NewArguments& args) {
   }
   fs::path file = args.name;
   if (file.extension() != ".toml") file += ".toml";
+  const std::string stem = file.stem().string();
+  if (const std::string defect = name_defect(stem); !defect.empty())
+    throw Error(kExitUsage, fmt::format("new: \"{}\" is no name of a model: {}", stem, defect));
   std::error_code ec;
   if (fs::exists(file, ec) && !args.force)
     throw FileError(

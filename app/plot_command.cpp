@@ -16,6 +16,7 @@
 #include "talus/output/result_folder.h"
 #include "talus/plot/block_picture.h"
 #include "talus/plot/figure.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -145,16 +146,14 @@ CsvTable histories_of(const std::string& folder) {
     return {};
   }
   CsvTable table = read_csv(file, LastLine::kMustEnd);
-  if (table.cut_short)
-    fmt::print(stderr, "talus: note: {}: its last row is not whole, and left out\n", file.string());
+  if (table.cut_short) tell("talus: note: {}: its last row is not whole, and left out\n", file.string());
   return table;
 }
 
 void plot_all(const std::string& folder, const CsvTable& table, const PlotArguments& args) {
   const fs::path plots = fs::path(folder) / "plots";
   fs::create_directories(plots);
-  if (table.rows() == 0)
-    fmt::print(stderr, "talus: note: {}: the run has not written a row of histories yet\n", folder);
+  if (table.rows() == 0) tell("talus: note: {}: the run has not written a row of histories yet\n", folder);
   for (size_t c = 1; c < table.columns.size() && table.rows() > 0; ++c) {
     const std::string& column = table.columns[c];
     draw_columns(args, {table}, {column}, plots / file_name_of(column.substr(0, column.find(" ["))));

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "talus/base/text_file.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -13,7 +14,7 @@ ModelRun prepare_model(const ModelArguments& args, Cut* cut) {
   ModelRun model{Findings(args.file, text), {}};
   model.run = prepare_run(args.file, text, args.overrides, model.findings, cut);
   if (args.strict) model.findings.throw_if_any();
-  if (model.findings.warning_count() > 0) fmt::print(stderr, "{}", model.findings.render());
+  if (model.findings.warning_count() > 0) tell(model.findings.render());
   return model;
 }
 

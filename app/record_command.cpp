@@ -12,6 +12,7 @@
 #include "talus/plot/record_figures.h"
 #include "talus/record/measures.h"
 #include "talus/record/motion_file.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -58,8 +59,8 @@ Outcome from_file(const RecordArguments& args) {
     out.motion = std::move(done.motion);
     out.account.steps.insert(out.account.steps.end(), done.steps.begin(), done.steps.end());
   }
-  fmt::print("{}: {}, \"{}\", {} values in {}, dt = {:g} s, {:g} s\n", args.file, name_of(r.format), r.title,
-             r.value.size(), r.unit, r.dt, out.before->duration());
+  show("{}: {}, \"{}\", {} values in {}, dt = {:g} s, {:g} s\n", args.file, name_of(r.format), r.title,
+       r.value.size(), r.unit, r.dt, out.before->duration());
   return out;
 }
 
@@ -79,8 +80,8 @@ Outcome from_seed(const RecordArguments& args) {
   out.title = fmt::format("synthetic motion, seed {}", in.seed);
   out.account.source = out.title;
   out.account.steps = made.steps;
-  fmt::print("{}: {:g} s in steps of {:g} s, rms of ln(Sa / target) {:.3f} at {} periods\n", out.title,
-             in.duration, in.dt, made.rms_misfit, record::matched_periods(in).size());
+  show("{}: {:g} s in steps of {:g} s, rms of ln(Sa / target) {:.3f} at {} periods\n", out.title, in.duration,
+       in.dt, made.rms_misfit, record::matched_periods(in).size());
   return out;
 }
 
@@ -186,7 +187,7 @@ int record_command(const RecordArguments& args) {
   const char* made = args.synthetic ? "synthetic" : args.raw ? "as read" : "processed";
   columns.emplace_back(made, account.after);
   curves.push_back({made, &out.motion});
-  fmt::print("{}", record::measures_table(columns));
+  show("{}", record::measures_table(columns));
 
   ResultFolder folder(args.folder, args.force, ResultKind::kRecord);
   folder.write("record.json", record::record_json(account));
@@ -194,7 +195,7 @@ int record_command(const RecordArguments& args) {
   for (const char* figure : {"acceleration", "velocity", "displacement", "spectrum"})
     folder.note_picture(figure);
   plot::write_record_figures(out.title, curves, out.target ? &*out.target : nullptr, folder.path());
-  fmt::print(
+  show(
       "written to {}: motion.csv (for [history.NAME] file and column), record.json, acceleration, velocity, "
       "displacement and spectrum as .svg and .png\n",
       args.folder);

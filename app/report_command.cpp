@@ -10,6 +10,7 @@
 #include "talus/base/text_file.h"
 #include "talus/output/result_folder.h"
 #include "talus/report/page.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -48,12 +49,12 @@ void add_report_arguments(CLI::App& verb, ReportArguments& args) {
 }
 
 int report_command(const ReportArguments& args) {
+  if (!args.output.empty() && args.output != "-") check_no_result(args.output);
   const std::string page = page_text();
   std::vector<report::RunFolder> runs;
   for (const std::string& folder : args.folders) {
     runs.push_back(report::read_run_folder(folder));
-    for (const std::string& note : runs.back().notes)
-      fmt::print(stderr, "talus: note: {}: {}\n", folder, note);
+    for (const std::string& note : runs.back().notes) tell("talus: note: {}: {}\n", folder, note);
   }
   report::PageNotes notes;
   const std::string html =

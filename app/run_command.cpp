@@ -11,6 +11,7 @@
 #include "talus/run/base_report.h"
 #include "talus/run/progress.h"
 #include "talus/run/resolution.h"
+#include "tell.h"
 
 namespace talus::app {
 
@@ -113,12 +114,12 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
   StopSignals signals;
   auto [folder, saved] = open_folder(args, prepared);
-  if (const std::string stale = folder.stale_lock(); !stale.empty())
-    fmt::print(stderr, "talus: note: {}\n", stale);
+  if (const std::string stale = folder.stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
   const std::string name = folder.path().string();
   const RunNotes notes = notes_of(model, findings);
   if (saved) Recorder::check(folder, prepared.scene, saved->archive);
   std::optional<Recorder> recorder;
+  signals.begin();
   try {
     if (saved)
       recorder.emplace(prepared.scene, std::move(folder), saved->archive, notes);

@@ -11,6 +11,7 @@ namespace talus::app {
 int safety_command(const ModelArguments& args, const std::string& folder, bool force, int threads) {
   check_result_folder(folder, force, ResultKind::kSafety);
   const PreparedRun prepared = prepare_model(args).run;
+  check_safety(prepared);
   // before anything is touched: the system may refuse them
   const Workers workers(threads > 0 ? threads : threads_for(prepared.scene.blocks.count));
   ResultFolder out(folder, force, ResultKind::kSafety);

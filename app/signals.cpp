@@ -66,9 +66,15 @@ StopSignals::StopSignals() {
   watcher_ = std::thread([this] { watch(); });
 }
 
+void StopSignals::begin() { on_signals(ask_to_stop); }
+
 void StopSignals::listen(std::function<void()> end_now) {
-  end_now_ = std::move(end_now);
-  on_signals(ask_to_stop);
+  {
+    const std::lock_guard lock(mutex_);
+    end_now_ = std::move(end_now);
+  }
+  changed_.notify_all();
+  begin();
 }
 
 StopSignals::~StopSignals() {
@@ -104,6 +110,7 @@ void StopSignals::watch() {
   while (sem_wait(&asking) != 0) continue;
   {
     std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return end_now_ || over_; });
     if (changed_.wait_for(lock, kForStep, [this] { return heard_ || over_; }))
       if (changed_.wait_for(lock, kForEnd, [this] { return over_; })) return;
   }

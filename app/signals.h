@@ -18,12 +18,15 @@ void end_on_signals();
 /// ends. A second Ctrl-C ends it at once.
 class StopSignals {
  public:
-  /// Starts the thread that waits; std::system_error when there is none to be had.
+  /// Starts the thread that waits; std::system_error when there is none to be had. Signals do what they did.
   StopSignals();
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
+  /// From now on signals wait for the run to begin.
+  void begin();
+  /// It has begun.
   /// @param end_now  saves what there is to save; the process ends when it returns or throws
   void listen(std::function<void()> end_now);
 

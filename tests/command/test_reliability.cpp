@@ -213,6 +213,74 @@ TEST_CASE("reliability: standard streams that are full, closed or gone") {
   }
 }
 
+TEST_CASE("reliability: a standard error that cannot be written changes nothing else") {
+  const Folder f;
+  write_file(f / "wrong.toml", "talus = 1\n[model]\ngravty = 1\n");
+  for (const char* away : {" 2>/dev/full", " 2>&-"}) {
+    INFO(away);
+    CHECK(shell(f, fmt::format("$talus check wrong.toml{}", away)).code == 3);
+    CHECK(shell(f, fmt::format("$talus check no.toml{}", away)).code == 4);
+    CHECK(shell(f, fmt::format("$talus dance{}", away)).code == 2);
+  }
+  // the note on a lock that was left behind
+  write_file(f / "m.toml", kShakenBricks);
+  write_long_model(f);
+  shell(f, kStart + "kill -9 $p; wait $p");
+  REQUIRE(fs::exists(f / "out/talus_lock.txt"));
+  CHECK(shell(f, "$talus run m.toml -o out --force -q 2>/dev/full").code == 0);
+  CHECK(status_of(f / "out") == "finished");
+}
+
+TEST_CASE("reliability: a signal just after the start") {
+  const Folder f;
+  write_long_model(f);
+  for (const char* seen : {"summary.json", "histories.csv", "fields/blocks.pvd"}) {
+    INFO(seen);
+    const Outcome o =
+        shell(f, fmt::format("$talus run long.toml -o out -q & p=$!; while ! [ -e out/{} ]; do :; done; "
+                             "kill -TERM $p; wait $p",
+                             seen));
+    CHECK(o.code == 143);
+    CHECK(status_of(f / "out") == "interrupted");
+    CHECK(!fs::exists(f / "out/talus_lock.txt"));
+    fs::remove_all(f / "out");
+  }
+}
+
+TEST_CASE("reliability: what is in the way of results is seen before any of the old ones is touched") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  const auto refused = [&f](const std::string& hindrance, const std::string& line) {
+    INFO(hindrance, " ", line);
+    fs::remove_all(f / "out");
+    REQUIRE(shell(f, "$talus run m.toml -o out -q").code == 0);
+    const std::string histories = content(f / "out/histories.csv");
+    REQUIRE(shell(f, hindrance).code == 0);
+    const Outcome o = shell(f, line);
+    CHECK(o.code == 4);
+    has(o.text, "nothing was changed");
+    CHECK((content(f / "out/histories.csv") == histories));
+  };
+  for (const char* line :
+       {"$talus run m.toml -o out --force -q", "$talus run m.toml --from out/saved/stage_01.h5 -q"}) {
+    refused("rm -f out/joints.csv && mkdir out/joints.csv", line);
+    refused("rm out/fields/blocks.pvd && mkdir out/fields/blocks.pvd", line);
+    refused("rm out/summary.json && mkfifo out/summary.json", line);
+  }
+  refused("mv out/summary.json s && ln -s ../s out/summary.json",
+          "$talus run m.toml --from out/saved/stage_01.h5 -q");
+  // and of what else may write there
+  const Outcome report = shell(f, "$talus report out -o out/histories.csv");
+  CHECK(report.code == 4);
+  has(report.text, "is one of the results");
+  write_file(f / "map.geojson", R"({"type":"FeatureCollection","features":[]})");
+  CHECK(shell(f, "$talus import map.geojson -o ./map.geojson").code == 2);
+  CHECK(
+      shell(f, "rm -r out/fields; rm -f s; $talus run m.toml -o new -q; rm -r new/fields; $talus report new")
+          .text.find("there is no motion to show") != std::string::npos);
+  CHECK(shell(f, "$talus new ..").code == 2);
+}
+
 TEST_CASE("reliability: a disk that is full while a state is saved") {
   // no file longer than 64 kB: the tables fit, the state does not
   const Folder f;
@@ -261,6 +329,11 @@ TEST_CASE(
     has(o.text, "is no name: ");
     CHECK(o.text.find('\0') == std::string::npos);
   }
+  // titles and keys are no names: they are shown
+  write_file(f / "m.toml", "talus = 1\n[model]\n\"x\\ny\\u009b\" = 1\n");
+  const Outcome shown = shell(f, "$talus check m.toml");
+  CHECK(shown.code == 3);
+  has(shown.text, "model.x\\x0ay\\u009b: unknown key");
   // a folder that somebody else has made
   write_file(f / "m.toml", kShakenBricks);
   REQUIRE(shell(f, "$talus run m.toml -o out -q").code == 0);
@@ -328,6 +401,18 @@ TEST_CASE("reliability: crafted texts are refused within seconds") {
   write_file(f / "out/summary.json", R"({"status": "finished", "stages": 5, "blocks": [], "model": 7})");
   refused("$talus report out", 4, "something else than talus writes");
   refused("$talus audit out", 4, "cannot be read");
+}
+
+TEST_CASE("reliability: thousands of blocks in one place are refused within seconds") {
+  const Folder f;
+  std::string text = "talus = 1\n[material.rock]\ndensity = 2500\nyoung = \"1 GPa\"\npoisson = 0.2\n";
+  for (int i = 0; i < 4000; ++i)
+    text += fmt::format(
+        "[[block]]\nname = \"b{}\"\nmaterial = \"rock\"\npolygon = [[0, 0], [1, 0], [0, 1]]\n", i);
+  write_file(f / "m.toml", text);
+  const Outcome o = shell(f, "timeout 20 $talus check m.toml");
+  CHECK(o.code == 3);
+  has(o.text, "overlaps \"b0\"");
 }
 
 TEST_CASE("reliability: a record whose numbers overflow is refused, and nothing is written") {

@@ -71,13 +71,16 @@ class Reader {
     if (!fs::is_directory(folder_, ec))
       throw FileError(fmt::format("{}: there is no such folder", folder_.string()));
     const fs::path file = folder_ / "summary.json";
-    if (!fs::exists(file, ec))
+    if (!is_there(file))
       throw FileError(
           fmt::format("{}: holds no results of talus run: summary.json is missing", folder_.string()));
     try {
       summary_ = ordered_json::parse(checked_json(file.string(), read_text_file(file)));
       if (!summary_.is_object() || !summary_.contains("model"))
-        throw FileError(fmt::format("{}: is no summary of a run that has ended", file.string()));
+        throw FileError(
+            fmt::format("{}: is no summary of a run that has ended; talus report and talus plot show what is "
+                        "there, and talus run MODEL --from {}/saved/... brings it to its end",
+                        file.string(), folder_.string()));
       const auto& model = summary_["model"];
       rules_.thickness = model.value("thickness [m]", 1.0);
       rules_.tolerance = model.value("contact_tolerance [m]", 0.0);
@@ -106,7 +109,7 @@ class Reader {
     }
     // the summary does not hold the slop, nor what stages change
     rules_.slop = 1e-7;
-    if (!fs::exists(folder_ / "model.toml", ec)) return;
+    if (!is_there(folder_ / "model.toml")) return;
     read_model(read_text_file(folder_ / "model.toml"));
   }
 
@@ -152,8 +155,7 @@ class Reader {
   // Joints of points stand in joints.csv, at the ends of stages: a pair with one joint there has it
   // throughout.
   void read_joints() {
-    std::error_code ec;
-    if (!fs::exists(folder_ / "joints.csv", ec)) return;
+    if (!is_there(folder_ / "joints.csv")) return;
     const TextTable table = read_text_table(folder_ / "joints.csv");
     const int a = table.find("block_a"), b = table.find("block_b"), joint = table.find("joint");
     if (a < 0 || b < 0 || joint < 0) return;
@@ -171,8 +173,7 @@ class Reader {
   }
 
   void read_steps() {
-    std::error_code ec;
-    if (!fs::exists(folder_ / "steps.csv", ec)) return;
+    if (!is_there(folder_ / "steps.csv")) return;
     const CsvTable table = read_csv(folder_ / "steps.csv", LastLine::kMustEnd);
     if (table.rows() == 0) return;
     const auto &t = table.column("t [s]"), &failed = table.column("failed steps"),

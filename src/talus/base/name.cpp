@@ -8,11 +8,23 @@ namespace talus {
 
 namespace {
 
-// Control characters, those of two bytes included (U+0080 to U+009F).
-bool is_control(std::string_view text, size_t i) {
-  const auto c = static_cast<unsigned char>(text[i]);
-  if (c < 0x20 || c == 0x7f) return true;
-  return c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+// A control character that begins at byte i: its number, and how many bytes it has; 0 bytes: there is none.
+// Those of two bytes (U+0080 to U+009F) are some, and those that turn the direction of what follows.
+struct Control {
+  unsigned number = 0;
+  size_t bytes = 0;
+};
+
+Control control_at(std::string_view text, size_t i) {
+  const auto byte = [&](size_t k) -> unsigned {
+    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0;
+  };
+  if (byte(0) < 0x20 || byte(0) == 0x7f) return {byte(0), 1};
+  if (byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0) return {byte(1), 2};
+  const unsigned last = byte(2);
+  const bool turns = (byte(0) == 0xe2 && byte(1) == 0x80 && last >= 0xaa && last <= 0xae) ||
+                     (byte(0) == 0xe2 && byte(1) == 0x81 && last >= 0xa6 && last <= 0xa9);
+  return turns ? Control{0x2000 + (byte(1) - 0x80) * 64 + (last - 0x80), 3} : Control{};
 }
 
 }  // namespace
@@ -22,7 +34,7 @@ std::string name_defect(std::string_view name) {
   if (name.empty()) return "it is empty";
   if (name.size() > kLongestName) return fmt::format("it is longer than {} bytes", kLongestName);
   for (size_t i = 0; i < name.size(); ++i)
-    if (is_control(name, i)) return "it holds a control character";
+    if (control_at(name, i).bytes > 0) return "it holds a control character";
   if (name.find_first_of(kParts) != std::string_view::npos)
     return "names hold no dot, comma, quote or bracket";
   if (name.find_first_of(kSeparators) != std::string_view::npos)
@@ -36,11 +48,11 @@ std::string name_defect(std::string_view name) {
 std::string shown_name(std::string_view name, std::string_view kept) {
   std::string out;
   for (size_t i = 0; i < name.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(name[i]);
-    if (is_control(name, i) && byte >= 0x80)
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(name[++i]));
-    else if (is_control(name, i) && kept.find(name[i]) == std::string_view::npos)
-      out += fmt::format("\\x{:02x}", byte);
+    const Control control = control_at(name, i);
+    if (control.bytes > 1)
+      out += fmt::format("\\u{:04x}", control.number), i += control.bytes - 1;
+    else if (control.bytes == 1 && kept.find(name[i]) == std::string_view::npos)
+      out += fmt::format("\\x{:02x}", control.number);
     else
       out += name[i];
   }
@@ -56,7 +68,7 @@ std::string file_name_of(std::string_view text) {
     const bool safe = byte >= 0x80 || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
                       (c >= '0' && c <= '9') || c == '_' || (c == '.' && i > 0) ||
                       ((c == '-' || c == ' ' || c == '+' || c == '(' || c == ')') && i > 0);
-    if (safe && !is_control(text, i))
+    if (safe && control_at(text, i).bytes == 0)
       out += c;
     else
       out += fmt::format("%{:02X}", byte);

@@ -20,6 +20,13 @@ namespace {
 
 }  // namespace
 
+bool is_there(const std::filesystem::path& path) {
+  std::error_code ec;
+  const bool there = std::filesystem::exists(path, ec);
+  if (ec) refuse(path, fmt::format("cannot be read: {}", ec.message()));
+  return there;
+}
+
 std::string read_text_file(const std::filesystem::path& path, size_t most) {
   // a pipe would be waited for
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));

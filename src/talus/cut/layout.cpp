@@ -132,11 +132,14 @@ void add_cut(const Model& model, const Cut& cut, Layout& layout) {
   }
 }
 
-void check_overlaps(const Layout& layout, Findings& findings) {
-  std::vector<Box> boxes;
-  for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
+// Of pairs of blocks whose boxes meet; stops when nobody would read on.
+void check_overlaps_of(const std::vector<std::pair<int, int>>& pairs, const std::vector<Box>& boxes,
+                       const Layout& layout, Findings& findings) {
+  constexpr int kEnough = 100;
   std::set<std::pair<int, int>> told;  // groups; one place of a cut region is enough
-  for (const auto& [i, j] : close_pairs(boxes, 0)) {
+  int found = 0;
+  for (const auto& [i, j] : pairs) {
+    if (found == kEnough) return;
     const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
     const bool cut_a = layout.was_cut(a), cut_b = layout.was_cut(b);
     const bool in_mesh = a.group >= layout.first_mesh_group && !cut_a;  // from outside: anything may be wrong
@@ -150,11 +153,23 @@ void check_overlaps(const Layout& layout, Findings& findings) {
             : 0;
     if (overlap.area <= kOverlapShare * smaller + rounding) continue;
     if ((cut_a || cut_b) && !told.insert(std::minmax(a.group, b.group)).second) continue;
+    ++found;
     findings.error(layout.group_where[static_cast<size_t>(b.group)], b.name,
                    fmt::format("overlaps \"{}\" by {:.3g} m2 around ({:.6g}, {:.6g})", a.name, overlap.area,
                                overlap.at.x, overlap.at.y),
                    "blocks may touch but not share area; move or trim one of them");
   }
+}
+
+void check_overlaps(const Layout& layout, Findings& findings) {
+  std::vector<Box> boxes;
+  for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
+  // blocks that share no area have a handful of neighbours: where there are far more, the first show it
+  const SomePairs first = some_close_pairs(boxes, 0, 50 * boxes.size() + 10000);
+  const int errors = findings.error_count();
+  check_overlaps_of(first.pairs, boxes, layout, findings);
+  if (!first.all && findings.error_count() == errors)
+    check_overlaps_of(close_pairs(boxes, 0), boxes, layout, findings);
 }
 
 double model_size(const Layout& layout) {

@@ -102,8 +102,13 @@ Box bounding_box(std::span<const Vec2> points) {
 }
 
 std::vector<std::pair<int, int>> close_pairs(const std::vector<Box>& boxes, double margin) {
-  std::vector<std::pair<int, int>> pairs;
-  if (boxes.size() < 2) return pairs;
+  return some_close_pairs(boxes, margin, SIZE_MAX).pairs;
+}
+
+SomePairs some_close_pairs(const std::vector<Box>& boxes, double margin, size_t most) {
+  SomePairs out;
+  std::vector<std::pair<int, int>>& pairs = out.pairs;
+  if (boxes.size() < 2) return out;
 
   // cells of the mean box size; one very large box then fills many cells, which costs time, never pairs
   double mean = 0;
@@ -139,10 +144,10 @@ std::vector<std::pair<int, int>> close_pairs(const std::vector<Box>& boxes, doub
     return a.cell != b.cell ? a.cell < b.cell : a.box < b.box;
   });
 
-  for (size_t begin = 0; begin < entries.size();) {
+  for (size_t begin = 0; begin < entries.size() && pairs.size() < most;) {
     size_t end = begin;
     while (end < entries.size() && entries[end].cell == entries[begin].cell) ++end;
-    for (size_t i = begin; i < end; ++i) {
+    for (size_t i = begin; i < end && pairs.size() < most; ++i) {
       for (size_t j = i + 1; j < end; ++j) {
         const Box &a = boxes[static_cast<size_t>(entries[i].box)],
                   &b = boxes[static_cast<size_t>(entries[j].box)];
@@ -154,9 +159,10 @@ std::vector<std::pair<int, int>> close_pairs(const std::vector<Box>& boxes, doub
     }
     begin = end;
   }
+  out.all = pairs.size() < most;
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  return pairs;
+  return out;
 }
 
 }  // namespace talus

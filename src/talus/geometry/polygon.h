@@ -50,4 +50,11 @@ Box bounding_box(std::span<const Vec2> points);
 /// Uniform grid with cells of the mean box size; cost N log N for boxes of similar size.
 std::vector<std::pair<int, int>> close_pairs(const std::vector<Box>& boxes, double margin);
 
+/// The same, or only some of them where there are more than about `most`: of boxes that all lie in one place.
+struct SomePairs {
+  std::vector<std::pair<int, int>> pairs;
+  bool all = true;
+};
+SomePairs some_close_pairs(const std::vector<Box>& boxes, double margin, size_t most);
+
 }  // namespace talus

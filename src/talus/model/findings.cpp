@@ -13,8 +13,8 @@ namespace {
 
 // What is longer than anyone reads is cut, so that the message stays one; control characters, which may stand in
 // names, are shown and not sent to a terminal.
-std::string shortened(const std::string& raw, size_t most) {
-  const std::string text = shown_name(raw, "\n");
+std::string shortened(const std::string& raw, size_t most, std::string_view kept = "\n") {
+  const std::string text = shown_name(raw, kept);
   if (text.size() <= most) return text;
   size_t end = most;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a character
@@ -39,13 +39,13 @@ Findings::Findings(std::string file, std::string_view text) : file_(std::move(fi
 
 void Findings::error(const Where& where, const std::string& key, const std::string& text,
                      const std::string& hint) {
-  list_.push_back({Severity::kError, where, shortened(key, kMostKey), shortened(text, kMostSaid),
+  list_.push_back({Severity::kError, where, shortened(key, kMostKey, ""), shortened(text, kMostSaid),
                    shortened(hint, kMostSaid)});
 }
 
 void Findings::warning(const Where& where, const std::string& key, const std::string& text,
                        const std::string& hint) {
-  list_.push_back({Severity::kWarning, where, shortened(key, kMostKey), shortened(text, kMostSaid),
+  list_.push_back({Severity::kWarning, where, shortened(key, kMostKey, ""), shortened(text, kMostSaid),
                    shortened(hint, kMostSaid)});
 }
 

@@ -1,5 +1,6 @@
 #include "talus/output/cut_report.h"
 #include "talus/base/angle.h"
+#include "talus/base/name.h"
 #include "talus/output/text_table.h"
 
 #include <fmt/format.h>
@@ -164,7 +165,7 @@ CutStatistics cut_statistics(const Model& model, const Cut& cut) {
 
 std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& s) {
   std::string out;
-  if (!model.title.empty()) out += model.title + "\n";
+  if (!model.title.empty()) out += shown_name(model.title) + "\n";
   out += survey_lines(cut) + joint_set_lines(cut);
   if (!cut.dead_ends.empty())
     out += fmt::format("dead ends  {} removed, {:.4g} m: they bound no block (grey in the picture)\n",

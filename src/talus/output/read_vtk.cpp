@@ -173,8 +173,7 @@ std::vector<SeriesEntry> parse_series(const fs::path& pvd, std::string_view all,
 }
 
 std::vector<SeriesEntry> read_series(const fs::path& pvd, bool* cut_short) {
-  std::error_code ec;
-  return fs::exists(pvd, ec) ? parse_series(pvd, read_text_file(pvd), cut_short) : std::vector<SeriesEntry>();
+  return is_there(pvd) ? parse_series(pvd, read_text_file(pvd), cut_short) : std::vector<SeriesEntry>();
 }
 
 }  // namespace talus

@@ -127,40 +127,60 @@ bool is_numbered(std::string_view name, std::string_view begin, size_t digits, s
   return std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+// Files of results with names that do not count, by number of ResultKind.
+const std::array<std::vector<std::string>, 5> kFixedNames{
+    {{"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv",
+      "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html", "fields/blocks.pvd",
+      "fields/contacts.pvd", "fields/bolts.pvd"},
+     {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt", "map.svg",
+      "map.png", "model.toml"},
+     {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg", "velocity.png",
+      "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"},
+     {"safety.json", "safety.csv", "model.toml"},
+     {"cut.svg", "cut.png"}}};
+
+const std::vector<std::string>& fixed_names(ResultKind kind) {
+  return kFixedNames[static_cast<size_t>(kind)];
 }
 
 // Files by the names of docs/file_format.md: what a talus without manifest left.
 bool is_result(const std::string& folder, const std::string& name, ResultKind kind) {
+  const std::string path = folder.empty() ? name : folder + "/" + name;
+  const std::vector<std::string>& fixed = fixed_names(kind);
+  if (std::find(fixed.begin(), fixed.end(), path) != fixed.end()) return true;
+  if (kind != ResultKind::kRun) return false;
   if (folder == "fields")
-    return kind == ResultKind::kRun &&
-           (is_one_of(name, {"blocks.pvd", "contacts.pvd", "bolts.pvd"}) ||
-            is_numbered(name, "blocks_", 6, ".vtu") || is_numbered(name, "contacts_", 6, ".vtp") ||
-            is_numbered(name, "bolts_", 6, ".vtp"));
-  if (folder == "saved")
-    return kind == ResultKind::kRun &&
-           (is_numbered(name, "stage_", 2, ".h5") || is_numbered(name, "step_", 9, ".h5"));
-  if (!folder.empty()) return false;
-  switch (kind) {
-    case ResultKind::kRun:
-      return is_numbered(name, "step_", 1, ".json") ||
-             is_one_of(name,
-                       {"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "slips.csv",
-                        "bolts.csv", "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html"});
-    case ResultKind::kCut:
-      return is_one_of(name, {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv",
-                              "report.txt", "map.svg", "map.png", "model.toml"});
-    case ResultKind::kRecord:
-      return is_one_of(
-          name, {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
-                 "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"});
-    case ResultKind::kSafety:
-      return is_one_of(name, {"safety.json", "safety.csv", "model.toml"});
-    case ResultKind::kPicture:
-      return is_one_of(name, {"cut.svg", "cut.png"});
+    return is_numbered(name, "blocks_", 6, ".vtu") || is_numbered(name, "contacts_", 6, ".vtp") ||
+           is_numbered(name, "bolts_", 6, ".vtp");
+  if (folder == "saved") return is_numbered(name, "stage_", 2, ".h5") || is_numbered(name, "step_", 9, ".h5");
+  return is_numbered(name, "step_", 1, ".json");
+}
+
+// Whether results can be written where they belong: before any of those that are there is touched. Links that
+// are going to be removed are no hindrance.
+void check_room(const fs::path& folder, ResultKind kind, bool removed_first) {
+  std::error_code ec;
+  const auto check_folder = [&](const fs::path& inside) {
+    if (!fs::exists(fs::symlink_status(inside, ec))) return;
+    if (!fs::is_directory(inside, ec))
+      throw FileError(
+          fmt::format("{}: is where a folder of results belongs; nothing was changed. Move it away, "
+                      "or give another folder",
+                      inside.string()));
+    if (access(inside.c_str(), W_OK | X_OK) != 0)
+      fail_file(inside, "written into; nothing was changed", errno);
+  };
+  check_folder(folder);
+  if (kind == ResultKind::kRun)
+    for (const char* inside : {"fields", "saved"}) check_folder(folder / inside);
+  for (const std::string& name : fixed_names(kind)) {
+    const std::string there = unfit_target(folder / name);
+    if (there.empty() || (removed_first && there == special_kind(S_IFLNK))) continue;
+    throw FileError(
+        fmt::format("{}: is {}, where a result belongs; nothing was changed. Move it away, or give "
+                    "another folder",
+                    (folder / name).string(), there));
   }
-  return false;
 }
 
 std::vector<std::string> results_by_name(const fs::path& folder, ResultKind kind) {
@@ -254,6 +274,7 @@ std::optional<ResultKind> check_replaced(const fs::path& folder, bool force, Res
         fmt::format("{}: holds results of talus {}, which --force of talus {} does not replace. Give another "
                     "folder, or remove it",
                     folder.string(), verb_of(*there), verb_of(kind)));
+  check_room(folder, kind, true);
   return there;
 }
 
@@ -290,6 +311,7 @@ ResultFolder::ResultFolder(const fs::path& folder, bool force, ResultKind kind) 
 ResultFolder ResultFolder::go_on(const fs::path& folder) {
   ResultFolder out(folder);
   out.lock();
+  check_room(folder, ResultKind::kRun, false);
   remove_unfinished_in(folder);
   for (const char* inside : {"fields", "saved", "plots"}) remove_unfinished_in(folder / inside);
   const auto manifest = read_manifest(folder);
@@ -354,6 +376,20 @@ void ResultFolder::release() { parts_->lock.reset(); }
 
 void ResultFolder::free_reserve() {
   if (parts_->lock) parts_->lock->free_reserve();
+}
+
+void check_no_result(const fs::path& file) {
+  if (file.extension() == ".html") return;
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  for (fs::path folder = whole.parent_path(), inside = whole.filename(); folder.has_relative_path();
+       inside = folder.filename() / inside, folder = folder.parent_path()) {
+    const auto manifest = read_manifest(folder);
+    if (!manifest) continue;
+    if (std::find(manifest->names.begin(), manifest->names.end(), inside.string()) != manifest->names.end())
+      throw FileError(fmt::format("{}: is one of the results in {}; nothing was written. Give another name",
+                                  file.string(), folder.string()));
+    return;
+  }
 }
 
 void note_result(const fs::path& folder, const fs::path& file) {

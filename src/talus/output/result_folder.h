@@ -65,6 +65,10 @@ class ResultFolder {
   std::unique_ptr<Parts> parts_;
 };
 
+/// Throws FileError when the file is one of the results of the folder it lies in; pages of reports are made to be
+/// replaced.
+void check_no_result(const std::filesystem::path& file);
+
 /// Notes a file that another verb adds to the results (a figure, a report), when it lies in a folder that has
 /// a manifest.
 void note_result(const std::filesystem::path& folder, const std::filesystem::path& file);

@@ -292,7 +292,7 @@ std::string report_page(const std::string& page, const std::vector<RunFolder>& r
   try {
     index = index_of(runs, options, notes, chunks);
   } catch (const json::exception& e) {
-    throw FileError(fmt::format("a summary.json has something else than talus writes there: {}", e.what()));
+    throw FileError(fmt::format("summary.json has something else than talus writes there: {}", e.what()));
   }
   const std::string data =
       fmt::format("{}<script type=\"text/plain\" id=\"talus-index\">{}</script>\n", chunks.html(),

@@ -24,9 +24,10 @@ nlohmann::ordered_json parse_summary(const std::string& name, const std::string&
 
 RunFolder read_run_folder(const fs::path& folder) {
   std::error_code ec;
-  if (!fs::is_directory(folder, ec))
-    throw FileError(fmt::format("{}: there is no such folder", folder.string()));
-  if (!fs::exists(folder / "summary.json", ec))
+  if (is_there(folder) && !fs::is_directory(folder, ec))
+    throw FileError(fmt::format("{}: is a file, not a folder of results", folder.string()));
+  if (!is_there(folder)) throw FileError(fmt::format("{}: there is no such folder", folder.string()));
+  if (!is_there(folder / "summary.json"))
     throw FileError(
         fmt::format("{}: holds no results of talus run: summary.json is missing", folder.string()));
   RunFolder run;
@@ -34,7 +35,7 @@ RunFolder read_run_folder(const fs::path& folder) {
   run.name = fs::absolute(folder).lexically_normal().filename().string();
   if (run.name.empty()) run.name = fs::absolute(folder).lexically_normal().parent_path().filename().string();
   run.summary = parse_summary((folder / "summary.json").string(), read_text_file(folder / "summary.json"));
-  const auto there = [&](const char* name) { return fs::exists(folder / name, ec); };
+  const auto there = [&](const char* name) { return is_there(folder / name); };
   const auto unless_missing = [&](const char* name) {
     if (!there(name)) return CsvTable();
     CsvTable table = read_csv(folder / name, LastLine::kMustEnd);
@@ -59,6 +60,9 @@ RunFolder read_run_folder(const fs::path& folder) {
   run.block_frames = series("blocks.pvd");
   run.contact_frames = series("contacts.pvd");
   run.bolt_frames = series("bolts.pvd");
+  const auto frames = run.summary.find("frames");
+  if (run.block_frames.empty() && frames != run.summary.end() && frames->is_number() && *frames > 0)
+    run.notes.push_back("fields/blocks.pvd is missing: there is no motion to show");
   return run;
 }
 

@@ -155,8 +155,7 @@ SafetyTrial run_trial(const PreparedRun& prepared, double factor, const Workers&
 
 }  // namespace
 
-SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
-                         const std::function<void(const SafetyTrial&)>& told) {
+void check_safety(const PreparedRun& prepared) {
   const Model& model = prepared.scene.model;
   if (leading_static_stages(model) == 0) {
     Findings findings(model.file, model.text);
@@ -175,6 +174,12 @@ SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
                    "you know that they do not matter, safety.accept_merged = true");
     findings.throw_if_errors();
   }
+}
+
+SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
+                         const std::function<void(const SafetyTrial&)>& told) {
+  const Model& model = prepared.scene.model;
+  check_safety(prepared);
   SafetyResult result;
   const auto stands = [&](double factor) {
     result.trials.push_back(run_trial(prepared, factor, workers));

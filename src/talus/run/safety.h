@@ -32,9 +32,12 @@ struct SafetyResult {
   double factor() const { return 0.5 * (stands + fails); }
 };
 
+/// Throws InputError when the model has no leading static stage, or slivers with joints were merged or deleted
+/// and `safety.accept_merged` is not set.
+void check_safety(const PreparedRun& prepared);
+
 /// Seeks the factor between model.safety.lowest and .highest. Throws NumericalError naming the factor when a
-/// trial ends for another reason than failure of the model, InputError when the model has no leading static
-/// stage, or slivers with joints were merged or deleted and `safety.accept_merged` is not set.
+/// trial ends for another reason than failure of the model, InputError as check_safety().
 /// @param prepared  the model as read and cut once: all trials have the same blocks
 /// @param told      shown each trial when it ends
 SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,

@@ -155,6 +155,7 @@ TEST_CASE("reliability: one run per folder") {
   write_long_model(f);
   const Outcome o =
       shell(f, kStart +
+                   "for i in $(seq 400); do [ -s out/saved/stage_01.h5 ] && break; sleep 0.05; done; "
                    "$talus run long.toml -o out; echo A$?; $talus run long.toml -o out --force; echo B$?; "
                    "$talus cut long.toml -o out --force; echo C$?; "
                    "$talus run long.toml --from out/saved/stage_01.h5; echo D$?; "
@@ -164,8 +165,9 @@ TEST_CASE("reliability: one run per folder") {
   has(o.text, "talus_lock.txt");
   const Outcome after =
       shell(f,
-            "$talus run long.toml --from out/saved/stage_01.h5 -q & p=$!; sleep 0.5; kill -INT "
-            "$p; wait $p");
+            "$talus run long.toml --from out/saved/stage_01.h5 -q 2> said & p=$!; "
+            "for i in $(seq 400); do grep -q 'taken over' said && break; sleep 0.05; done; sleep 0.2; "
+            "kill -INT $p; wait $p; c=$?; cat said; exit $c");
   CHECK(after.code == 130);
   has(after.text, "has ended without letting go of this folder; it is taken over");
   CHECK(!fs::exists(f / "out/talus_lock.txt"));

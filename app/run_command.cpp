@@ -49,19 +49,6 @@ std::string left_text(const Recorder::Left& left, const std::string& model, cons
   return text;
 }
 
-struct Prepared {
-  ResultFolder folder;
-  std::optional<SavedRun> saved;  // of --from
-};
-
-Prepared open_folder(const RunArguments& args, const PreparedRun& prepared) {
-  if (args.from.empty()) return {ResultFolder(args.folder, args.force), std::nullopt};
-  // taken before the state is read: who is about to write into the folder must not do so meanwhile
-  Prepared out{ResultFolder::go_on(folder_of_saved(args.from, args.folder)), std::nullopt};
-  out.saved.emplace(read_saved_run(args.from, prepared));
-  return out;
-}
-
 struct Run {
   RunResult result;
   int signal = 0;  // that has interrupted it
@@ -110,21 +97,29 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   auto [findings, prepared] = prepare_model(model);
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
   if (!out) throw FileError("/dev/null: cannot be opened");
-  // before anything is touched: the system may refuse them
+  std::optional<ResultFolder> folder;
+  std::optional<SavedRun> saved;
+  if (!args.from.empty()) {
+    // taken before the state is read: who is about to write into the folder must not do so meanwhile
+    folder.emplace(ResultFolder::go_on(folder_of_saved(args.from, args.folder)));
+    saved.emplace(read_saved_run(args.from, prepared));
+  }
+  // threads: after the state was read, by a copy of this process, which must have none; and before any result is
+  // touched, since the system may refuse them
   const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
   StopSignals signals;
-  auto [folder, saved] = open_folder(args, prepared);
-  if (const std::string stale = folder.stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
-  const std::string name = folder.path().string();
+  if (!folder) folder.emplace(args.folder, args.force);
+  if (const std::string stale = folder->stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
+  const std::string name = folder->path().string();
   const RunNotes notes = notes_of(model, findings);
-  if (saved) Recorder::check(folder, prepared.scene, saved->archive);
+  if (saved) Recorder::check(*folder, prepared.scene, saved->archive);
   std::optional<Recorder> recorder;
   signals.begin();
   try {
     if (saved)
-      recorder.emplace(prepared.scene, std::move(folder), saved->archive, notes);
+      recorder.emplace(prepared.scene, std::move(*folder), saved->archive, notes);
     else
-      recorder.emplace(prepared.scene, std::move(folder), notes);
+      recorder.emplace(prepared.scene, std::move(*folder), notes);
   } catch (const std::exception& e) {
     Recorder::abandon_begun(name, e.what());
     throw;

@@ -114,7 +114,8 @@ void kill_example(const Example& e, int kills, uint64_t seed, Count& count) {
       continue;
     }
     ++done, ++count.kills;
-    if (!fs::exists(f / "out/talus_manifest.txt")) {  // before it had a folder of results
+    if (!fs::exists(f / "out/summary.json")) {  // before it had any results
+      CHECK(!fs::exists(f / "out/histories.csv"));
       fs::remove_all(f / "out");
       from.clear();
       continue;

@@ -28,6 +28,7 @@
 #include "run_command.h"
 #include "safety_command.h"
 #include "signals.h"
+#include "talus/base/memory_reserve.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
 #include "talus/talus.h"
@@ -253,6 +254,8 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit shows as a write error with its own message
   talus::app::end_on_signals();
   try {
+    constexpr size_t kReserve = size_t{16} << 20;  // [bytes]
+    talus::keep_memory_reserve(kReserve);
     return with_output_checked(code_of(argc, argv));
   } catch (const std::exception& e) {
     std::fprintf(stderr, "talus: internal error: %s\n", e.what());

@@ -128,6 +128,9 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   Run run;
   try {
     run = run_recorded(prepared, saved, args.from, *recorder, signals, out, workers);
+  } catch (const std::bad_alloc&) {
+    recorder->abandon("not enough memory");
+    throw;
   } catch (const std::exception& e) {
     recorder->abandon(e.what());
     throw;

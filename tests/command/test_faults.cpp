@@ -32,6 +32,7 @@ std::string faulty(const std::string& kind, long n, const std::string& line) {
 
 struct Tried {
   int faults = 0, told = 0, unharmed = 0;
+  int ended = 0;  // by a library that cannot do without memory
 };
 
 void no_files_left(const fs::path& folder) {
@@ -51,6 +52,9 @@ bool run_with_fault(const Folder& f, const std::string& run, const std::string& 
   if (!fs::exists(f / "told")) return false;
   ++tried.faults;
   INFO(kind, " ", n, ": ", o.text);
+  // the reader of JSON ends the process where it finds no memory to tidy up
+  if (kind == "bare" && o.code == 134 && o.text.find("std::bad_alloc") != std::string::npos)
+    return ++tried.ended > 0;
   CHECK((o.code == 0 || o.code == 4 || o.code == 7));
   if (o.code == 0) {  // what failed was not needed
     ++tried.unharmed;
@@ -106,11 +110,13 @@ TEST_SUITE("long: faults") {
       REQUIRE(shell(f, run + "-o whole").code == 0);
       const auto whole = results_in(f / "whole");
       // all of the first ones, then ever fewer of them
-      for (const char* kind : {"write", "rename", "sync", "open", "new"})
+      for (const char* kind : {"write", "rename", "sync", "open", "new", "bare"})
         for (long n = 1; run_with_fault(f, run, kind, n, whole, tried); n += 1 + n / 5) continue;
       fs::remove_all(f / "whole");
     }
-    MESSAGE(tried.faults, " faults: ", tried.told, " told, ", tried.unharmed, " did no harm");
+    MESSAGE(tried.faults, " faults: ", tried.told, " told, ", tried.unharmed, " did no harm, ", tried.ended,
+            " ended in a library that found no memory where none was kept back");
+    CHECK(tried.ended < 10);
     CHECK(tried.told > 200);
   }
 
@@ -126,7 +132,7 @@ TEST_SUITE("long: faults") {
     int told = 0;
     for (const std::string& line : {std::string("$talus report run"), std::string("$talus plot run"), cut,
                                     std::string("$talus record r.csv -o rec --force")})
-      for (const char* kind : {"write", "rename", "sync", "open", "new"})
+      for (const char* kind : {"write", "rename", "sync", "open", "new", "bare"})
         for (long n = 1;; n += 1 + n / 4) {
           const Outcome o = shell(f, faulty(kind, n, line + " > /dev/null"));
           if (!fs::exists(f / "told")) break;

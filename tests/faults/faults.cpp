@@ -50,7 +50,7 @@ bool fails(const char* kind, std::atomic<long>& count) {
 
 // From mallopt() on, which main() calls first: what fails before there is nobody to tell of.
 std::atomic<bool> begun{false};
-std::atomic<long> writes{0}, renames{0}, syncs{0}, opens{0}, allocations{0}, threads{0};
+std::atomic<long> writes{0}, renames{0}, syncs{0}, opens{0}, allocations{0}, bare_allocations{0}, threads{0};
 
 template <class F>
 F next(const char* name) {
@@ -128,7 +128,13 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* how, void* (*start)(
 }  // extern "C"
 
 void* operator new(size_t size) {
-  if (begun && fails("new", allocations)) throw std::bad_alloc();
+  // as the language has it: who keeps memory back gives it now; "bare": as if nobody did
+  if (begun && fails("new", allocations)) {
+    const std::new_handler handler = std::get_new_handler();
+    if (!handler) throw std::bad_alloc();
+    handler();
+  }
+  if (begun && fails("bare", bare_allocations)) throw std::bad_alloc();
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
   throw std::bad_alloc();
 }

@@ -8,6 +8,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/base/memory_reserve.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 #include "talus/run/check_monitors.h"
@@ -129,6 +130,7 @@ class Runner {
     observer_.stage_begins(scene_, index, plan);
 
     for (int64_t n = out.steps; n < plan.steps; ++n) {
+      if (memory_is_short()) throw std::bad_alloc();  // while there is some left to end in order
       const bool stop = observer_.stop();
       if (stop || observer_.wants_state()) observer_.keep_state({result_, false}, state_);
       if (stop) {

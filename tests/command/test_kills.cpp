@@ -15,9 +15,7 @@
 #include "support/shaken_bricks.h"
 #include "talus/base/clock.h"
 #include "talus/base/random.h"
-#include "talus/output/csv.h"
 #include "talus/output/files.h"
-#include "talus/output/read_vtk.h"
 
 namespace test_kills {
 
@@ -59,21 +57,6 @@ std::vector<Example> examples() {
           {"pile", file("pile"), often, 0.2},
           {"dominoes", file("dominoes"), often, 0.2},
           {"many bricks", many_bricks(), " --set output.save_interval=0.2", 0.1}};
-}
-
-// Rows and frames of a killed run are the first ones of a whole one.
-void check_beginning(const fs::path& folder, const std::map<std::string, std::string>& whole) {
-  for (const char* name : {"histories.csv", "steps.csv"}) {
-    INFO(name);
-    const std::string text = content(folder / name);
-    const size_t end = text.rfind('\n') + 1;  // npos + 1: nothing
-    CHECK((whole.at(name).compare(0, end, text, 0, end) == 0));
-    const CsvTable table = parse_csv(name, text, LastLine::kMustEnd);
-    const auto lines = static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
-    CHECK(table.rows() == (lines == 0 ? 0 : lines - 1));
-  }
-  for (const SeriesEntry& frame : read_series(folder / "fields/blocks.pvd"))
-    CHECK((content(frame.file) == whole.at("fields/" + frame.file.filename().string())));
 }
 
 struct Count {
@@ -120,7 +103,7 @@ void kill_example(const Example& e, int kills, uint64_t seed, Count& count) {
       from.clear();
       continue;
     }
-    check_beginning(f / "out", whole);
+    check_begins_as(f / "out", whole);
     const Outcome read =
         shell(f, "$talus report out > r.txt 2>&1 && $talus plot out > p.txt 2>&1 || cat r.txt p.txt");
     INFO(read.text);

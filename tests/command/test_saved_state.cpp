@@ -14,8 +14,6 @@
 #include "talus/base/clock.h"
 #include "talus/base/random.h"
 #include "talus/output/archive.h"
-#include "talus/output/csv.h"
-#include "talus/output/read_vtk.h"
 
 namespace test_saved_state {
 
@@ -51,24 +49,6 @@ std::vector<fs::path> saved_in(const fs::path& folder) {
     return fs::last_write_time(a) < fs::last_write_time(b);
   });
   return list;
-}
-
-// Tables and frames up to the last one can be read at any moment, and are what the whole run has there.
-void readable(const fs::path& folder, const std::map<std::string, std::string>& whole) {
-  for (const char* name : {"histories.csv", "steps.csv", "joints.csv", "slips.csv"}) {
-    INFO(name);
-    if (!fs::exists(folder / name)) continue;  // not written yet
-    const std::string text = read_text_file((folder / name).string());
-    CHECK((whole.at(name).compare(0, text.size(), text) == 0));
-    CHECK(text.back() == '\n');
-  }
-  const fs::path pvd = folder / "fields/blocks.pvd";
-  if (!fs::exists(pvd)) return;
-  for (const SeriesEntry& frame : read_series(pvd)) {
-    const std::string name = "fields/" + frame.file.filename().string();
-    INFO(name);
-    CHECK((read_text_file(frame.file) == whole.at(name)));
-  }
 }
 
 // Runs model.toml, then goes on from every state saved on the way. The results of the whole run.
@@ -162,8 +142,8 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
       same(whole, results_in(folder / "killed"));
       ++ended;
       if (from.empty()) length = wall_now() - started;  // the machine may be busier or idler by now
-    } else if (fs::exists(folder / "killed/steps.csv")) {
-      readable(folder / "killed", whole);
+    } else {
+      check_begins_as(folder / "killed", whole);
     }
     const auto states = saved_in(folder / "killed");
     from = o.code == 0 || states.empty() ? "" : "killed/saved/" + states.back().filename().string();
@@ -189,8 +169,7 @@ TEST_CASE("command run: a run that fails leaves its last good state, from which 
   REQUIRE(states.size() == 1);
   const std::string name = states[0].filename().string();
   const int step = std::atoi(name.c_str() + 5);
-  CHECK(step > 0);
-  CHECK(step <= 4000);  // the jaws touch after 2 s
+  CHECK(step <= 4000);  // the jaws touch after 2 s; a run of milliseconds may hold its start alone
   const auto whole = results_in(folder / "whole");
   CHECK(shell(folder, "$talus run model.toml --from whole/saved/" + name + " -q").code == 5);
   same(whole, results_in(folder / "whole"));

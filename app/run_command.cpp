@@ -139,7 +139,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   // a state may have come with texts of somebody else's
   say(out,
       shown_name(closing_text(prepared.scene, result, recorder->joints(), name, recorder->audit()), "\n"));
-  if (args.profile) say(out, profile_text(result.profile, result.threads, result.steps));
+  if (args.profile) say(out, profile_text(result.profile, result.threads));
   if (!result.failure.empty())
     throw NumericalError(fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure,
                                      name, left_text(recorder->left(), model.file, name)));

@@ -12,6 +12,7 @@
 
 namespace {
 
+using namespace talus;
 using namespace talus::bench;
 
 // Takes an option of talus alone out of the list.
@@ -41,11 +42,9 @@ int run(int argc, char** argv) {
   TalusEngine engine(scene, own);
   run_scene(engine, scene, options, before);
   if (!profile) return 0;
-  double all = 0;
-  for (const double s : engine.work().profile.seconds) all += s;
-  for (size_t i = 0; i < talus::Profile::kParts; ++i)
-    std::fprintf(stderr, "%-10s %8.3f s %5.1f %%\n", talus::Profile::kName[i],
-                 engine.work().profile.seconds[i], 100 * engine.work().profile.seconds[i] / all);
+  Profile& spent = engine.work().profile;
+  spent.shared = engine.work().workers.shared_seconds(), spent.wall = engine.wall();
+  std::fputs(profile_text(spent, options.threads).c_str(), stderr);
   std::fprintf(stderr, "sweeps %d, searched %d, contacts %d, colours %d, error %.3g m at %s\n",
                engine.report().solve.iterations, engine.report().searched, engine.report().contacts,
                engine.report().solve.colours, engine.report().error.worst, engine.report().worst.c_str());

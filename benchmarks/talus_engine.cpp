@@ -48,6 +48,7 @@ TalusEngine::TalusEngine(const BenchScene& scene, const EngineOptions& options)
 std::string TalusEngine::name() const { return fmt::format("talus-{}", kVersion); }
 
 void TalusEngine::step(double dt) {
+  const Timed timed(wall_);
   report_ = kick(scene_, settings_, dt, work_, state_);
   drift(scene_, state_.time + dt, work_, state_, report_);
 }

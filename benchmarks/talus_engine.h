@@ -38,6 +38,7 @@ class TalusEngine : public BenchEngine {
   State& state() { return state_; }
   StepWork& work() { return work_; }
   const StepReport& report() const { return report_; }
+  double wall() const { return wall_; }  // of all steps [s]
 
  private:
   Scene scene_;
@@ -45,6 +46,7 @@ class TalusEngine : public BenchEngine {
   StepSettings settings_;
   StepWork work_;
   StepReport report_;
+  double wall_ = 0;
 };
 
 }  // namespace talus::bench

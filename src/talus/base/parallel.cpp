@@ -8,9 +8,19 @@
 #include <thread>
 #include <vector>
 
+#include "talus/base/clock.h"
+
 namespace talus {
 
 namespace {
+
+// Processor time of the calling thread [s].
+double thread_seconds() {
+  timespec t{};
+  return clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) == 0
+             ? static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec)
+             : 0;
+}
 
 // Looks at a flag before a waiting thread lets others run: about twenty microseconds.
 constexpr int kLooks = 2000;
@@ -63,6 +73,9 @@ struct Workers::Team {
   std::mutex failure_lock;
   std::exception_ptr failure;
 
+  double shared = 0, waited = 0;    // of the caller [s]
+  std::atomic<double> stood_by{0};  // of the helpers, processor time [s]
+
   void work() {
     for (size_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) {
       try {
@@ -76,6 +89,8 @@ struct Workers::Team {
   }
 
   void help() {
+    const double begin = thread_seconds();
+    double busy = 0;
     Waiting waiting;
     while (!leaving) {
       const uint64_t now = round;
@@ -84,12 +99,16 @@ struct Workers::Team {
         continue;
       }
       inside.fetch_add(1);
-      if (round == now) work();
+      {
+        const Timed timed(busy);
+        if (round == now) work();
+      }
       inside.fetch_sub(1);
       waiting = {};
       while (round == now && !leaving) waiting.look_again();
       waiting = {};
     }
+    stood_by.fetch_add(std::max(0.0, thread_seconds() - begin - busy));
   }
 
   // The life of a helper. The next call is often near: it looks for a while before it sleeps.
@@ -122,12 +141,16 @@ struct Workers::Team {
   }
 
   void run(size_t items, const std::function<void(size_t)>& what) {
+    const double begin = wall_now();
     task = &what, count = items, next = 0, done = 0, failure = nullptr;
     ++round;
     work();
+    const double own_end = wall_now();
     for (Waiting waiting; done < count;) waiting.look_again();
     ++round;
     for (Waiting waiting; inside > 0;) waiting.look_again();
+    const double end = wall_now();
+    shared += end - begin, waited += end - own_end;
     if (failure) std::rethrow_exception(failure);
   }
 };
@@ -138,6 +161,10 @@ Workers::Workers(int threads) {
   if (threads == 0) threads = processors();
   if (threads > 1) team_ = std::make_shared<Team>(threads);
 }
+
+double Workers::shared_seconds() const { return team_ ? team_->shared : 0; }
+
+double Workers::idle_seconds() const { return team_ ? team_->waited + team_->stood_by : 0; }
 
 int Workers::threads() const { return team_ ? static_cast<int>(team_->helpers.size()) + 1 : 1; }
 

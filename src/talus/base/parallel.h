@@ -21,6 +21,11 @@ class Workers {
 
   int threads() const;
 
+  /// Wall time so far in which all threads had work [s]; 0 for a team of one.
+  double shared_seconds() const;
+  /// Processor time so far of threads that stood by or waited for others [s]: no work.
+  double idle_seconds() const;
+
   /// Runs `body` in the caller while the other threads stand by for the calls of run() in it: these then
   /// begin within a microsecond, where waking threads would take as long as the work of one colour.
   void together(const std::function<void()>& body) const;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/base/rank.h"
 #include "talus/contact/hand_over.h"
@@ -314,12 +315,12 @@ class Updater {
     });
     const size_t n = state_.pairs.size();
     changed_.resize((n + kPairGrain - 1) / kPairGrain);
-    searched_.assign(changed_.size(), 0);
+    sought_.assign(changed_.size(), {});
     workers.for_chunks(n, kPairGrain, [&](size_t begin, size_t end) { look_at(begin, end); });
     SearchReport report;
     bool any = false;
     for (size_t c = 0; c < changed_.size(); ++c) {
-      report.searched += searched_[c];
+      report.searched += sought_[c].searched, report.seconds += sought_[c].seconds;
       any = any || !changed_[c].pair.empty();
     }
     if (any) put_together(workers);
@@ -351,7 +352,9 @@ class Updater {
       if (pair.reuse >= 0 && need <= pair.margin && moved_apart(blocks_, s, pair) <= pair.reuse &&
           !uncovered(blocks_, s, pair, pair.reuse))
         continue;
-      ++searched_[begin / kPairGrain];
+      SearchReport& report = sought_[begin / kPairGrain];
+      ++report.searched;
+      const Timed timed(report.seconds);
       const auto [small, large] = by_size(blocks_, pair);
       const double size = std::min(blocks_.size[small], blocks_.size[large]);
       // a power of two times the share: small changes of speed are no reason to seek anew
@@ -475,7 +478,7 @@ class Updater {
   State& state_;
   std::vector<double> turning_;  // [count] how fast places move against the centroid [m/s]
   std::vector<Changed> changed_;
-  std::vector<int> searched_;
+  std::vector<SearchReport> sought_;  // by each chunk
 };
 
 }  // namespace

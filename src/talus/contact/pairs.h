@@ -23,7 +23,8 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
                  const LookAhead& ahead, const Workers& workers, State& state);
 
 struct SearchReport {
-  int searched = 0;  // pairs whose contact points were sought anew
+  int searched = 0;    // pairs whose contact points were sought anew
+  double seconds = 0;  // that took, all threads together
 };
 
 /// Brings the contact points of all pairs up to date (ContactSearch::touch): seeks them anew where the blocks

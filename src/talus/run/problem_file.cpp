@@ -127,10 +127,12 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     std::vector<BlockRate> after = rate;
     std::vector<Impulse> guess;
     SolverSet solvers;
-    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after};
-    const auto judge = [&] { return contact_error(mobility, replay.rows, after, dt); };
-    replay.solved =
-        solve_step(model, hard_ties, tolerance, 1, false, judge, Workers(), solvers, problem, guess);
+    Profile profile;
+    const std::function<ContactError()> judge = [&] {
+      return contact_error(mobility, replay.rows, after, dt);
+    };
+    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, judge, profile};
+    replay.solved = solve_step(model, hard_ties, tolerance, 1, false, Workers(), solvers, problem, guess);
   } catch (const std::exception& e) {
     throw FileError(
         fmt::format("{}: is no step written by talus run --dump-step: {}", file.string(), e.what()));

@@ -54,10 +54,12 @@ class Runner {
   }
 
   RunResult run(const Standing* from) {
-    const double wall = wall_now();
+    const double wall = wall_now(), shared = work_.workers.shared_seconds(),
+                 idle = work_.workers.idle_seconds();
     const std::clock_t cpu = std::clock();
     size_t first = 0;
     try {
+      const InPart part(work_.profile, Profile::kRest);
       if (from) {
         go_on(*from);
         first = result_.stages.size();
@@ -70,9 +72,13 @@ class Runner {
     result_.candidate_rebuilds = state_.candidates.rebuilds;
     result_.threads = work_.workers.threads();
     result_.profile = work_.profile;
+    result_.profile.shared = work_.workers.shared_seconds() - shared;
     for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
-    result_.wall_seconds += wall_now() - wall;
-    result_.cpu_seconds += static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+    result_.profile.wall = wall_now() - wall;
+    result_.wall_seconds += result_.profile.wall;
+    // helpers that stand by keep their processors busy and do nothing
+    result_.cpu_seconds +=
+        static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC - (work_.workers.idle_seconds() - idle);
     return result_;
   }
 
@@ -131,13 +137,10 @@ class Runner {
 
     for (int64_t n = out.steps; n < plan.steps; ++n) {
       if (memory_is_short()) throw std::bad_alloc();  // while there is some left to end in order
-      const bool stop = observer_.stop();
-      if (stop || observer_.wants_state()) observer_.keep_state({result_, false}, state_);
-      if (stop) {
+      if (stops()) {
         result_.interrupted = true;
         break;
       }
-      if (observer_.wants_copy()) observer_.hold_state({result_, false}, state_);
       settings_.sharper = state_.rest.sharper;
       StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);
@@ -286,8 +289,17 @@ class Runner {
     return true;
   }
 
+  // Whether the run is to stop here; hands over states that are wanted.
+  bool stops() {
+    const InPart part(work_.profile, Profile::kObservers);
+    const bool stop = observer_.stop();
+    if (stop || observer_.wants_state()) observer_.keep_state({result_, false}, state_);
+    if (!stop && observer_.wants_copy()) observer_.hold_state({result_, false}, state_);
+    return stop;
+  }
+
   void show(const Instant& instant) {
-    const Timed timed(work_.profile.seconds[Profile::kOutput]);
+    const InPart part(work_.profile, Profile::kObservers);
     observer_.at(instant);
   }
 
@@ -413,15 +425,24 @@ int threads_for(int blocks) {
   return std::clamp(blocks / kBlocksPerThread, 1, processors());
 }
 
-std::string profile_text(const Profile& profile, int threads, int64_t steps) {
-  double all = 0;
-  for (const double s : profile.seconds) all += s;
+std::string profile_text(const Profile& p, int threads) {
+  const double all = p.total(), steps = static_cast<double>(std::max<int64_t>(p.steps, 1));
+  const auto share = [all](double s) { return all > 0 ? 100 * s / all : 0.0; };
   std::string text =
-      fmt::format("profile ({} thread{}, {} steps)\n", threads, threads == 1 ? "" : "s", steps);
+      fmt::format("profile ({} thread{}, {} steps)\n", threads, threads == 1 ? "" : "s", p.steps);
   for (size_t i = 0; i < Profile::kParts; ++i)
-    text += fmt::format("  {:<10} {:10.3f} s {:6.1f} %\n", Profile::kName[i], profile.seconds[i],
-                        all > 0 ? 100 * profile.seconds[i] / all : 0.0);
-  return text;
+    text += fmt::format("  {:<10} {:10.3f} s {:6.1f} % {:10.4f} ms a step\n", Profile::kName[i], p.seconds[i],
+                        share(p.seconds[i]), 1e3 * p.seconds[i] / steps);
+  text += fmt::format("  {:<10} {:10.3f} s of {:.3f} s wall\n", "all", all, p.wall);
+  if (threads > 1)
+    text += fmt::format("  {:<10} {:10.3f} s {:6.1f} %, by one thread while the others stand by\n", "serial",
+                        all - p.shared, share(all - p.shared));
+  return text +
+         fmt::format(
+             "  a step: {:.1f} points, {:.2f} sweeps, {:.2f} asks, {:.2f} pairs sought, {:.3f} layouts\n",
+             static_cast<double>(p.points) / steps, static_cast<double>(p.sweeps) / steps,
+             static_cast<double>(p.asks) / steps, static_cast<double>(p.sought) / steps,
+             static_cast<double>(p.layouts) / steps);
 }
 
 PreparedRun prepare_run(const std::string& file, const std::string& text,

@@ -71,8 +71,8 @@ RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, con
 /// Threads that pay for a model of so many blocks, at most as many as the machine has processors.
 int threads_for(int blocks);
 
-/// What --profile prints: the share of each part of a step in the time of the run.
-std::string profile_text(const Profile& profile, int threads, int64_t steps);
+/// What --profile prints: the share of each part of a step in the time of the run, which they sum to.
+std::string profile_text(const Profile& profile, int threads);
 
 struct PreparedRun {
   Scene scene;

@@ -437,8 +437,11 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   SolveReport report;
   report.converged = set.points.empty();
   if (report.converged) return report;
-  if (!layout_holds(set, workers)) lay_out(mobility, workers);
+  Profile& profile = problem.profile;
+  const InPart part(profile, Profile::kLayout);
+  if (!layout_holds(set, workers)) lay_out(mobility, workers), ++profile.layouts;
   report.colours = static_cast<int>(colour_.size());
+  profile.go_on_with(Profile::kRecords);
   write_lines(mobility, rate, workers);
   write_records(mobility, set, workers);
   push(workers);
@@ -447,16 +450,21 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   int ask_again = 0, last = limits.max_sweeps;
   double tolerance = goal.enough;
   bool first = true;
+  profile.go_on_with(Profile::kSweeps);
   while (!report.converged && report.iterations < last) {
     const bool second = report.iterations >= kPlainSweeps;
     if (second) keep(workers);
+    report.judged.reset();
     const double change = sweep(workers) * dt;
-    ++report.iterations;
+    ++report.iterations, ++profile.sweeps;
     if (!std::isfinite(change)) break;  // a NaN may hide behind later numbers: the judge finds it
     if (change <= 0.5 * tolerance && report.iterations >= ask_again) {
+      const InPart asking(profile, Profile::kAsks);
+      ++profile.asks;
       read_records(workers, set);
       read_lines(mobility, workers, rate);
-      const double worst = contact_error(mobility, set, rate, dt, workers).worst;
+      report.judged = problem.judge();
+      const double worst = report.judged->worst;
       if (std::isnan(worst)) break;
       report.converged = worst <= goal.wanted;
       if (!report.converged && worst <= goal.enough && tolerance == goal.enough) {
@@ -470,6 +478,7 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
     first = false;
     ++report.second_phase;
   }
+  profile.go_on_with(Profile::kRecords);
   if (!report.converged) {
     report.converged = tolerance < goal.enough;  // enough was reached
     read_records(workers, set);

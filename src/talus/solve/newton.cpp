@@ -276,6 +276,7 @@ Newton::~Newton() = default;
 
 SolveReport Newton::solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
                           const Workers&) {
+  const InPart part(problem.profile, Profile::kNewton);
   const SolveReport report =
       solve_islands(problem.mobility, problem.rate_free, limits, goal.wanted / problem.dt, problem.smoothing,
                     kept_->factors, problem.rows);

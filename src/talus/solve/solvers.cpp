@@ -72,8 +72,8 @@ SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties) {
 
 // Theory 5.7.
 Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double sharper, bool keep_guess,
-                  const std::function<ContactError()>& judge, const Workers& workers, SolverSet& solvers,
-                  const StepProblem& problem, std::vector<Impulse>& guess) {
+                  const Workers& workers, SolverSet& solvers, const StepProblem& problem,
+                  std::vector<Impulse>& guess) {
   TALUS_ASSERT(tolerance > 0 && sharper > 0 && sharper <= 1);
   TALUS_ASSERT(problem.dt > 0 && problem.mobility.size() == problem.rate_free.size());
   TALUS_ASSERT(problem.rows.impulse.size() == problem.rows.points.size());
@@ -88,8 +88,12 @@ Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double
   if (again || keep_guess) guess = problem.rows.impulse;
 
   Solved now;
-  const auto judged = [&] {
-    now.error = judge();
+  const auto judge = [&] {
+    const InPart part(problem.profile, Profile::kJudge);
+    return problem.judge();
+  };
+  const auto take = [&](const ContactError& error) {
+    now.error = error;
     // the smoothed law misses the exact one by design: there the solver's own residual is the judge
     now.failed = smoothed ? !now.report.converged : !(now.error.worst <= tolerance);
   };
@@ -99,7 +103,7 @@ Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double
     now.method = kind;
     now.report =
         solvers.of(kind).solve(problem, {sharper * kStop * tolerance, kStop * tolerance}, limits, workers);
-    judged();
+    take(now.report.judged ? *now.report.judged : judge());
   };
   const int few = again ? std::min(options.max_sweeps, kSweepsBeforeSecond) : options.max_sweeps;
   solve_by(first, few);
@@ -126,7 +130,7 @@ Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double
     problem.rows.impulse = std::move(best.impulse);
     problem.rate = std::move(best.rate);
     now = best.solved;
-    judged();
+    take(judge());
   }
   now.second_solver = true;
   solvers.drop(second);  // what it keeps is for steps that are all its own

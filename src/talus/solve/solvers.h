@@ -3,7 +3,6 @@
 // the choice is in docs/performance.md.
 
 #include <array>
-#include <functional>
 #include <memory>
 
 #include "talus/solve/contact_error.h"
@@ -49,14 +48,13 @@ struct Solved {
 };
 
 /// Solves a step: the chosen solver; where its result misses the tolerance, another; then sweeps from the
-/// best so far for as many as the model allows. The best stays, and is judged last.
+/// best so far for as many as the model allows. The best stays, and is what the judge of the problem was asked last.
 /// @param hard_ties  as above
 /// @param tolerance  largest contact error [m]
 /// @param sharper    share of it to which steps are solved where that takes few sweeps more
-/// @param judge      measures the error of the impulses and rates in `problem`
 /// @param guess      gets the first guess; empty when it is not wanted and no second solver may need it
 Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double sharper, bool keep_guess,
-                  const std::function<ContactError()>& judge, const Workers& workers, SolverSet& solvers,
-                  const StepProblem& problem, std::vector<Impulse>& guess);
+                  const Workers& workers, SolverSet& solvers, const StepProblem& problem,
+                  std::vector<Impulse>& guess);
 
 }  // namespace talus

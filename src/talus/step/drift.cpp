@@ -30,7 +30,7 @@ bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
 
 void drift(const Scene& scene, double time_end, StepWork& work, State& state, StepReport& report) {
   TALUS_ASSERT(work.rate_before.size() == state.rate.size() && time_end >= state.time);
-  const Timed timed(work.profile.seconds[Profile::kIntegrate]);
+  const InPart part(work.profile, Profile::kBlocks);
   const BlockSet& blocks = scene.blocks;
   const double dt = work.clock.dt;
   std::atomic<size_t> bad{state.rate.size()};

@@ -86,9 +86,13 @@ void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work
   add_edge_and_point_loads(blocks, scene.model, scene.loads, state, time, work.load);
   for (size_t k = 0; k < state.kept_force.size(); ++k)
     work.load[k] += (1 - state.relaxed) * state.kept_force[k];
-  balance_bolts(state);
-  work.bolt_forces.assign(state.bolts.empty() ? 0 : work.load.size(), {});
-  if (!state.bolts.empty()) add_bolt_forces(blocks, state, work.bolt_forces);
+  {
+    const InPart part(work.profile, Profile::kBolts);
+    balance_bolts(state);
+    work.bolt_forces.assign(state.bolts.empty() ? 0 : work.load.size(), {});
+    if (!state.bolts.empty()) add_bolt_forces(blocks, state, work.bolt_forces);
+  }
+  const InPart part(work.profile, Profile::kBoundaries);
   kick_free_field(scene, settings, acceleration, work, state);
 }
 

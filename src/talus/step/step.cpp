@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/blocks/validate.h"
 #include "talus/rows/validate_rows.h"
@@ -34,9 +33,11 @@ void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport&
   check_travel(scene.blocks, state, work.clock.dt);
   const LookAhead ahead{work.clock, work.rate_before};
   renew_pairs(scene.blocks, scene.bonds, scene.laws, ahead, work.workers, state);
-  report.searched =
-      update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, work.workers, state)
-          .searched;
+  const SearchReport sought =
+      update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, work.workers, state);
+  // threads seek side by side
+  work.profile.move(Profile::kMargins, Profile::kSearch, sought.seconds / work.workers.threads());
+  work.profile.sought += report.searched = sought.searched;
   report.contacts = static_cast<int>(state.contacts.size());
 }
 
@@ -48,11 +49,14 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   const StepClock& clock = work.clock;
   RowSet& rows = work.rows;
   rows.restart();
+  work.profile.go_on_with(Profile::kRows);
   add_bond_rows(blocks, scene.bonds, scene.laws, state, before, clock, work.workers, rows);
   add_contact_rows(blocks, model, scene.laws, state, before, clock, work.workers, rows, work.places);
+  work.profile.go_on_with(Profile::kBoundaries);
   add_support_rows(blocks, model, scene.supported, state, clock, rows);
   add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.column_velocity, rows);
   add_tie_rows(blocks, scene.boundaries.ties, state, clock, rows);
+  work.profile.go_on_with(Profile::kBolts);
   add_bolt_rows(blocks, state, before, clock, rows);
   rows.finish();
 }
@@ -65,16 +69,15 @@ Smoothing smoothing(const ContactInput& contact, const StepClock& clock) {
 RowSums solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
                    StepReport& report) {
   RowSums sums;
-  const StepProblem problem{work.mobility, work.rate_free,
-                            work.clock.dt, smoothing(scene.model.contact, work.clock),
-                            work.rows,     state.rate};
-  const auto judge = [&] {
+  const std::function<ContactError()> judge = [&] {
     sums = judge_rows(work, state);
     return sums.error;
   };
-  const Solved solved =
-      solve_step(scene.model, hard_ties(work.rows), settings.tolerance, settings.sharper, settings.keep_guess,
-                 judge, work.workers, work.solvers, problem, work.guess);
+  const StepProblem problem{
+      work.mobility, work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
+      work.rows,     state.rate,     judge,         work.profile};
+  const Solved solved = solve_step(scene.model, hard_ties(work.rows), settings.tolerance, settings.sharper,
+                                   settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
   report.error = solved.error, report.failed = solved.failed;
   report.second_solver = solved.second_solver;
@@ -109,27 +112,20 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   work.work = {};
   work.rate_before = state.rate;
   const Scheme scheme{scene.blocks, settings, work.clock, work.elastic};
-  const auto timed = [&work](Profile::Part part) { return Timed(work.profile.seconds[part]); };
-  {
-    const Timed t = timed(Profile::kIntegrate);
-    add_forces(scene, settings, work, state);
-    predict(scene, scheme, work, state);
-  }
-  {
-    const Timed t = timed(Profile::kDetect);
-    seek_contacts(scene, work, state, report);
-  }
-  {
-    const Timed t = timed(Profile::kSetUp);
-    gather_rows(scene, work, state);
-  }
-  RowSums rows;
-  {
-    const Timed t = timed(Profile::kSolve);
-    rows = solve_rows(scene, settings, work, state, report);
-  }
-  const Timed t = timed(Profile::kIntegrate);
+  Profile& profile = work.profile;
+  const InPart part(profile, Profile::kBlocks);
+  add_forces(scene, settings, work, state);
+  predict(scene, scheme, work, state);
+  profile.go_on_with(Profile::kMargins);
+  seek_contacts(scene, work, state, report);
+  gather_rows(scene, work, state);
+  ++profile.steps;
+  profile.points += static_cast<int64_t>(work.rows.size());
+  profile.go_on_with(Profile::kRest);
+  const RowSums rows = solve_rows(scene, settings, work, state, report);
+  profile.go_on_with(Profile::kLedger);
   tally(scene, scheme, rows, work, state, report);
+  profile.go_on_with(Profile::kRemember);
   remember(scene, work, state);
   return report;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/contact/contact_rows.h"
+#include "talus/rows/profile.h"
 #include "talus/solve/solvers.h"
 #include "talus/step/energy.h"
 #include "talus/step/scene.h"
@@ -49,13 +50,6 @@ struct StepReport {
   double speed_left = 0;       // static stages: share of the velocity that is left (set by run/)
   Energy energy;
   int broken_faces = 0;  // in the drift that follows
-};
-
-/// Where the time of a run goes [s].
-struct Profile {
-  enum Part { kDetect, kSetUp, kSolve, kIntegrate, kOutput, kParts };
-  static constexpr std::array<const char*, kParts> kName{"detect", "set-up", "sweep", "integrate", "output"};
-  std::array<double, kParts> seconds{};
 };
 
 /// Memory reused from step to step, and what the step found at this instant.

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/clock.h"
+
 namespace test_parallel {
 
 using namespace talus;
@@ -116,6 +118,26 @@ TEST_CASE("an exception of a task is passed on, and the team works on") {
     workers.run(50, [&](size_t) { ++done; });
     CHECK(done == 50);
   }
+}
+
+TEST_CASE("time of work and time of standing by are told apart") {
+  const auto work = [] {
+    for (const double end = wall_now() + 0.02; wall_now() < end;) continue;
+  };
+  CHECK(Workers().shared_seconds() == 0);
+  CHECK(Workers().idle_seconds() == 0);
+  const double begin = wall_now();
+  const Workers workers(2);
+  workers.together([&] {
+    workers.run(2, [&](size_t) { work(); });
+    const double shared = workers.shared_seconds();
+    CHECK(shared >= 0.02);
+    work();  // the other one stands by
+    CHECK(workers.shared_seconds() == shared);
+  });
+  workers.run(1, [&](size_t) { work(); });  // of one task there is nothing to share
+  CHECK(workers.idle_seconds() >= 0);
+  CHECK(workers.idle_seconds() <= 2 * (wall_now() - begin));  // of two threads
 }
 
 TEST_CASE("copies share the team, one call after the other") {

@@ -146,7 +146,12 @@ Solution solve(GaussSeidel& solver, const std::vector<Mobility>& mobility, const
   Solution s{set, rate, {}};
   SolverInput options;
   options.max_sweeps = sweeps;
-  s.report = solver.solve({mobility, rate, 1, {}, s.set, s.rate}, tolerance, options, workers);
+  Profile profile;
+  const std::function<ContactError()> judge = [&] {
+    return contact_error(mobility, s.set, s.rate, 1, workers);
+  };
+  s.report =
+      solver.solve({mobility, rate, 1, {}, s.set, s.rate, judge, profile}, tolerance, options, workers);
   return s;
 }
 
@@ -527,6 +532,25 @@ TEST_CASE("the second phase takes a small part of the sweeps of plain Gauss-Seid
     Dice dice(6);
     check(ring(dice, 8), 1e-7);
   }
+}
+
+TEST_CASE("what the judge said last is told where it is of what stands, and nowhere else") {
+  const Problem problem = tower(12, 5);
+  int told = 0, converged = 0, tried = 0;
+  for (int sweeps = 1; sweeps <= 2000; sweeps += 1 + sweeps / 20) {
+    ++tried;
+    const Solution s = solve(problem.mobility, problem.set, problem.rate, sweeps, 1e-5);
+    if (s.report.judged) {
+      ++told;
+      CHECK(same_bits(s.report.judged->worst, contact_error(problem.mobility, s.set, s.rate, 1).worst));
+    }
+    if (!s.report.converged) continue;
+    ++converged;
+    REQUIRE(s.report.judged);
+    CHECK(s.report.judged->worst <= 1e-5);
+  }
+  CHECK(converged > 0);
+  CHECK(told < tried);  // the first sweeps are too far off to ask
 }
 
 TEST_CASE("a tower at rest carries its weight") {

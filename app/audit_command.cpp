@@ -10,6 +10,7 @@ namespace talus::app {
 
 int audit_command(const std::string& folder, int threads) {
   const audit::FolderAudit a = audit::audit_folder(folder, Workers(threads));
+  for (const std::string& note : a.notes) tell("talus: note: {}: {}\n", folder, note);
   for (const std::string& line : a.report.lines(a.names)) show("{}\n", line);
   show(
       "{}: {} frames looked at, {}; largest unexplained overlap {:.2g} of the smaller block, deepest closure "

@@ -11,6 +11,7 @@
 #include "talus/maps/expand.h"
 #include "talus/maps/vector_module.h"
 #include "talus/model/read_model.h"
+#include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
 #include "talus/output/result_folder.h"
 #include "talus/plot/cut_picture.h"
@@ -23,7 +24,7 @@ namespace talus::app {
 int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
                 bool force) {
   check_result_folder(folder, force, ResultKind::kCut);
-  const std::string text_of_file = read_text_file(file);
+  const std::string text_of_file = read_text_file(file, kMostModelText);
   Findings map_findings(file, text_of_file);
   const maps::ExpandedModel expanded =
       maps::expand_model(file, text_of_file, overrides, maps::read_drawing, map_findings);

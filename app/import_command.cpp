@@ -10,6 +10,7 @@
 #include "talus/maps/vector_module.h"
 #include "talus/model/units.h"
 #include "talus/output/files.h"
+#include "talus/output/result_folder.h"
 #include "talus/plot/map_picture.h"
 #include "tell.h"
 
@@ -25,6 +26,18 @@ double quantity(const std::string& option, const std::string& text, Dimension di
     throw Error(kExitUsage,
                 fmt::format("--{}: {}", option, q.error.empty() ? "must not be negative" : q.error));
   return q.value;
+}
+
+// Maps are families of files (lines.shp, .dbf, .shx ...), or folders of them: none of them is written over.
+void check_no_map(const std::filesystem::path& output, const std::filesystem::path& map) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  if (!fs::exists(output, ec)) return;
+  const fs::path there = fs::weakly_canonical(output, ec), from = fs::weakly_canonical(map, ec);
+  const bool beside = there.parent_path() == from.parent_path() && there.stem() == from.stem();
+  const bool inside = fs::is_directory(from, ec) && there.parent_path() == from;
+  if ((beside || inside) && there.extension() != ".toml")
+    throw Error(kExitUsage, fmt::format("-o {}: is a part of the map; give another name", output.string()));
 }
 
 }  // namespace
@@ -68,6 +81,11 @@ int import_command(const ImportArguments& args) {
   std::error_code ec;
   if (std::filesystem::equivalent(args.file, args.output, ec))
     throw Error(kExitUsage, fmt::format("-o {}: is the map itself; give another name", args.output));
+  if (!args.output.empty() && args.output != "-") {
+    check_no_result(args.output);
+    check_no_map(args.output, args.file);
+  }
+  if (!args.picture.empty()) check_no_figure_of_results(args.picture);
   Findings findings(args.file, "");
   const maps::MapSections made = maps::import_map(request, maps::read_drawing, findings);
   findings.throw_if_errors();

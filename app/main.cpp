@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -49,6 +50,18 @@ void add_model_arguments(CLI::App& verb, ModelArguments& args) {
 
 void add_strict(CLI::App& verb, ModelArguments& args) {
   verb.add_flag("--strict", args.strict, "take warnings of the model for errors");
+}
+
+// Ranges are written for numbers: nan is in all of them.
+void check_finite(const CLI::App& app) {
+  for (const CLI::App* verb : app.get_subcommands())
+    for (const CLI::Option* option : verb->get_options()) {
+      if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
+      for (const std::string& value : option->results())
+        if (!std::isfinite(std::strtod(value.c_str(), nullptr)))
+          throw talus::Error(talus::kExitUsage,
+                             fmt::format("{}: {} is no number that it could be", option->get_name(), value));
+    }
 }
 
 int verb_of_line(int argc, char** argv) {
@@ -172,6 +185,7 @@ int verb_of_line(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? talus::kExitOk : talus::kExitUsage;
   }
+  check_finite(app);
   if (*run_verb) return talus::app::run_command(model, how);
   if (*check_verb) return talus::app::check_command(model, folder, force);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
@@ -257,6 +271,9 @@ int main(int argc, char** argv) {
     constexpr size_t kReserve = size_t{16} << 20;  // [bytes]
     talus::keep_memory_reserve(kReserve);
     return with_output_checked(code_of(argc, argv));
+  } catch (const std::bad_alloc&) {
+    std::fputs("talus: not enough memory\n", stderr);
+    return talus::kExitResources;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "talus: internal error: %s\n", e.what());
     return talus::kExitInternal;

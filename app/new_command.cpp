@@ -9,6 +9,7 @@
 #include "talus/base/name.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
+#include "talus/output/result_folder.h"
 
 namespace talus::app {
 
@@ -42,6 +43,7 @@ int new_command(const NewArguments& args) {
     throw FileError(
         fmt::format("{}: exists already; nothing was written. Give another name, or --force to replace it",
                     file.string()));
+  check_no_result(file);
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), ec);
   write_file(file, text);
   const std::string results = "out/" + file.stem().string();

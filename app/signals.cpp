@@ -1,6 +1,7 @@
 #include "signals.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <semaphore.h>
 #include <unistd.h>
 
@@ -31,22 +32,34 @@ bool stays_ignored(int signal) {
   return signal == SIGHUP && sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
-void on_signals(void (*handler)(int)) {
+using Handler = void (*)(int, siginfo_t*, void*);
+
+void on_signals(Handler handler) {
   struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;
+  action.sa_sigaction = handler;
+  action.sa_flags = SA_RESTART | SA_SIGINFO;
   sigemptyset(&action.sa_mask);
   for (const int signal : kSignals)
     if (!stays_ignored(signal)) sigaction(signal, &action, nullptr);
 }
 
-extern "C" void clean_up_and_end(int signal) {
+// A pipe that this process itself has found without a reader, and that is not standard output: standard error
+// as a rule, without which all goes on. The write fails, and whoever wrote is told.
+bool is_of_no_matter(int signal, const siginfo_t* info) {
+  if (signal != SIGPIPE || info->si_pid != getpid()) return false;
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return !(poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0);
+}
+
+extern "C" void clean_up_and_end(int signal, siginfo_t* info, void*) {
+  if (is_of_no_matter(signal, info)) return;
   talus::remove_unfinished();
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
 
-extern "C" void ask_to_stop(int signal) {
+extern "C" void ask_to_stop(int signal, siginfo_t* info, void*) {
+  if (is_of_no_matter(signal, info)) return;
   const bool again = asked_by != 0;
   if (again && signal == SIGINT) _exit(kExitSignal + signal);
   if (again) return;  // a limit on processor time tells every second

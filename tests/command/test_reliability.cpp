@@ -233,6 +233,59 @@ TEST_CASE("reliability: a standard error that cannot be written changes nothing 
   CHECK(status_of(f / "out") == "finished");
 }
 
+TEST_CASE("reliability: a standard error whose reader has gone changes nothing else") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  // the reader of the pipe has ended before anything is written
+  const auto without_reader = [&f](const std::string& line) {
+    shell(f, fmt::format("rm -f code; ( sleep 0.2; {}; echo $? > code ) 2>&1 >out.txt | true; "
+                         "while [ ! -s code ]; do sleep 0.05; done",
+                         line));
+    return content(f / "code");
+  };
+  CHECK(without_reader("$talus check none.toml") == "4\n");
+  CHECK(without_reader("$talus dance") == "2\n");
+  CHECK(without_reader("$talus run m.toml -q -o o --set 'stage.shake.duration=\"1 ms\"'") == "0\n");
+  CHECK(status_of(f / "o") == "finished");
+}
+
+TEST_CASE("reliability: a folder that is moved away from under a run") {
+  const Folder f;
+  write_long_model(f);
+  const Outcome o = shell(f,
+                          "$talus run long.toml -o a -q --set output.save_interval=0.05 & p=$!; "
+                          "while [ ! -e a/saved/stage_01.h5 ]; do sleep 0.05; done; mv a b; "
+                          "$talus run long.toml -o a -q & q=$!; "
+                          "while [ ! -e a/steps.csv ]; do sleep 0.05; done; wait $p; echo first $?; "
+                          "$talus run long.toml -o a -q --force; echo third $?; kill -TERM $q; wait $q; "
+                          "echo second $?");
+  INFO(o.text);
+  has(o.text, "moved away or removed");
+  has(o.text, "first 4");
+  has(o.text, "third 4");  // the second lives, and its lock stands
+  has(o.text, "second 143");
+  CHECK(status_of(f / "a") == "interrupted");
+}
+
+TEST_CASE("reliability: the audit refuses results that somebody has forged") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  REQUIRE(shell(f, "$talus run m.toml -o r -q").code != 4);
+  const auto refused = [&f](const std::string& forge, const std::string& told) {
+    INFO(forge);
+    REQUIRE(shell(f, "rm -rf o && cp -r r o && cd o && " + forge).code == 0);
+    const Outcome o = shell(f, "$talus audit o");
+    INFO(o.text);
+    CHECK(o.code == 4);
+    has(o.text, told);
+  };
+  refused("sed -i 's/\"failed_steps\": 0/\"failed_steps\": \"x\"/' summary.json", "summary.json");
+  refused("rm fields/contacts.pvd", "contacts.pvd: is missing");
+  refused("sed -i '1s/failed steps/steps failed/' steps.csv", "steps.csv: ");
+  REQUIRE(shell(f, "rm -rf o && cp -r r o && truncate -s 400 o/fields/blocks.pvd").code == 0);
+  has(shell(f, "$talus audit o").text, "blocks.pvd: has no end");
+}
+
 TEST_CASE("reliability: a signal just after the start") {
   const Folder f;
   write_long_model(f);
@@ -269,8 +322,35 @@ TEST_CASE("reliability: what is in the way of results is seen before any of the 
     refused("rm out/fields/blocks.pvd && mkdir out/fields/blocks.pvd", line);
     refused("rm out/summary.json && mkfifo out/summary.json", line);
   }
-  refused("mv out/summary.json s && ln -s ../s out/summary.json",
+  for (const char* line :
+       {"$talus run m.toml -o out --force -q", "$talus run m.toml --from out/saved/stage_01.h5 -q"}) {
+    // what only the manifest or a number names, and folders that are links
+    refused("rm -rf f && mv out/fields f && ln -s ../f out/fields", line);
+    refused("rm out/fields/blocks_000001.vtu && mkdir out/fields/blocks_000001.vtu", line);
+    refused("rm out/fields/blocks_000001.vtu && mkfifo out/fields/blocks_000001.vtu", line);
+    refused("rm -rf f && mv out/talus_manifest.txt f && ln -s ../f out/talus_manifest.txt", line);
+    refused("rm -rf f && mkdir out/saved/stage_09.h5", line);
+  }
+  refused("rm -rf f s && mv out/summary.json s && ln -s ../s out/summary.json",
           "$talus run m.toml --from out/saved/stage_01.h5 -q");
+  // reports and figures are made to be replaced, results, lock and manifest are not
+  REQUIRE(shell(f, "rm -rf out && $talus run m.toml -o out -q && ln -s out/fields ff").code == 0);
+  const std::string manifest = content(f / "out/talus_manifest.txt");
+  for (const char* line :
+       {"$talus report out -o out/talus_manifest.txt", "$talus report out -o ff/blocks.pvd",
+        "$talus report out -o out/talus_lock.txt", "$talus plot out --blocks velocity -o out/blocks_end",
+        "$talus new out/model --force"}) {
+    const Outcome o = shell(f, line);
+    INFO(line, ": ", o.text);
+    CHECK(o.code == 4);
+    has(o.text, "is one of the results");
+  }
+  CHECK((content(f / "out/talus_manifest.txt") == manifest));
+  REQUIRE(
+      shell(f, "rm -rf out/plots && mkdir p && echo mine > p/blocks_displacement.svg && ln -s ../p out/plots")
+          .code == 0);
+  has(shell(f, "$talus plot out").text, "is a link");
+  CHECK((content(f / "p/blocks_displacement.svg") == "mine\n"));
   // and of what else may write there
   const Outcome report = shell(f, "$talus report out -o out/histories.csv");
   CHECK(report.code == 4);
@@ -450,6 +530,19 @@ TEST_CASE(
     ++told;
   }
   CHECK(told == 4);  // three helpers, and the one that waits for signals
+}
+
+TEST_CASE("reliability: a saved state is as long as its header says, or not read") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  REQUIRE(shell(f, "$talus run m.toml -o r -q").code != 4);
+  // four terabytes of nothing: more than memory
+  REQUIRE(
+      shell(f, "truncate -s 4T r/saved/stage_01.h5 2>/dev/null || truncate -s 4G r/saved/stage_01.h5").code ==
+      0);
+  const Outcome o = shell(f, "ulimit -v 2000000; $talus run m.toml --from r/saved/stage_01.h5");
+  CHECK(o.code == 4);
+  has(o.text, "its header says");
 }
 
 TEST_CASE("reliability: no memory is an exit code of its own") {

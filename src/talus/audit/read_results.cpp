@@ -39,15 +39,44 @@ class Reader {
   }
 
   void frames(const Workers& workers) {
-    const auto blocks = read_series(folder_ / "fields" / "blocks.pvd"),
-               contacts = read_series(folder_ / "fields" / "contacts.pvd");
-    if (blocks.empty())
-      throw FileError(fmt::format("{}: holds no frames of a run", (folder_ / "fields").string()));
-    for (size_t i = 0; i < std::min(blocks.size(), contacts.size()); ++i)
-      add_frame(rules_, read_frame(blocks[i], contacts[i]), workers, out_.report);
+    const auto blocks = series("blocks.pvd"), contacts = series("contacts.pvd");
+    if (blocks.size() != contacts.size())
+      out_.notes.push_back(
+          fmt::format("{} frames of blocks and {} of contact points: those without their "
+                      "counterpart are not looked at",
+                      blocks.size(), contacts.size()));
+    for (size_t i = 0; i < std::min(blocks.size(), contacts.size()); ++i) {
+      const Frame frame = read_frame(blocks[i], contacts[i]);
+      try {
+        add_frame(rules_, frame, workers, out_.report);
+      } catch (const std::runtime_error& e) {  // of polygons that no run has written
+        throw FileError(fmt::format("{}: cannot be judged: {}", blocks[i].file.string(), e.what()));
+      }
+    }
   }
 
   void closing_and_failures() {
+    try {
+      judge_ends();
+    } catch (const nlohmann::json::exception& e) {
+      throw FileError(fmt::format("{}: cannot be read: {}", (folder_ / "summary.json").string(), e.what()));
+    }
+  }
+
+ private:
+  // Entries of a collection, which there has to be.
+  std::vector<SeriesEntry> series(const char* name) {
+    const fs::path path = folder_ / "fields" / name;
+    bool cut_short = false;
+    auto list = read_series(path, &cut_short);
+    if (list.empty())
+      throw FileError(fmt::format("{}: {} frames of a run: there is nothing to judge", path.string(),
+                                  is_there(path) ? "names no" : "is missing, and with it the"));
+    if (cut_short) out_.notes.push_back(fmt::format("{}: has no end; frames may be missing", path.string()));
+    return list;
+  }
+
+  void judge_ends() {
     const auto& s = summary_;
     if (s.contains("solver")) {
       const auto failed = s["solver"].value("failed_steps", int64_t{0});
@@ -65,7 +94,6 @@ class Reader {
     add_closing(closing, friction, largest, lifting_, time, out_.report);
   }
 
- private:
   void read_summary() {
     std::error_code ec;
     if (!fs::is_directory(folder_, ec))
@@ -176,9 +204,15 @@ class Reader {
     if (!is_there(folder_ / "steps.csv")) return;
     const CsvTable table = read_csv(folder_ / "steps.csv", LastLine::kMustEnd);
     if (table.rows() == 0) return;
-    const auto &t = table.column("t [s]"), &failed = table.column("failed steps"),
-               &closing = table.column("contact closing work [J]"),
-               &friction = table.column("friction work [J]");
+    const auto column = [&](const char* name) -> const std::vector<double>& {
+      try {
+        return table.column(name);
+      } catch (const FileError& e) {
+        throw FileError(fmt::format("{}: {}", (folder_ / "steps.csv").string(), e.what()));
+      }
+    };
+    const auto &t = column("t [s]"), &failed = column("failed steps"),
+               &closing = column("contact closing work [J]"), &friction = column("friction work [J]");
     for (size_t i = 0; i < table.rows(); ++i) {
       if (failed[i] > 0 && std::isnan(first_failed_)) first_failed_ = t[i];
       closing_.push_back({t[i], closing[i], friction[i]});
@@ -214,6 +248,7 @@ class Reader {
       if (!(id[i] >= 0) || id[i] >= static_cast<double>(frame.blocks.size()))
         throw FileError(fmt::format("{}: has a block that blocks.csv does not name", vtk.file));
       Block& b = frame.blocks[static_cast<size_t>(id[i])];
+      if (!b.polygon.empty()) throw FileError(fmt::format("{}: a block is there twice", vtk.file));
       b.hold = kind[i] >= 2 ? Hold::kPrescribed : Hold::kFree;  // deformable, rigid, fixed, driven
       if (!(offsets[i] >= 0 && offsets[i] <= static_cast<double>(corners)))
         throw FileError(fmt::format("{}: corners and blocks do not fit", vtk.file));
@@ -245,6 +280,9 @@ class Reader {
       p.block_a = whole(vtk, a[i]), p.block_b = whole(vtk, b[i]);
       check_number(vtk, p.block_a, frame.blocks.size());
       check_number(vtk, p.block_b, frame.blocks.size());
+      for (const int k : {p.block_a, p.block_b})
+        if (frame.blocks[static_cast<size_t>(k)].polygon.empty())
+          throw FileError(fmt::format("{}: a point names a block that is not in its frame", vtk.file));
       if (kind[i] == 0) {
         p.corner = whole(vtk, corner[i]), p.edge = whole(vtk, edge[i]);
         check_number(vtk, p.corner, frame.blocks[static_cast<size_t>(p.block_a)].polygon.size());

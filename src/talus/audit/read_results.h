@@ -10,8 +10,8 @@ namespace talus::audit {
 
 struct FolderAudit {
   Report report;
-  std::vector<std::string> names;      // of the blocks
-  std::vector<std::string> not_asked;  // what the folder does not tell
+  std::vector<std::string> names;  // of the blocks
+  std::vector<std::string> notes;  // what of the folder was not looked at
 };
 
 /// Throws FileError when the folder holds no run, or a file in it cannot be read.

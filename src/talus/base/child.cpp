@@ -53,8 +53,12 @@ size_t address_space() {
 }
 
 [[noreturn]] void be_child(int out, const std::function<std::string()>& work, const ChildLimits& limits) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
+  // what nohup has ignored stays so
+  struct sigaction hang_up {};
+  const bool ignored = sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler == SIG_IGN;
+  for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
     std::signal(signal, SIG_DFL);
+  if (!ignored) std::signal(SIGHUP, SIG_DFL);
   std::signal(SIGPIPE, SIG_IGN);
   // nothing of the parent is kept open, no lock of a folder above all, and nothing outlives it
   prctl(PR_SET_PDEATHSIG, SIGKILL);

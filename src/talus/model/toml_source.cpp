@@ -12,8 +12,7 @@ namespace talus {
 
 namespace {
 
-constexpr size_t kLargestFile = 64 << 20;  // [bytes] a model text beyond this is a mistake
-constexpr int kMostParts = 20;             // of a key; those of a model have four at most
+constexpr int kMostParts = 20;  // of a key; those of a model have four at most
 
 // Line of the first byte that no TOML text may hold (control character, broken UTF-8), or 0.
 int first_bad_line(const std::string& text) {
@@ -195,8 +194,8 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
 TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides,
                       Findings& findings) {
   TomlSource source;
-  if (text.size() > kLargestFile) {
-    findings.error({}, "", fmt::format("the file is larger than {}", readable_bytes(kLargestFile)));
+  if (text.size() > kMostModelText) {
+    findings.error({}, "", fmt::format("the file is larger than {}", readable_bytes(kMostModelText)));
     return source;
   }
   if (const int line = first_bad_line(text); line > 0) {

@@ -11,6 +11,9 @@
 
 namespace talus {
 
+/// Largest text of a model [bytes]: beyond this it is a mistake.
+inline constexpr size_t kMostModelText = size_t{64} << 20;
+
 struct TomlSource {
   toml::table root;
   std::map<std::string, std::string> overridden;  // dotted path -> "--set path=value"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <fstream>
 
 #include "talus/base/bytes.h"
 #include "talus/base/child.h"
@@ -154,8 +155,9 @@ T number_in(std::string_view text, T otherwise) {
   return status == std::errc{} && end == text.data() + text.size() ? value : otherwise;
 }
 
-// Checks header, size and digest before anything else looks at the rest.
-void check_header(const std::string& name, std::string_view bytes) {
+// Checks header and size before anything else looks at the rest, which is `length` bytes.
+// @param bytes  of the file, the header whole if there is one. Returns the digest of the rest.
+std::string_view check_header(const std::string& name, std::string_view bytes, size_t length) {
   if (bytes.substr(0, kHdf5Signature.size()) == kHdf5Signature)
     unusable(name,
              fmt::format("a talus older than format {} wrote it. Go on with the program that did, or run "
@@ -163,16 +165,17 @@ void check_header(const std::string& name, std::string_view bytes) {
                          kStateFormat));
   if (bytes.substr(0, kMagic.size()) != kMagic) unusable(name, "another program has written it");
   if (bytes.size() < kHeader) unusable(name, "it is cut short");
-  const std::string_view header = bytes.substr(0, kHeader), rest = bytes.substr(kHeader);
+  const std::string_view header = bytes.substr(0, kHeader);
   const int format = number_in(value_of(header, kMagic), -1);
   if (format != kStateFormat)
     unusable(name, fmt::format("it is in format {}, and this program reads format {}. Go on with the program "
                                "that wrote it, or run the model anew",
                                format, kStateFormat));
   const size_t size = number_in(value_of(header, "\nbytes "), size_t{0});
-  if (rest.size() < size) unusable(name, fmt::format("it is cut short: {} of {} bytes", rest.size(), size));
-  if (rest.size() > size || value_of(header, "\ndigest ") != text_hash(rest))
-    unusable(name, "its content is damaged: it has another digest than its header says");
+  if (length < size) unusable(name, fmt::format("it is cut short: {} of {} bytes", length, size));
+  if (length > size)
+    unusable(name, fmt::format("its content is damaged: {} bytes, and its header says {}", length, size));
+  return value_of(header, "\ndigest ");
 }
 
 }  // namespace
@@ -215,7 +218,10 @@ std::string read_image(const std::string& image) {
 
 Archive parse_archive(const std::string& name, const std::string& bytes) {
   keep_quiet();
-  check_header(name, bytes);
+  const std::string_view digest =
+      check_header(name, bytes, bytes.size() < kHeader ? 0 : bytes.size() - kHeader);
+  if (digest != text_hash(std::string_view(bytes).substr(kHeader)))
+    unusable(name, "its content is damaged: it has another digest than its header says");
   const std::string image = bytes.substr(kHeader);
   constexpr size_t kCopies = 6;  // of the content, at once
   ChildLimits limits;
@@ -230,7 +236,20 @@ Archive parse_archive(const std::string& name, const std::string& bytes) {
   return archive;
 }
 
+// The first bytes of a file say how long it is, before all of it is read.
+void check_length(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string header(kHeader, '\0');
+  in.read(header.data(), static_cast<std::streamsize>(header.size()));
+  header.resize(static_cast<size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  std::error_code ec;
+  const uintmax_t length = fs::file_size(path, ec);
+  if (!ec && header.size() == kHeader) check_header(path.string(), header, length - kHeader);
+}
+
 Archive read_archive(const fs::path& path) {
+  std::error_code ec;
+  if (fs::is_regular_file(path, ec)) check_length(path);
   // as long as the memory that wrote it allowed
   constexpr size_t kMost = size_t{1} << 40;
   return parse_archive(path.string(), read_text_file(path, kMost));

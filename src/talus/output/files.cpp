@@ -70,6 +70,7 @@ void check_continued(const fs::path& path, int64_t size) {
   if (const std::string kind = special_kind(there.st_mode); !kind.empty())
     throw FileError(
         fmt::format("{}: is {}: going on would write into what is behind it", path.string(), kind));
+  if (access(path.c_str(), W_OK) != 0) fail_file(path, "continued", errno);
   if (there.st_nlink > 1)
     throw FileError(fmt::format(
         "{}: is the same file under {} names (hard links): going on would change all. Copy it first",

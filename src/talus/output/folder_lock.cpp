@@ -141,7 +141,11 @@ FolderLock::FolderLock(const fs::path& folder)
   (void)posix_fallocate(file_, static_cast<off_t>(size_), kReserve);
 }
 
-FolderLock::~FolderLock() { unlink(path_.c_str()); }
+FolderLock::~FolderLock() {
+  if (is_ours()) unlink(path_.c_str());
+}
+
+bool FolderLock::is_ours() const { return same_file(file_, path_); }
 
 void FolderLock::free_reserve() {
   (void)(ftruncate(file_, static_cast<off_t>(size_)) == 0);  // then the last word may find no room

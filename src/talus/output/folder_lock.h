@@ -26,6 +26,9 @@ class FolderLock {
   /// What a process that has ended without removing its lock left in it, "" when there was none.
   const std::string& stale() const { return stale_; }
 
+  /// Whether the folder still leads to the lock: false when somebody has removed or moved it.
+  bool is_ours() const;
+
   /// Gives back the room on the disk that the file keeps, for a last word when the disk is full.
   void free_reserve();
 

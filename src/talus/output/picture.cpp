@@ -27,15 +27,20 @@ const char* fill_of(BlockKind kind) {
   return "none";
 }
 
-std::string escaped(const std::string& text) {
+// XML knows no control characters, nor the two numbers of Unicode that are no characters (U+FFFE, U+FFFF).
+std::string escaped(std::string text) {
+  for (const char* none : {"\xef\xbf\xbe", "\xef\xbf\xbf"})
+    for (size_t at = 0; (at = text.find(none, at)) != std::string::npos;) text.replace(at, 3, " ");
   std::string out;
   for (const char c : text) {
     if (c == '<')
       out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
     else if (c == '&')
       out += "&amp;";
     else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      out += ' ';  // XML knows no control characters
+      out += ' ';
     else
       out += c;
   }

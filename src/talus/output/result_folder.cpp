@@ -85,6 +85,11 @@ bool is_inside(const std::string& name) {
                       [](const fs::path& part) { return part == ".." || part == "." || part.empty(); });
 }
 
+// The folder's own: no results, and never removed as such.
+bool is_bookkeeping(const std::string& name) {
+  return name == ResultFolder::kManifest || name == FolderLock::kName;
+}
+
 // Lines with an end; a torn last one names a file that was not begun.
 std::optional<Manifest> read_manifest(const fs::path& folder) {
   const fs::path path = folder / ResultFolder::kManifest;
@@ -99,18 +104,29 @@ std::optional<Manifest> read_manifest(const fs::path& folder) {
       if (line.rfind(kBegin, 0) != 0) return std::nullopt;
       for (size_t k = 0; k < kKindName.size(); ++k)
         if (line.substr(kBegin.size()) == kKindName[k]) m.kind = static_cast<ResultKind>(k);
-    } else if (is_inside(line)) {
+    } else if (is_inside(line) && !is_bookkeeping(line)) {
       m.names.push_back(line);
     }
   }
   return m.kind ? std::optional(m) : std::nullopt;
 }
 
+// Anybody may call a file summary.json.
+bool is_summary_of_talus(const fs::path& path) {
+  try {
+    return read_text_file(path, kMostResultList).find("\"program\": \"talus") != std::string::npos;
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
 // The kind of results in a folder without manifest, by its files.
 std::optional<ResultKind> kind_by_files(const fs::path& folder) {
   std::error_code ec;
   const auto there = [&](const char* name) { return fs::exists(folder / name, ec); };
-  if (there("summary.json") || (there("model.toml") && there("steps.csv"))) return ResultKind::kRun;
+  if ((there("summary.json") && is_summary_of_talus(folder / "summary.json")) ||
+      (there("model.toml") && there("steps.csv")))
+    return ResultKind::kRun;
   if (there("cut.json")) return ResultKind::kCut;
   if (there("record.json")) return ResultKind::kRecord;
   if (there("safety.json")) return ResultKind::kSafety;
@@ -156,33 +172,6 @@ bool is_result(const std::string& folder, const std::string& name, ResultKind ki
   return is_numbered(name, "step_", 1, ".json");
 }
 
-// Whether results can be written where they belong: before any of those that are there is touched. Links that
-// are going to be removed are no hindrance.
-void check_room(const fs::path& folder, ResultKind kind, bool removed_first) {
-  std::error_code ec;
-  const auto check_folder = [&](const fs::path& inside) {
-    if (!fs::exists(fs::symlink_status(inside, ec))) return;
-    if (!fs::is_directory(inside, ec))
-      throw FileError(
-          fmt::format("{}: is where a folder of results belongs; nothing was changed. Move it away, "
-                      "or give another folder",
-                      inside.string()));
-    if (access(inside.c_str(), W_OK | X_OK) != 0)
-      fail_file(inside, "written into; nothing was changed", errno);
-  };
-  check_folder(folder);
-  if (kind == ResultKind::kRun)
-    for (const char* inside : {"fields", "saved"}) check_folder(folder / inside);
-  for (const std::string& name : fixed_names(kind)) {
-    const std::string there = unfit_target(folder / name);
-    if (there.empty() || (removed_first && there == special_kind(S_IFLNK))) continue;
-    throw FileError(
-        fmt::format("{}: is {}, where a result belongs; nothing was changed. Move it away, or give "
-                    "another folder",
-                    (folder / name).string(), there));
-  }
-}
-
 std::vector<std::string> results_by_name(const fs::path& folder, ResultKind kind) {
   std::vector<std::string> names;
   std::error_code ec;
@@ -194,6 +183,64 @@ std::vector<std::string> results_by_name(const fs::path& folder, ResultKind kind
     }
   }
   return names;
+}
+
+[[noreturn]] void fail_in_the_way(const fs::path& path, const std::string& what) {
+  throw FileError(fmt::format(
+      "{}: is {}, where a result belongs; nothing was changed. Move it away, or give another folder",
+      path.string(), what));
+}
+
+// A folder that results are written into or removed from: not behind a link, and ours to change.
+void check_folder(const fs::path& inside) {
+  std::error_code ec;
+  const fs::file_status status = fs::symlink_status(inside, ec);
+  if (!fs::exists(status)) return;
+  if (fs::is_symlink(status))
+    throw FileError(
+        fmt::format("{}: is a link, where a folder of results belongs; nothing was changed. Move it "
+                    "away, or give another folder",
+                    inside.string()));
+  if (!fs::is_directory(status))
+    throw FileError(
+        fmt::format("{}: is where a folder of results belongs; nothing was changed. Move it away, "
+                    "or give another folder",
+                    inside.string()));
+  if (access(inside.c_str(), W_OK | X_OK) != 0) fail_file(inside, "written into; nothing was changed", errno);
+}
+
+// A place of a result. Links that are going to be removed are no hindrance; files that the system lets nobody
+// change are.
+void check_place(const fs::path& file, bool removed_first) {
+  const std::string there = unfit_target(file);
+  if (!there.empty() && !(removed_first && there == special_kind(S_IFLNK))) fail_in_the_way(file, there);
+  if (!there.empty() || access(file.c_str(), W_OK) == 0 || errno == ENOENT) return;
+  // collections of frames are gone on with in place
+  if (errno == EPERM || (!removed_first && file.extension() == ".pvd"))
+    fail_file(file, "changed; nothing was", errno);
+}
+
+// Whether results can be written where they belong, and older ones removed: before any of those that are there
+// is touched.
+void check_room(const fs::path& folder, ResultKind kind, bool removed_first) {
+  // the folder itself may be reached by a link
+  if (access(folder.c_str(), W_OK | X_OK) != 0) fail_file(folder, "written into; nothing was changed", errno);
+  const fs::path manifest = folder / ResultFolder::kManifest;
+  check_place(manifest, false);
+  if (access(manifest.c_str(), R_OK | W_OK) != 0 && errno != ENOENT)
+    fail_file(manifest, "written; nothing was changed", errno);
+  if (kind == ResultKind::kRun)
+    for (const char* inside : {"fields", "saved", "plots"}) check_folder(folder / inside);
+  std::set<std::string> names(fixed_names(kind).begin(), fixed_names(kind).end());
+  for (const std::string& name : results_by_name(folder, kind)) names.insert(name);
+  if (const auto there = read_manifest(folder); there && removed_first)
+    names.insert(there->names.begin(), there->names.end());
+  std::set<fs::path> folders;
+  for (const std::string& name : names) {
+    for (fs::path up = fs::path(name).parent_path(); !up.empty(); up = up.parent_path())
+      if (folders.insert(up).second) check_folder(folder / up);
+    check_place(folder / name, removed_first);
+  }
 }
 
 // What killed processes left of files they had not finished.
@@ -312,6 +359,12 @@ ResultFolder ResultFolder::go_on(const fs::path& folder) {
   ResultFolder out(folder);
   out.lock();
   check_room(folder, ResultKind::kRun, false);
+  struct stat manifest_there {};
+  if (lstat((folder / kManifest).c_str(), &manifest_there) == 0 && manifest_there.st_nlink > 1)
+    throw FileError(
+        fmt::format("{}: is the same file under {} names (hard links): going on would change all. "
+                    "Copy it first",
+                    (folder / kManifest).string(), manifest_there.st_nlink));
   remove_unfinished_in(folder);
   for (const char* inside : {"fields", "saved", "plots"}) remove_unfinished_in(folder / inside);
   const auto manifest = read_manifest(folder);
@@ -346,6 +399,10 @@ std::string ResultFolder::stale_lock() const {
 
 fs::path ResultFolder::note(const std::string& name) {
   TALUS_ASSERT(is_inside(name));
+  if (parts_->lock && !parts_->lock->is_ours())
+    throw FileError(
+        fmt::format("{}: has been moved away or removed while results were written into it; nothing more is",
+                    path_.string()));
   if (!is_frame(name) && !parts_->noted.insert(name).second) return path_ / name;
   try {
     add_line(parts_->manifest, path_ / kManifest, name);
@@ -379,16 +436,28 @@ void ResultFolder::free_reserve() {
 }
 
 void check_no_result(const fs::path& file) {
-  if (file.extension() == ".html") return;
-  const fs::path whole = fs::absolute(file).lexically_normal();
+  std::error_code ec;
+  fs::path whole = fs::weakly_canonical(file, ec);
+  if (ec) whole = fs::absolute(file).lexically_normal();
   for (fs::path folder = whole.parent_path(), inside = whole.filename(); folder.has_relative_path();
        inside = folder.filename() / inside, folder = folder.parent_path()) {
     const auto manifest = read_manifest(folder);
-    if (!manifest) continue;
-    if (std::find(manifest->names.begin(), manifest->names.end(), inside.string()) != manifest->names.end())
+    if (!manifest && !is_bookkeeping(inside.string())) continue;
+    const std::string name = inside.string();
+    const bool result = is_bookkeeping(name) || (manifest && name != "report.html" &&
+                                                 is_result(inside.parent_path().string(),
+                                                           inside.filename().string(), *manifest->kind));
+    if (result)
       throw FileError(fmt::format("{}: is one of the results in {}; nothing was written. Give another name",
                                   file.string(), folder.string()));
     return;
+  }
+}
+
+void check_no_figure_of_results(const fs::path& stem) {
+  for (const char* end : {".svg", ".png"}) {
+    fs::path file = stem;
+    check_no_result(file += end);
   }
 }
 
@@ -405,6 +474,16 @@ void note_result(const fs::path& folder, const fs::path& file) {
 }
 
 void note_figure(const fs::path& folder, const fs::path& stem) {
+  check_no_figure_of_results(stem);
+  std::error_code ec;
+  const fs::path inside = fs::absolute(stem.parent_path())
+                              .lexically_normal()
+                              .lexically_relative(fs::absolute(folder).lexically_normal());
+  if (is_inside(inside.string()) && fs::is_symlink(fs::symlink_status(stem.parent_path(), ec)))
+    throw FileError(
+        fmt::format("{}: is a link, and nothing of the results is written behind links. Remove it, "
+                    "or give -o",
+                    stem.parent_path().string()));
   for (const char* end : {".svg", ".png"}) {
     fs::path file = stem;
     note_result(folder, file += end);

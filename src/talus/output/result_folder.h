@@ -65,14 +65,17 @@ class ResultFolder {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Throws FileError when the file is one of the results of the folder it lies in; pages of reports are made to be
-/// replaced.
+/// Throws FileError when the file is one of the results of the folder it lies in, or its lock or manifest,
+/// under whatever name; reports and figures that other verbs add are made to be replaced.
 void check_no_result(const std::filesystem::path& file);
+/// The same of STEM.svg and STEM.png.
+void check_no_figure_of_results(const std::filesystem::path& stem);
 
 /// Notes a file that another verb adds to the results (a figure, a report), when it lies in a folder that has
 /// a manifest.
 void note_result(const std::filesystem::path& folder, const std::filesystem::path& file);
-/// The same of a figure, STEM.svg and STEM.png.
+/// The same of a figure, STEM.svg and STEM.png; throws FileError when it would replace a result, or be written
+/// behind a link in the folder.
 void note_figure(const std::filesystem::path& folder, const std::filesystem::path& stem);
 
 }  // namespace talus

@@ -33,6 +33,19 @@ TEST_CASE("work in a child: its bytes come back, whatever they are and how many"
   CHECK(work_in_child("x", [&] { return many; }) == many);
 }
 
+TEST_CASE("work in a child: a hang-up that nohup has ignored stays so") {
+  const auto hears = [] {
+    struct sigaction now {};
+    sigaction(SIGHUP, nullptr, &now);
+    return std::string(now.sa_handler == SIG_IGN ? "ignored" : "heard");
+  };
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  CHECK(work_in_child("x", hears) == "ignored");
+  std::signal(SIGHUP, SIG_DFL);
+  CHECK(work_in_child("x", hears) == "heard");
+  std::signal(SIGHUP, before);
+}
+
 TEST_CASE("work in a child: its death is an error with the reason") {
   CHECK(holds(said([]() -> std::string {
                 raise(SIGSEGV);

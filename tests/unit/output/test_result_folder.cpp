@@ -116,6 +116,22 @@ TEST_CASE("a folder of results: made, refused, replaced") {
     }
     CHECK(content(folder / ResultFolder::kManifest) == "results of talus run\nsteps.csv\nbolts.csv\n");
   }
+  SUBCASE("lock and manifest are no results, whatever the manifest says") {
+    fs::create_directories(folder);
+    put(folder / ResultFolder::kManifest, "results of talus run\ntalus_lock.txt\ntalus_manifest.txt\n");
+    ResultFolder results(folder, true);
+    CHECK(fs::exists(folder / "talus_lock.txt"));
+    CHECK(holds(error_of([&] { ResultFolder(folder, true); }), "is in use"));
+  }
+  SUBCASE("a summary of somebody else's is none of ours") {
+    fs::create_directories(folder);
+    put(folder / "summary.json", "{\"accuracy\": 0.9}");
+    put(folder / "histories.csv", "precious");
+    CHECK(holds(error_of([&] { ResultFolder(folder, true); }), "holds no results of talus"));
+    CHECK(content(folder / "histories.csv") == "precious");
+    put(folder / "summary.json", "{\n  \"program\": \"talus 0.1.0\"\n}");
+    CHECK_NOTHROW(ResultFolder(folder, true));
+  }
   SUBCASE("results of another kind are not replaced") {
     { ResultFolder results(folder, false, ResultKind::kCut); }
     CHECK(holds(error_of([&] { ResultFolder(folder, true); }),

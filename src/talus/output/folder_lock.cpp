@@ -145,7 +145,16 @@ FolderLock::~FolderLock() {
   if (is_ours()) unlink(path_.c_str());
 }
 
-bool FolderLock::is_ours() const { return same_file(file_, path_); }
+// Some network drives number their files anew: then its text tells.
+bool FolderLock::is_ours() const {
+  if (same_file(file_, path_)) return true;
+  try {
+    const auto holder = read_holder(path_);
+    return holder && holder->process == getpid() && holder->host == this_host();
+  } catch (const std::exception&) {
+    return false;
+  }
+}
 
 void FolderLock::free_reserve() {
   (void)(ftruncate(file_, static_cast<off_t>(size_)) == 0);  // then the last word may find no room

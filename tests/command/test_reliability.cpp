@@ -252,19 +252,22 @@ TEST_CASE("reliability: a standard error whose reader has gone changes nothing e
 TEST_CASE("reliability: a folder that is moved away from under a run") {
   const Folder f;
   write_long_model(f);
-  const Outcome o = shell(f,
-                          "$talus run long.toml -o a -q --set output.save_interval=0.05 & p=$!; "
-                          "while [ ! -e a/saved/stage_01.h5 ]; do sleep 0.05; done; mv a b; "
-                          "$talus run long.toml -o a -q & q=$!; "
-                          "while [ ! -e a/steps.csv ]; do sleep 0.05; done; wait $p; echo first $?; "
-                          "$talus run long.toml -o a -q --force; echo third $?; kill -TERM $q; wait $q; "
-                          "echo second $?");
+  // the name of the first one's folder leads to the second one's at once
+  const Outcome o =
+      shell(f,
+            "mkdir a b; ln -s a here; ln -s b there; "
+            "$talus run long.toml -o here -q --set output.save_interval=0.05 2>first.txt & p=$!; "
+            "$talus run long.toml -o b -q & q=$!; "
+            "while [ ! -e a/saved/stage_01.h5 ] || [ ! -e b/steps.csv ]; do sleep 0.05; done; "
+            "mv -T there here; wait $p; echo first $?; "
+            "$talus run long.toml -o b -q --force; echo third $?; kill -TERM $q; wait $q; "
+            "echo second $?");
   INFO(o.text);
-  has(o.text, "moved away or removed");
+  has(content(f / "first.txt"), "has been moved away or removed");
   has(o.text, "first 4");
   has(o.text, "third 4");  // the second lives, and its lock stands
   has(o.text, "second 143");
-  CHECK(status_of(f / "a") == "interrupted");
+  CHECK(status_of(f / "b") == "interrupted");
 }
 
 TEST_CASE("reliability: the audit refuses results that somebody has forged") {

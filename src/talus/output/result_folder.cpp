@@ -230,7 +230,7 @@ void check_room(const fs::path& folder, ResultKind kind, bool removed_first) {
   if (access(manifest.c_str(), R_OK | W_OK) != 0 && errno != ENOENT)
     fail_file(manifest, "written; nothing was changed", errno);
   if (kind == ResultKind::kRun)
-    for (const char* inside : {"fields", "saved", "plots"}) check_folder(folder / inside);
+    for (const char* inside : {"fields", "saved"}) check_folder(folder / inside);
   std::set<std::string> names(fixed_names(kind).begin(), fixed_names(kind).end());
   for (const std::string& name : results_by_name(folder, kind)) names.insert(name);
   if (const auto there = read_manifest(folder); there && removed_first)

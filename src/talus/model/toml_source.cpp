@@ -149,6 +149,13 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
                    "an override is written path=value, for example --set material.rock.young=\"5 GPa\"");
     return;
   }
+  if (item.find_first_of("\n\r") != std::string::npos) {
+    findings.error(
+        where, item.substr(0, equal), "an override has more than one line",
+        "overrides are kept as comments of one line in the copy of the model: write \\n in texts, and lists "
+        "without line breaks");
+    return;
+  }
   const std::string path = item.substr(0, equal), value = item.substr(equal + 1);
   const std::vector<std::string> parts = split(path, '.');
   if (parts.size() > kMostParts) {

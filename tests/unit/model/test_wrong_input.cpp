@@ -241,6 +241,7 @@ TEST_CASE("overrides: values, names in lists, and their own mistakes") {
   check_message(refusal(kSound, {"block.uper.kind=rigid"}),
                 {"no block is called \"uper\"", "there is lower or upper"});
   check_message(refusal(kSound, {"young"}), {"an override is written path=value"});
+  check_message(refusal(kSound, {"title=\"x\" # \nevil = 1"}), {"an override has more than one line"});
   check_message(refusal(kSound, {"talus.x=1"}), {"\"talus\" holds no further keys"});
 }
 

@@ -308,10 +308,10 @@ TEST_CASE("reliability: a signal just after the start") {
 TEST_CASE("reliability: what is in the way of results is seen before any of the old ones is touched") {
   const Folder f;
   write_file(f / "m.toml", kShakenBricks);
+  REQUIRE(shell(f, "$talus run m.toml -o right -q").code == 0);
   const auto refused = [&f](const std::string& hindrance, const std::string& line) {
     INFO(hindrance, " ", line);
-    fs::remove_all(f / "out");
-    REQUIRE(shell(f, "$talus run m.toml -o out -q").code == 0);
+    REQUIRE(shell(f, "rm -rf out && cp -r right out").code == 0);
     const std::string histories = content(f / "out/histories.csv");
     REQUIRE(shell(f, hindrance).code == 0);
     const Outcome o = shell(f, line);

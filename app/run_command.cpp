@@ -133,6 +133,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw;
   } catch (const std::exception& e) {
     recorder->abandon(e.what());
+    recorder->check_place();  // the cause, whatever failed first
     throw;
   }
   const RunResult& result = run.result;

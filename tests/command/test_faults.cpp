@@ -97,6 +97,24 @@ TEST_CASE("faults: a sample, of a short run") {
   CHECK(tried.told > 15);
 }
 
+TEST_CASE("faults: a folder that is moved away before a file gets its name is the cause told") {
+  const Folder f;
+  write_file(f / "m.toml", kShakenBricks);
+  int told = 0;
+  for (long n = 1;; n += 1 + n / 4) {
+    fs::remove_all(f / "out");
+    fs::remove_all(f / "moved");
+    const Outcome o = shell(f, faulty("moved", n, "$talus run m.toml -q -o out"));
+    if (!fs::exists(f / "told")) break;
+    INFO(n, ": ", o.text);
+    CHECK(o.code == 4);
+    CHECK(!fs::exists(f / "out"));
+    // the first ones come while results begin
+    told += o.text.find("out: has been moved away or removed") != std::string::npos ? 1 : 0;
+  }
+  CHECK(told > 3);
+}
+
 TEST_SUITE("long: faults") {
   TEST_CASE("faults in runs") {
     const Folder f;

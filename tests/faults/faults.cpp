@@ -1,6 +1,6 @@
 // Preloaded into the program by tests/command/test_faults.cpp: lets the n-th call of one kind fail, as a full disk, a
 // lost network drive or a machine without memory would. TALUS_FAULT is KIND:N; what was done is told in the file
-// TALUS_FAULT_TOLD.
+// TALUS_FAULT_TOLD. Of the kind "moved" the n-th rename finds the folder out/ moved away.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -88,6 +88,7 @@ int mallopt(int, int) noexcept {
 
 int rename(const char* from, const char* to) noexcept {
   if (fails("rename", renames)) return no(EIO);
+  if (fails("moved", renames)) syscall(SYS_rename, "out", "moved");
   return static_cast<int>(syscall(SYS_rename, from, to));
 }
 

@@ -397,12 +397,16 @@ std::string ResultFolder::stale_lock() const {
                                    path_.string(), who);
 }
 
-fs::path ResultFolder::note(const std::string& name) {
-  TALUS_ASSERT(is_inside(name));
+void ResultFolder::check_place() const {
   if (parts_->lock && !parts_->lock->is_ours())
     throw FileError(
         fmt::format("{}: has been moved away or removed while results were written into it; nothing more is",
                     path_.string()));
+}
+
+fs::path ResultFolder::note(const std::string& name) {
+  TALUS_ASSERT(is_inside(name));
+  check_place();
   if (!is_frame(name) && !parts_->noted.insert(name).second) return path_ / name;
   try {
     add_line(parts_->manifest, path_ / kManifest, name);

@@ -37,7 +37,11 @@ class ResultFolder {
   /// A sentence about a lock that a process that has ended left behind; "" when there was none.
   std::string stale_lock() const;
 
-  /// Notes a file that is going to be written, by its path in the folder; gives its whole path.
+  /// Throws FileError when the name of the folder leads elsewhere than when it was taken.
+  void check_place() const;
+
+  /// Notes a file that is going to be written, by its path in the folder; gives its whole path. Checks the place
+  /// first.
   std::filesystem::path note(const std::string& name);
 
   /// The same of NAME.svg and NAME.png; gives the path without ending.

@@ -64,6 +64,9 @@ class Recorder : public Observer {
   /// The same of results that could not be begun or taken up, where summary.json says that they are.
   static void abandon_begun(const std::filesystem::path& folder, const std::string& why) noexcept;
 
+  /// Throws FileError when the name of the folder leads elsewhere by now.
+  void check_place() const { folder_.check_place(); }
+
   /// Ends the results as if the run had been interrupted when its state was last held in memory, and saves
   /// that state: for a process that has to end while a step goes on. May be called from another thread; no
   /// result is taken any more, and the folder is free for others. Throws when that cannot be written;

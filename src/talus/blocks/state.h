@@ -84,23 +84,30 @@ struct Contact {
   double slip_signed = 0;         // [m] the same with its sign: > 0 along the tangent
 };
 
+/// A third block that covers a side of a pair: a place beside that side lies in it.
+struct Cover {
+  int block = -1;     // -1: none
+  bool of_b = false;  // the side is one of block b of the pair
+  Vec2 at;            // the place, as a reference arm of that block [m]
+
+  friend bool operator==(const Cover&, const Cover&) = default;
+};
+
 /// Two blocks near each other. Their contact points are sought anew when they have moved against each other
 /// by more than `reuse` since; until then the same points are followed.
-struct ContactPair {
-  int a = -1, b = -1;        // a < b
-  int begin = 0, count = 0;  // contact points, in State::contacts
-  int face = -1;             // first of their faces in the bond set, -1: none
+struct alignas(64) ContactPair {  // what every step asks of each pair stands in its first line of the cache
+  int a = -1, b = -1;             // a < b
+  int begin = 0, count = 0;       // contact points, in State::contacts
+  int face = -1;                  // first of their faces in the bond set, -1: none
   // Joints carry the stress of the ground between blocks that share a face since the first step, and where
   // blocks that were near each other then come to share one.
   bool from_start = false, shares_face = false;
-  double reuse = -1;  // [m]; < 0: not sought yet
-  double margin = 0;  // [m] gaps up to which they were sought
-  Vec2 arm;           // reference arm, on the larger block, of the centroid of the smaller one then
-  Mat2 turn;          // F of the larger block, inverted, times F of the smaller one then
-  // third blocks that cover sides of the two, and how they lay beside block a then; -1: none
-  std::array<int, 2> cover{-1, -1};
-  std::array<Vec2, 2> cover_place{};
-  std::array<Mat2, 2> cover_turn{};
+  int8_t covers = 0;           // how many of `cover`
+  double reuse = -1;           // [m]; < 0: not sought yet
+  double margin = 0;           // [m] gaps up to which they were sought
+  Vec2 arm;                    // reference arm, on the larger block, of the centroid of the smaller one then
+  Mat2 turn;                   // F of the larger block, inverted, times F of the smaller one then
+  std::array<Cover, 4> cover;  // of sides of the two
 };
 
 /// Blocks near each block, those that are glued to it or do not move among them: [begin[i], begin[i + 1]).

@@ -4,6 +4,7 @@
 // states counts in bytes.
 
 #include <concepts>
+#include <string>
 
 #include "talus/blocks/state.h"
 
@@ -29,12 +30,16 @@ void each_field(Is<Contact> auto& c, auto&& f) {
 }
 
 void each_field(Is<ContactPair> auto& p, auto&& f) {
-  auto& [a, b, begin, count, face, from_start, shares_face, reuse, margin, arm, turn, cover, cover_place,
-         cover_turn] = p;
+  auto& [a, b, begin, count, face, from_start, shares_face, covers, reuse, margin, arm, turn, cover] = p;
   f("a", a), f("b", b), f("begin", begin), f("count", count), f("face", face);
-  f("from_start", from_start), f("shares_face", shares_face), f("reuse", reuse), f("margin", margin);
-  f("arm", arm), f("turn", turn), f("cover_0", cover[0]), f("cover_1", cover[1]);
-  f("cover_place", cover_place), f("cover_turn", cover_turn);
+  f("from_start", from_start), f("shares_face", shares_face), f("covers", covers), f("reuse", reuse);
+  f("margin", margin);
+  f("arm", arm), f("turn", turn);
+  for (size_t k = 0; k < cover.size(); ++k) {
+    auto& [block, of_b, at] = cover[k];
+    const std::string name = "cover_" + std::to_string(k);
+    f((name + "_block").c_str(), block), f((name + "_of_b").c_str(), of_b), f((name + "_at").c_str(), at);
+  }
 }
 
 void each_field(Is<Neighbours> auto& n, auto&& f) {

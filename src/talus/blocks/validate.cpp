@@ -109,8 +109,12 @@ void validate_pairs(const State& s, const BlockSet& b) {
     promise(contacts <= s.contacts.size(), "pairs have more contacts than there are, {}", s.contacts.size());
     promise(pair.face >= -1 && (pair.face < 0 || is_index(pair.face, s.face.size())),
             "blocks {} and {} have face {} of {}", pair.a, pair.b, pair.face, s.face.size());
-    for (const int third : pair.cover)
-      promise(third == -1 || is_index(third, blocks), "block {} of {} covers a side", third, blocks);
+    promise(pair.covers >= 0 && static_cast<size_t>(pair.covers) <= pair.cover.size(),
+            "{} of {} blocks cover a side", pair.covers, pair.cover.size());
+    for (int k = 0; k < pair.covers; ++k) {
+      const int third = pair.cover[static_cast<size_t>(k)].block;
+      promise(is_index(third, blocks), "block {} of {} covers a side", third, blocks);
+    }
     for (int k = 0; k < pair.count; ++k) validate_contact(s, b, pair, k);
   }
   promise_length(s.contacts, contacts, "the list of contacts");

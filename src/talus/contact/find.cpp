@@ -66,6 +66,25 @@ bool leaves_against(std::span<const Vec2> polygon, Vec2 from, Vec2 to, Vec2 dire
   return false;
 }
 
+// Whether a place, seen from where the centroid of a block is now, lies in the block: in the reference frame,
+// in which its corners are known.
+bool lies_in(const BlockSet& blocks, const State& s, int block, Vec2 at) {
+  const auto k = static_cast<size_t>(block);
+  const Mat2& h = s.strain_part[k];
+  const double reach = blocks.radius[k] * (1 + std::sqrt(contract(h, h)));
+  if (dot(at, at) > reach * reach) return false;
+  const Vec2 X = inverse(kIdentity + h) * at;
+  bool inside = false;
+  Vec2 p = blocks.corner({block, blocks.vertex_count(block) - 1});
+  for (int v = 0; v < blocks.vertex_count(block); ++v) {
+    const Vec2 q = blocks.corner({block, v});
+    // X lies to the left of the edge where that crosses its height
+    if ((p.y > X.y) != (q.y > X.y) && (cross(q - p, X - p) > 0) == (q.y > p.y)) inside = !inside;
+    p = q;
+  }
+  return inside;
+}
+
 }  // namespace
 
 void ContactSearch::Outline::take(const BlockSet& blocks, const State& state, int i) {
@@ -248,20 +267,32 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
     if (third == other || blocks.removed(third)) continue;
     const auto ic = static_cast<size_t>(third);
     const Vec2 at = place - (blocks.centroid[ic] - blocks.centroid[ib]) - s.displacement[ic];
-    const Mat2& h = s.strain_part[ic];
-    if (norm(at) > blocks.radius[ic] * (1 + std::sqrt(contract(h, h)))) continue;
-    outline_.clear();
-    for (int k = 0; k < blocks.vertex_count(third); ++k) {
-      const Vec2 X = blocks.corner({third, k});
-      outline_.push_back(X + h * X);
+    if (!lies_in(blocks, s, third, at)) continue;
+    if (norm(direction) > 0) {
+      const Mat2& h = s.strain_part[ic];
+      outline_.clear();
+      for (int k = 0; k < blocks.vertex_count(third); ++k) {
+        const Vec2 X = blocks.corner({third, k});
+        outline_.push_back(X + h * X);
+      }
+      if (!leaves_against(outline_, at, at + back, direction)) continue;
+      found_.this_step_only = true;  // it may turn its sides while the place stays in it
     }
-    if (!contains(outline_, at)) continue;
-    if (norm(direction) > 0 && !leaves_against(outline_, at, at + back, direction)) continue;
-    if (std::find(found_.cover.begin(), found_.cover.end(), third) == found_.cover.end())
-      found_.cover.push_back(third);
+    const Vec2 arm = inverse(kIdentity + s.strain_part[ib]) * (place - s.displacement[ib]);
+    const Cover cover{third, block > other, arm};
+    if (std::find(found_.cover.begin(), found_.cover.end(), cover) == found_.cover.end())
+      found_.cover.push_back(cover);
     return true;
   }
   return false;
+}
+
+bool covers(const BlockSet& blocks, const State& s, int a, int b, const Cover& cover) {
+  if (blocks.removed(cover.block)) return false;
+  const auto of = static_cast<size_t>(cover.of_b ? b : a), ic = static_cast<size_t>(cover.block);
+  const Vec2 at = (blocks.centroid[of] - blocks.centroid[ic]) + cover.at +
+                  (s.displacement[of] - s.displacement[ic] + s.strain_part[of] * cover.at);
+  return lies_in(blocks, s, cover.block, at);
 }
 
 // Whether a third block fills the place through which a hit would be pushed out: beside the side of b, or
@@ -409,6 +440,9 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
     out_.assign(hits_.size() - first, 0);
     for (size_t i = first; i < hits_.size(); ++i)
       out_[i - first] = !hits_[i].held && (hits_[i].covered || is_elsewhere(a, v, place, b, hits_[i], first));
+    // one that stays on a covered side goes as soon as it bears no force
+    for (size_t i = first; i < hits_.size(); ++i)
+      found_.this_step_only = found_.this_step_only || (hits_[i].held && hits_[i].covered);
     size_t kept = first;
     for (size_t i = first; i < hits_.size(); ++i)
       if (!out_[i - first]) hits_[kept++] = hits_[i];

@@ -139,31 +139,16 @@ double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p)
   return norm(off) + std::sqrt(contract(turn, turn)) * blocks.radius[small];
 }
 
-// The blocks that cover sides of a pair, and how they lie beside block a.
-void keep_cover(const State& s, const std::vector<int>& cover, ContactPair& p) {
-  const auto a = static_cast<size_t>(p.a);
-  for (size_t k = 0; k < p.cover.size(); ++k) {
-    p.cover[k] = k < cover.size() ? cover[k] : -1;
-    if (p.cover[k] < 0) continue;
-    const auto c = static_cast<size_t>(p.cover[k]);
-    p.cover_place[k] = s.displacement[c] - s.displacement[a];
-    p.cover_turn[k] = s.strain_part[c] - s.strain_part[a];
-  }
+void keep_cover(const std::vector<Cover>& cover, ContactPair& p) {
+  p.covers = static_cast<int8_t>(std::min(cover.size(), p.cover.size()));
+  p.cover = {};
+  std::copy_n(cover.begin(), p.covers, p.cover.begin());
 }
 
-// Whether a block that covers sides of the pair has gone, or moved by more than `most` [m] (theory 3.7).
-bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p, double most) {
-  const auto a = static_cast<size_t>(p.a);
-  for (size_t k = 0; k < p.cover.size() && p.cover[k] >= 0; ++k) {
-    const auto c = static_cast<size_t>(p.cover[k]);
-    if (blocks.removed(p.cover[k])) return true;
-    const Mat2 turn = s.strain_part[c] - s.strain_part[a] - p.cover_turn[k];
-    if (norm(s.displacement[c] - s.displacement[a] - p.cover_place[k]) +
-            std::sqrt(contract(turn, turn)) * blocks.radius[c] >
-        most)
-      return true;
-  }
-  return false;
+// Whether a block that covers a side of the pair has gone, or left that side (theory 3.7).
+bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p) {
+  return std::any_of(p.cover.begin(), p.cover.begin() + p.covers,
+                     [&](const Cover& c) { return !covers(blocks, s, p.a, p.b, c); });
 }
 
 void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
@@ -350,7 +335,7 @@ class Updater {
         continue;  // and so since it was made: intact faces have no contacts
       const double need = needed(pair);
       if (pair.reuse >= 0 && need <= pair.margin && moved_apart(blocks_, s, pair) <= pair.reuse &&
-          !uncovered(blocks_, s, pair, pair.reuse))
+          !uncovered(blocks_, s, pair))
         continue;
       SearchReport& report = sought_[begin / kPairGrain];
       ++report.searched;
@@ -371,7 +356,7 @@ class Updater {
       const auto& found = sought.points;
       const Memory memory(blocks_, s, pair, found);
       keep_pose(blocks_, s, pair);
-      keep_cover(s, sought.cover, pair);
+      keep_cover(sought.cover, pair);
       // what velocities decided is asked again in the next step
       pair.reuse =
           sought.this_step_only || sought.cover.size() > pair.cover.size()

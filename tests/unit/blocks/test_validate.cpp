@@ -93,7 +93,8 @@ TEST_CASE("validate: states") {
   check_said([](Bricks& b) { b.state.pairs[1] = b.state.pairs[0]; }, "pair 1 is out of order");
   check_said([](Bricks& b) { b.state.pairs[0].begin = 1; }, "begin at 1, not 0");
   check_said([](Bricks& b) { b.state.pairs[0].face = 0; }, "have face 0 of 0");
-  check_said([](Bricks& b) { b.state.pairs[0].cover[1] = 3; }, "block 3 of 3 covers a side");
+  check_said([](Bricks& b) { b.state.pairs[0].covers = 1, b.state.pairs[0].cover[0].block = 3; },
+             "block 3 of 3 covers a side");
   check_said([](Bricks& b) { b.state.contacts.emplace_back(); }, "the list of contacts has");
   check_said([](Bricks& b) { b.state.contacts[0].key.block_a = 2; }, "is listed with those of 0 and 1");
   check_said([](Bricks& b) { b.state.contacts[0].key.vertex = 4; }, "has no corner 4");

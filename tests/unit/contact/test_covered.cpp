@@ -24,12 +24,14 @@ Scene crossing() {
                                       {box_polygon(1, 1, 2, 2), free}});
 }
 
-void update(const Scene& scene, State& state) {
+// Returns how many pairs were sought.
+int update(const Scene& scene, State& state) {
   const StepClock clock{1e-3};
   const LookAhead ahead{clock, state.rate};
   renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), ahead, Workers(), state);
-  update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead, Workers(),
-                  state);
+  return update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead,
+                         Workers(), state)
+      .searched;
 }
 
 std::vector<Contact> contacts_of(const State& state, int a, int b) {
@@ -98,6 +100,27 @@ TEST_CASE("what bore a force stays on its side; covered, it goes where it is fre
   update(scene, state);
   REQUIRE(contacts_of(state, 1, 2).size() > 0);
   for (const Contact& c : contacts_of(state, 1, 2)) CHECK_FALSE(bears_sideways(scene, state, c));
+}
+
+TEST_CASE("a block that slides along the side that it covers is no reason to seek, one that leaves it is") {
+  const Scene scene = crossing();
+  State state = start_state(scene);
+  for (const size_t upper : {size_t{2}, size_t{3}}) state.displacement[upper] = {1e-4, -1e-3};
+  update(scene, state);
+  const auto pair = [&](int a, int b) {
+    return *std::find_if(state.pairs.begin(), state.pairs.end(),
+                         [&](const ContactPair& p) { return p.a == a && p.b == b; });
+  };
+  // lower left and upper right: the others cover both sides
+  REQUIRE(pair(0, 3).covers == 2);
+  REQUIRE(pair(0, 3).reuse >= 0);
+  const int always = update(scene, state);  // velocities decide some of the others in every step
+  int its_own = 0;                          // of the lower right one
+  for (const ContactPair& p : state.pairs) its_own += (p.a == 1 || p.b == 1) && p.reuse >= 0;
+  state.displacement[1].y += 1e-3;  // upwards, beside the whole of the side still
+  CHECK(update(scene, state) == always + its_own);
+  state.displacement[1].x += 3e-3;  // off it by more than the two overlap
+  CHECK(update(scene, state) == always + its_own + 1);
 }
 
 TEST_CASE("an end of an interface keeps its memory when another corner comes to lie there") {

@@ -1,6 +1,7 @@
 #include "talus/model/joint_law.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 
@@ -76,6 +77,10 @@ std::vector<JointDefect> JointLaw::defects(const JointProperty& joint) {
 
 std::vector<JointLaw> joint_laws(const std::vector<JointProperty>& joints) {
   return {joints.begin(), joints.end()};
+}
+
+bool joints_give(const std::vector<JointLaw>& laws) {
+  return std::ranges::any_of(laws, [](const JointLaw& j) { return j.is_soft(); });
 }
 
 JointProperty changed(JointProperty joint, const ChangeInput& change) {

@@ -110,6 +110,9 @@ inline constexpr int kBondedJoint = 1;
 /// Laws of all joints, in their order.
 std::vector<JointLaw> joint_laws(const std::vector<JointProperty>& joints);
 
+/// Whether some of them give.
+bool joints_give(const std::vector<JointLaw>& laws);
+
 /// The joint as a [[change]] leaves it.
 JointProperty changed(JointProperty joint, const ChangeInput& change);
 

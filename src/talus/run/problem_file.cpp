@@ -87,6 +87,7 @@ std::string problem_text(const Instant& i) {
                            {"gradient_rate", mat(i.work.rate_free[k].G)}});
   }
   j["hard_ties"] = hard_ties(i.work.rows);
+  j["give"] = i.work.clock.histories_run && joints_give(i.scene.laws);
   j["points"] = ordered_json::array();
   for (size_t r = 0; r < i.work.rows.points.size(); ++r)
     j["points"].push_back(point_json(i.work.rows.points[r], i.work.guess[r]));
@@ -120,7 +121,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     }
     const double dt = j.at("dt [s]");
     if (!(dt > 0)) throw std::runtime_error("its time step is not positive");
-    const size_t hard_ties = j.at("hard_ties");
+    const RowKinds kinds{j.at("hard_ties"), j.value("give", false)};
     replay.points = points, replay.blocks = blocks;
     Model model;
     model.solver = options;
@@ -132,7 +133,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
       return contact_error(mobility, replay.rows, after, dt);
     };
     const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, judge, profile};
-    replay.solved = solve_step(model, hard_ties, tolerance, 1, false, Workers(), solvers, problem, guess);
+    replay.solved = solve_step(model, kinds, tolerance, 1, false, Workers(), solvers, problem, guess);
   } catch (const std::exception& e) {
     throw FileError(
         fmt::format("{}: is no step written by talus run --dump-step: {}", file.string(), e.what()));

@@ -35,6 +35,12 @@ class SolverSet {
   std::array<std::unique_ptr<Solver>, kSolverName.size()> made_;
 };
 
+/// What the rows of a step are like.
+struct RowKinds {
+  size_t hard_ties = 0;  // points of faces that are tied without any give
+  bool give = false;     // some joints give
+};
+
 /// What the model asks for; for `auto`, what is faster for so many points, `hard_ties` of which tie faces
 /// without any give.
 SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties);
@@ -49,12 +55,12 @@ struct Solved {
 
 /// Solves a step: the chosen solver; where its result misses the tolerance, another; then sweeps from the
 /// best so far for as many as the model allows. The best stays, and is what the judge of the problem was asked last.
-/// @param hard_ties  as above
+/// @param kinds      of the rows: they say by which share of the tolerance solvers stop earlier than the judge
 /// @param tolerance  largest contact error [m]
 /// @param sharper    share of it to which steps are solved where that takes few sweeps more
 /// @param guess      gets the first guess; empty when it is not wanted and no second solver may need it
-Solved solve_step(const Model& model, size_t hard_ties, double tolerance, double sharper, bool keep_guess,
-                  const Workers& workers, SolverSet& solvers, const StepProblem& problem,
+Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, double sharper,
+                  bool keep_guess, const Workers& workers, SolverSet& solvers, const StepProblem& problem,
                   std::vector<Impulse>& guess);
 
 }  // namespace talus

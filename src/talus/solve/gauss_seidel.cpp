@@ -471,7 +471,8 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
     // once he has spoken, what he found tells more
     const double expected =
         (error_of_change > 0 ? error_of_change : std::max(kErrorOfNext * decay, 1.0)) * change;
-    if (expected <= tolerance || (change <= 0.5 * tolerance && report.iterations >= ask_again)) {
+    if ((goal.early && expected <= tolerance) ||
+        (change <= 0.5 * tolerance && report.iterations >= ask_again)) {
       const InPart asking(profile, Profile::kAsks);
       ++profile.asks;
       read_records(workers, set);

@@ -31,6 +31,7 @@ struct StepProblem {
 /// sweeps again.
 struct SolverGoal {
   double wanted = 0, enough = 0;
+  bool early = false;  // just reached will do: ask the judge as soon as it is likely
   SolverGoal(double both) : wanted(both), enough(both) {}
   SolverGoal(double wanted_, double enough_) : wanted(wanted_), enough(enough_) {}
 };

@@ -51,15 +51,18 @@ constexpr int kSweepsBeforeSecond = 500;
 // Solvers stop earlier than the judge. Errors left in hard rows are pushed back in the next step, which is
 // work out of nothing, and those in redundant ties add up, until no motion satisfies them all; Newton goes so
 // far at no cost.
-constexpr double kStop = 0.05;
+constexpr double kStop = 0.1;
 
 // Rows that give have forces that follow from where the blocks are: an error is there once.
 constexpr double kStopGiving = 0.5;
 
-// Share of the tolerance at which a solver stops (theory 5.7).
-double stop_of(SolverKind kind, const RowKinds& kinds) {
-  const bool sweeps = kind == SolverKind::kGaussSeidel;
-  return sweeps && kinds.give && kinds.hard_ties == 0 ? kStopGiving : kStop;
+// Where a solver stops (theory 5.7).
+SolverGoal goal_of(SolverKind kind, const RowKinds& kinds, double tolerance, double sharper) {
+  const bool giving = kind == SolverKind::kGaussSeidel && kinds.give && kinds.hard_ties == 0;
+  const double enough = (giving ? kStopGiving : kStop) * tolerance;
+  SolverGoal goal(sharper * enough, enough);
+  goal.early = giving;
+  return goal;
 }
 
 }  // namespace
@@ -111,8 +114,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     SolverInput limits = options;
     limits.max_sweeps = sweeps;
     now.method = kind;
-    const double enough = stop_of(kind, kinds) * tolerance;
-    now.report = solvers.of(kind).solve(problem, {sharper * enough, enough}, limits, workers);
+    now.report = solvers.of(kind).solve(problem, goal_of(kind, kinds, tolerance, sharper), limits, workers);
     take(now.report.judged ? *now.report.judged : judge());
   };
   const int few = again ? std::min(options.max_sweeps, kSweepsBeforeSecond) : options.max_sweeps;

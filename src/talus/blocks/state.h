@@ -95,7 +95,7 @@ struct Cover {
 
 /// Two blocks near each other. Their contact points are sought anew when they have moved against each other
 /// by more than `reuse` since; until then the same points are followed.
-struct alignas(64) ContactPair {  // what every step asks of each pair stands in its first line of the cache
+struct alignas(64) ContactPair {  // every step reads them all: what covers sides only where there is any
   int a = -1, b = -1;             // a < b
   int begin = 0, count = 0;       // contact points, in State::contacts
   int face = -1;                  // first of their faces in the bond set, -1: none

@@ -33,8 +33,7 @@ void each_field(Is<ContactPair> auto& p, auto&& f) {
   auto& [a, b, begin, count, face, from_start, shares_face, covers, reuse, margin, arm, turn, cover] = p;
   f("a", a), f("b", b), f("begin", begin), f("count", count), f("face", face);
   f("from_start", from_start), f("shares_face", shares_face), f("covers", covers), f("reuse", reuse);
-  f("margin", margin);
-  f("arm", arm), f("turn", turn);
+  f("margin", margin), f("arm", arm), f("turn", turn);
   for (size_t k = 0; k < cover.size(); ++k) {
     auto& [block, of_b, at] = cover[k];
     const std::string name = "cover_" + std::to_string(k);

@@ -51,8 +51,7 @@ struct Found {
   double clearance = 0;         // the least distance, along an edge or between gaps, to another outcome [m]
   bool this_step_only = false;  // velocities or neighbours had a say: the outcome holds for this step only
   bool plain = false;           // no corner of the two lies on a straight side
-  std::vector<Cover>
-      cover;  // third blocks that cover a side here: were they to leave, there were more points
+  std::vector<Cover> cover;     // sides covered here: were a block to leave one, there were more points
 };
 
 /// Whether the place beside the side of one of the two still lies in the third block (theory 3.3 ii).

@@ -1,8 +1,8 @@
 #include "talus/model/joint_law.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cmath>
 
 #include "talus/model/units.h"

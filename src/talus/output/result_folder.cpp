@@ -359,12 +359,7 @@ ResultFolder ResultFolder::go_on(const fs::path& folder) {
   ResultFolder out(folder);
   out.lock();
   check_room(folder, ResultKind::kRun, false);
-  struct stat manifest_there {};
-  if (lstat((folder / kManifest).c_str(), &manifest_there) == 0 && manifest_there.st_nlink > 1)
-    throw FileError(
-        fmt::format("{}: is the same file under {} names (hard links): going on would change all. "
-                    "Copy it first",
-                    (folder / kManifest).string(), manifest_there.st_nlink));
+  if (std::error_code ec; fs::exists(folder / kManifest, ec)) check_continued(folder / kManifest, 0);
   remove_unfinished_in(folder);
   for (const char* inside : {"fields", "saved", "plots"}) remove_unfinished_in(folder / inside);
   const auto manifest = read_manifest(folder);

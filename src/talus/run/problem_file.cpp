@@ -86,8 +86,9 @@ std::string problem_text(const Instant& i) {
                            {"velocity", vec(i.work.rate_free[k].a)},
                            {"gradient_rate", mat(i.work.rate_free[k].G)}});
   }
-  j["hard_ties"] = hard_ties(i.work.rows);
-  j["give"] = i.work.clock.histories_run && joints_give(i.scene.laws);
+  const RowKinds kinds = row_kinds(i.scene, i.work);
+  j["hard_ties"] = kinds.hard_ties;
+  j["give"] = kinds.give;
   j["points"] = ordered_json::array();
   for (size_t r = 0; r < i.work.rows.points.size(); ++r)
     j["points"].push_back(point_json(i.work.rows.points[r], i.work.guess[r]));

@@ -33,7 +33,8 @@ struct SolverGoal {
   double wanted = 0, enough = 0;
   bool early = false;  // just reached will do: ask the judge as soon as it is likely
   SolverGoal(double both) : wanted(both), enough(both) {}
-  SolverGoal(double wanted_, double enough_) : wanted(wanted_), enough(enough_) {}
+  SolverGoal(double wanted_, double enough_, bool early_ = false)
+      : wanted(wanted_), enough(enough_), early(early_) {}
 };
 
 class Solver {

@@ -60,9 +60,7 @@ constexpr double kStopGiving = 0.5;
 SolverGoal goal_of(SolverKind kind, const RowKinds& kinds, double tolerance, double sharper) {
   const bool giving = kind == SolverKind::kGaussSeidel && kinds.give && kinds.hard_ties == 0;
   const double enough = (giving ? kStopGiving : kStop) * tolerance;
-  SolverGoal goal(sharper * enough, enough);
-  goal.early = giving;
-  return goal;
+  return {sharper * enough, enough, giving};
 }
 
 }  // namespace

@@ -76,9 +76,7 @@ RowSums solve_rows(const Scene& scene, const StepSettings& settings, StepWork& w
   const StepProblem problem{
       work.mobility, work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
       work.rows,     state.rate,     judge,         work.profile};
-  // what is near rest moves by less than such errors: static stages are solved as if nothing gave
-  const RowKinds kinds{hard_ties(work.rows), settings.histories_run && joints_give(scene.laws)};
-  const Solved solved = solve_step(scene.model, kinds, settings.tolerance, settings.sharper,
+  const Solved solved = solve_step(scene.model, row_kinds(scene, work), settings.tolerance, settings.sharper,
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
   report.error = solved.error, report.failed = solved.failed;

@@ -11,6 +11,10 @@ BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
   return state.dt_before > 0 ? mean(work.rate_before[i], state.rate[i]) : work.rate_before[i];
 }
 
+RowKinds row_kinds(const Scene& scene, const StepWork& work) {
+  return {hard_ties(work.rows), work.clock.histories_run && joints_give(scene.laws)};
+}
+
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {
   const PointRows& p = work.rows.points[row];
   const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };

@@ -11,10 +11,10 @@ namespace talus {
 
 struct Profile {
   enum Part {
-    kMargins,     // are the pairs good still, how far has each moved
-    kSearch,      // contact points sought anew
-    kRows,        // rows of joints and contacts
-    kBoundaries,  // supports, boundaries, ties, free field
+    kMargins,  // are the pairs good still, how far has each moved
+    kSearch,   // contact points sought anew
+    kRows,     // rows of joints and contacts
+    kHeld,     // supports, boundaries, ties, free field
     kBolts,
     kLayout,   // couples, colours, places of rows in records
     kRecords,  // rows to records and back

@@ -92,7 +92,7 @@ void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work
     work.bolt_forces.assign(state.bolts.empty() ? 0 : work.load.size(), {});
     if (!state.bolts.empty()) add_bolt_forces(blocks, state, work.bolt_forces);
   }
-  const InPart part(work.profile, Profile::kBoundaries);
+  const InPart part(work.profile, Profile::kHeld);
   kick_free_field(scene, settings, acceleration, work, state);
 }
 

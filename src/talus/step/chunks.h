@@ -7,6 +7,6 @@ namespace talus {
 
 /// Blocks and rows to a chunk. Sums are taken chunk by chunk: these numbers are part of the result's last
 /// bits.
-inline constexpr size_t kBlocks = 512, kRows = 1024;
+inline constexpr size_t kChunkOfBlocks = 512, kChunkOfRows = 1024;
 
 }  // namespace talus

@@ -34,7 +34,7 @@ void drift(const Scene& scene, double time_end, StepWork& work, State& state, St
   const BlockSet& blocks = scene.blocks;
   const double dt = work.clock.dt;
   std::atomic<size_t> bad{state.rate.size()};
-  work.workers.for_chunks(state.rate.size(), kBlocks, [&](size_t begin, size_t end) {
+  work.workers.for_chunks(state.rate.size(), kChunkOfBlocks, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       if (drift_block(blocks, dt, k, state)) continue;
       for (size_t least = bad; k < least && !bad.compare_exchange_weak(least, k);) {

@@ -104,7 +104,7 @@ void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& st
   work.local_damping.resize(settings.damping_local > 0 ? n : 0);
   const bool renew = settings.implicit || work.mobility.size() != n || work.mobility_share != scheme.share();
   work.mobility.resize(n);
-  work.workers.for_chunks(n, kBlocks, [&](size_t begin, size_t end) {
+  work.workers.for_chunks(n, kChunkOfBlocks, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) predict_block(scene, scheme, i, renew, work, state);
   });
   work.mobility_share = settings.implicit ? 0 : scheme.share();

@@ -147,7 +147,7 @@ RowSums& RowSums::operator+=(const RowSums& o) {
 }
 
 RowSums judge_rows(const StepWork& work, const State& state) {
-  return work.workers.sum_chunks<RowSums>(work.rows.points.size(), kRows,
+  return work.workers.sum_chunks<RowSums>(work.rows.points.size(), kChunkOfRows,
                                           [&](size_t begin, size_t end, RowSums& s) {
                                             for (size_t r = begin; r < end; ++r) judge_row(work, state, r, s);
                                           });
@@ -164,7 +164,7 @@ void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWo
     const auto k = static_cast<size_t>(block);
     add(work.work, Cause::kSupports, work_of(-1.0 * impulse, work.rate_before[k], state.rate[k], 0.5));
   }
-  const BlockSums sums = work.workers.sum_chunks<BlockSums>(state.rate.size(), kBlocks,
+  const BlockSums sums = work.workers.sum_chunks<BlockSums>(state.rate.size(), kChunkOfBlocks,
                                                             [&](size_t begin, size_t end, BlockSums& s) {
                                                               for (size_t i = begin; i < end; ++i)
                                                                 tally_block(scene, scheme, work, i, state, s);

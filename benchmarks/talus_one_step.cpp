@@ -57,12 +57,8 @@ Answer solve(const Solvable& start, double dt, int sweeps, const Workers& worker
   options.max_sweeps = sweeps;
   const double wall = wall_seconds(), cpu = cpu_seconds();
   Profile profile;
-  const std::function<ContactError()> judge = [&] {
-    return contact_error(start.mobility, s.rows, s.rate, dt, workers);
-  };
   workers.together([&] {
-    GaussSeidel().solve({start.mobility, start.rate, dt, {}, s.rows, s.rate, judge, profile}, 0, options,
-                        workers);
+    GaussSeidel().solve({start.mobility, start.rate, dt, {}, s.rows, s.rate, profile}, 0, options, workers);
   });
   Answer answer{{}, wall_seconds() - wall, cpu_seconds() - cpu};
   for (const Impulse& p : s.rows.impulse) answer.impulse.push_back({p[0], -p[1]});

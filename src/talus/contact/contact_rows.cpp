@@ -23,8 +23,8 @@ constexpr double kLeastShare = 1e-9;
 // Overlaps below this share of the thinner block are not measured against it.
 constexpr double kNoticed = 0.01;
 
-// Contacts to a chunk.
-constexpr size_t kContactGrain = 1024;
+// Pairs to a chunk.
+constexpr size_t kRowGrain = 256;
 
 // What an overlap that a point was born with loses in a step: a thousandth of it, at most this share of the
 // smaller block. Pushed out at once it would leave with the speed of overlap over time step.
@@ -345,47 +345,46 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
   const size_t first = rows.add_more(Family::kContact, state.contacts.size());
   resize_sparingly(place, state.contacts.size());
   const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
-  workers.for_chunks(state.pairs.size(), kContactGrain / 4, [&](size_t begin, size_t end) {
+  workers.for_chunks(state.pairs.size(), kRowGrain, [&](size_t begin, size_t end) {
     std::vector<Point> points;
     for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);
   });
 }
 
 // Eq. 4.7.
-void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
-                       const Workers& workers, State& state) {
-  TALUS_ASSERT(rows.range(Family::kContact).size() == state.contacts.size() &&
-               place.size() == state.contacts.size());
-  const size_t first = rows.range(Family::kContact).begin;
-  workers.for_chunks(state.contacts.size(), kContactGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const PointRows& p = rows.points[first + i];
-      const Impulse& impulse = rows.impulse[first + i];
-      Contact& c = state.contacts[i];
-      const double elastic = elastic_slip(rows, first + i, clock);
-      const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
-      const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0;
-      c.touched = c.touched || held;
-      if (held && slides(p, impulse)) {
-        // the place where it would stick goes along with the slip that is not elastic
-        const double gone =
-            off_anchor(c, place[i].slip) + clock.dt * relative_velocity(p, state.rate)[1] - elastic;
-        c.slip += std::abs(gone), c.slip_signed += gone;
-      }
-      if (slides(p, impulse))
-        c.anchor = std::nan("");
-      else if (!anchored)
-        c.anchor = place[i].slip - (c.memory == Contact::kNone ? 0 : c.stretch);
-      c.force = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
-      if (c.allowed > 0) {
-        c.allowed = std::min(c.allowed, -place[i].gap);
-        c.allowed -= std::min(kPushedOut * c.allowed, kMostPushedOut * place[i].size);
-        if (!(c.allowed > kLeastAllowed * place[i].size)) c.allowed = 0;
-      }
-      c.stretch = elastic;
-      c.memory = Contact::kWhole;
+void remember_contacts(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
+                       const StepClock& clock, State& state) {
+  const RowRange all = rows.range(Family::kContact);
+  TALUS_ASSERT(all.size() == state.contacts.size() && place.size() == state.contacts.size());
+  TALUS_ASSERT(range.begin >= all.begin && range.end <= all.end);
+  const double per_kick = 1 / clock.dt_kick;
+  for (size_t r = range.begin; r < range.end; ++r) {
+    const PointRows& p = rows.points[r];
+    const Impulse& impulse = rows.impulse[r];
+    const ContactPlace& at = place[r - all.begin];
+    Contact& c = state.contacts[r - all.begin];
+    const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
+    const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
+    const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
+    c.touched = c.touched || held;
+    if (held && slid) {
+      // the place where it would stick goes along with the slip that is not elastic
+      const double gone = off_anchor(c, at.slip) + clock.dt * relative_velocity(p, state.rate)[1] - elastic;
+      c.slip += std::abs(gone), c.slip_signed += gone;
     }
-  });
+    if (slid)
+      c.anchor = std::nan("");
+    else if (!anchored)
+      c.anchor = at.slip - (c.memory == Contact::kNone ? 0 : c.stretch);
+    c.force = {impulse[0] * per_kick, impulse[1] * per_kick};
+    if (c.allowed > 0) {
+      c.allowed = std::min(c.allowed, -at.gap);
+      c.allowed -= std::min(kPushedOut * c.allowed, kMostPushedOut * at.size);
+      if (!(c.allowed > kLeastAllowed * at.size)) c.allowed = 0;
+    }
+    c.stretch = elastic;
+    c.memory = Contact::kWhole;
+  }
 }
 
 }  // namespace talus

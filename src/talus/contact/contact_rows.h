@@ -27,9 +27,9 @@ void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vec
                       const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
                       const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place);
 
-/// Stores force, anchor and slip of each contact in the state.
+/// Stores force, anchor and slip of the contacts of some rows in the state.
 /// @pre  state.rate are the rates after the kick
-void remember_contacts(const RowSet& rows, const std::vector<ContactPlace>& place, const StepClock& clock,
-                       const Workers& workers, State& state);
+void remember_contacts(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
+                       const StepClock& clock, State& state);
 
 }  // namespace talus

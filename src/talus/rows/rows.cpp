@@ -2,29 +2,6 @@
 
 namespace talus {
 
-// Eq. 1.2.
-BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force) {
-  switch (blocks.kind[i]) {
-    case BlockKind::kDeformable:
-      return {force.f / blocks.mass[i], force.Q * blocks.inertia_inverse[i]};
-    case BlockKind::kRigid:
-      return {force.f / blocks.mass[i], spin_matrix((force.Q.yx - force.Q.xy) / blocks.polar_inertia[i])};
-    default:
-      return {};
-  }
-}
-
-BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate) {
-  switch (blocks.kind[i]) {
-    case BlockKind::kDeformable:
-      return {blocks.mass[i] * rate.a, rate.G * blocks.inertia[i]};
-    case BlockKind::kRigid:
-      return {blocks.mass[i] * rate.a, (0.5 * blocks.polar_inertia[i]) * rate.G};
-    default:
-      return {};
-  }
-}
-
 size_t hard_ties(const RowSet& rows) {
   size_t count = 0;
   const RowRange faces = rows.range(Family::kFace);

@@ -111,10 +111,28 @@ inline bool slides(const PointRows& p, const Impulse& impulse) {
 size_t hard_ties(const RowSet& rows);
 
 /// M^-1 times a generalised force or impulse. Zero for blocks whose motion is prescribed.
-BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force);
+inline BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force) {  // eq. 1.2
+  switch (blocks.kind[i]) {
+    case BlockKind::kDeformable:
+      return {force.f / blocks.mass[i], force.Q * blocks.inertia_inverse[i]};
+    case BlockKind::kRigid:
+      return {force.f / blocks.mass[i], spin_matrix((force.Q.yx - force.Q.xy) / blocks.polar_inertia[i])};
+    default:
+      return {};
+  }
+}
 
 /// M times a rate.
-BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate);
+inline BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& rate) {
+  switch (blocks.kind[i]) {
+    case BlockKind::kDeformable:
+      return {blocks.mass[i] * rate.a, rate.G * blocks.inertia[i]};
+    case BlockKind::kRigid:
+      return {blocks.mass[i] * rate.a, (0.5 * blocks.polar_inertia[i]) * rate.G};
+    default:
+      return {};
+  }
+}
 
 /// Relative velocity (normal, tangential) of a point pair when the blocks move at `rate`.
 inline std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate) {

@@ -130,10 +130,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     std::vector<Impulse> guess;
     SolverSet solvers;
     Profile profile;
-    const std::function<ContactError()> judge = [&] {
-      return contact_error(mobility, replay.rows, after, dt);
-    };
-    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, judge, profile};
+    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, profile};
     replay.solved = solve_step(model, kinds, tolerance, 1, false, Workers(), solvers, problem, guess);
   } catch (const std::exception& e) {
     throw FileError(

@@ -13,9 +13,8 @@ namespace talus {
 
 namespace {
 
+using wide::kEndless;
 using wide::kLanes;
-
-constexpr double kEndless = 1e300;  // an open bound: products with it stay numbers
 
 // Sweeps that a sharper goal may take beyond as many again as the first one took.
 constexpr int kSweepsMore = 20;
@@ -60,7 +59,7 @@ bool has_still(const Record& r) {
 }
 
 template <class Record>
-void write_empty(Record& r, int lane, int point) {
+void write_empty(Record& r, wide::Give& give, int lane, int point) {
   auto& p = r.point[point];
   const auto l = static_cast<size_t>(lane);
   // no direction: whatever the blocks do, its residual is the bias and no impulse comes of it
@@ -68,7 +67,7 @@ void write_empty(Record& r, int lane, int point) {
   p.ax[l] = p.ay[l] = p.bx[l] = p.by[l] = 0;
   p.bias_n[l] = 1, p.bias_t[l] = 0;
   p.p_n[l] = p.p_t[l] = 0;
-  p.i_nn[l] = p.i_tt[l] = 1, p.i_nt[l] = 0;
+  give.n[point][l] = give.t[point][l] = 1;
   p.mu[l] = 0;
 }
 
@@ -82,7 +81,7 @@ void write_bounds(wide::TieLanes& p, int lane, const PointRows* rows) {
 
 template <class Record>
 void write_point(const std::vector<Mobility>& mobility, const PointRows& rows, const Impulse& impulse,
-                 Record& r, int lane, int point, int block_a) {
+                 Record& r, wide::Give& give, int lane, int point, int block_a) {
   auto& p = r.point[point];
   const auto l = static_cast<size_t>(lane);
   const Seen s = seen_from(rows, block_a);
@@ -93,7 +92,7 @@ void write_point(const std::vector<Mobility>& mobility, const PointRows& rows, c
   p.ax[l] = a.x, p.ay[l] = a.y, p.bx[l] = b.x, p.by[l] = b.y;
   p.bias_n[l] = rows.row[0].bias, p.bias_t[l] = rows.row[1].bias;
   p.p_n[l] = impulse[0], p.p_t[l] = impulse[1];
-  p.i_nn[l] = rows.row[0].compliance, p.i_tt[l] = rows.row[1].compliance;
+  give.n[point][l] = rows.row[0].compliance, give.t[point][l] = rows.row[1].compliance;
   p.mu[l] = rows.friction;
 }
 
@@ -183,8 +182,8 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
     (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
     next += k == kMostColours ? kLanes : 1;
   }
-  resize_sparingly(contacts_, contact_at);
-  resize_sparingly(ties_, tie_at);
+  resize_sparingly(contacts_, contact_at), resize_sparingly(contact_give_, contact_at);
+  resize_sparingly(ties_, tie_at), resize_sparingly(tie_give_, tie_at);
 
   // blocks that do not move are written to lines that nobody reads, one for each record that has any
   ground_ = static_cast<int>(mobility.size());
@@ -252,37 +251,60 @@ void GaussSeidel::read_lines(const std::vector<Mobility>& mobility, const Worker
   });
 }
 
+namespace {
+
+// Records that are written before they are prepared.
+constexpr size_t kNear = 16;
+
+// Records of one colour to a thread: enough for the work to outweigh the handing over.
+size_t grain(size_t records, int threads) {
+  return std::max<size_t>(
+      48, (records + 4 * static_cast<size_t>(threads) - 1) / (4 * static_cast<size_t>(threads)));
+}
+
+}  // namespace
+
 void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const RowSet& set,
                                 const Workers& workers) {
-  const auto write = [&](auto& records, const std::vector<Rows>& rows, auto prepare) {
-    workers.for_chunks(records.size(), 256, [&](size_t begin, size_t end) {
-      for (size_t r = begin; r < end; ++r) {
-        auto& record = records[r];
-        for (int l = 0; l < kLanes; ++l) {
-          const Rows& couple = rows[r * kLanes + static_cast<size_t>(l)];
-          const int a = couple.row[0] < 0 ? -1 : seen_[static_cast<size_t>(couple.row[0])].block_a;
-          record.cross_n[static_cast<size_t>(l)] = record.cross_t[static_cast<size_t>(l)] = 0;
-          for (int k = 0; k < 2; ++k) {
-            const int row = couple.row[k];
-            if (row < 0) {
-              write_empty(record, l, k);
-              write_bounds(record.point[k], l, nullptr);
-              continue;
-            }
-            const PointRows& p = set.points[static_cast<size_t>(row)];
-            write_point(mobility, p, set.impulse[static_cast<size_t>(row)], record, l, k, a);
-            write_bounds(record.point[k], l, &p);
-            if (p.partner < 0) continue;
-            record.cross_n[static_cast<size_t>(l)] = p.cross(0),
-            record.cross_t[static_cast<size_t>(l)] = p.cross(1);
-          }
+  const auto write = [&](auto& record, wide::Give& give, const Rows* rows) {
+    for (int l = 0; l < kLanes; ++l) {
+      const Rows& couple = rows[l];
+      const int a = couple.row[0] < 0 ? -1 : seen_[static_cast<size_t>(couple.row[0])].block_a;
+      record.cross_n[static_cast<size_t>(l)] = record.cross_t[static_cast<size_t>(l)] = 0;
+      for (int k = 0; k < 2; ++k) {
+        const int row = couple.row[k];
+        if (row < 0) {
+          write_empty(record, give, l, k);
+          write_bounds(record.point[k], l, nullptr);
+          continue;
         }
+        const PointRows& p = set.points[static_cast<size_t>(row)];
+        write_point(mobility, p, set.impulse[static_cast<size_t>(row)], record, give, l, k, a);
+        write_bounds(record.point[k], l, &p);
+        if (p.partner < 0) continue;
+        record.cross_n[static_cast<size_t>(l)] = p.cross(0),
+        record.cross_t[static_cast<size_t>(l)] = p.cross(1);
       }
-      prepare(lines_.data(), records.data() + begin, end - begin);
+    }
+  };
+  const auto write_all = [&](auto& records, std::vector<wide::Give>& give, const std::vector<Rows>& rows,
+                             size_t first, size_t last, size_t chunk, auto prepare) {
+    workers.for_chunks(last - first, chunk, [&](size_t begin, size_t end) {
+      // a few at a time: what is written is still near when it is prepared
+      for (size_t next, r = first + begin; r < first + end; r = next) {
+        next = std::min(r + kNear, first + end);
+        for (size_t i = r; i < next; ++i) write(records[i], give[i], &rows[i * kLanes]);
+        prepare(lines_.data(), give.data() + r, records.data() + r, next - r);
+      }
     });
   };
-  write(contacts_, contact_rows_, kernels_->prepare_contacts);
-  write(ties_, tie_rows_, kernels_->prepare_ties);
+  for (const Colour& c : colour_) {
+    const auto chunk = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
+    write_all(contacts_, contact_give_, contact_rows_, c.contact_begin, c.contact_end,
+              chunk(c.contact_end - c.contact_begin), kernels_->prepare_contacts);
+    write_all(ties_, tie_give_, tie_rows_, c.tie_begin, c.tie_end, chunk(c.tie_end - c.tie_begin),
+              kernels_->prepare_ties);
+  }
 }
 
 void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
@@ -300,29 +322,6 @@ void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
   };
   read(contacts_, contact_rows_);
   read(ties_, tie_rows_);
-}
-
-namespace {
-
-// Records of one colour to a thread: enough for the work to outweigh the handing over.
-size_t grain(size_t records, int threads) {
-  return std::max<size_t>(
-      48, (records + 4 * static_cast<size_t>(threads) - 1) / (4 * static_cast<size_t>(threads)));
-}
-
-}  // namespace
-
-void GaussSeidel::push(const Workers& workers) {
-  for (const Colour& c : colour_) {
-    const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
-    const auto of = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
-    workers.for_chunks(contacts, of(contacts), [&](size_t begin, size_t end) {
-      kernels_->push_contacts(lines_.data(), contacts_.data() + c.contact_begin + begin, end - begin);
-    });
-    workers.for_chunks(ties, of(ties), [&](size_t begin, size_t end) {
-      kernels_->push_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin);
-    });
-  }
 }
 
 namespace {
@@ -355,6 +354,20 @@ double GaussSeidel::sweep(const Workers& workers) {
       });
   }
   return all.value;
+}
+
+ContactError GaussSeidel::judge(const Workers& workers) const {
+  const auto worst_of = [&](const auto& records, const std::vector<wide::Give>& give,
+                            const std::vector<Rows>& rows, auto kernel) {
+    return workers.sum_chunks<wide::Worst>(
+        records.size(), 256, [&](size_t begin, size_t end, wide::Worst& worst) {
+          kernel(lines_.data(), records.data() + begin, give.data() + begin, rows[begin * kLanes].row,
+                 end - begin, worst);
+        });
+  };
+  wide::Worst worst = worst_of(contacts_, contact_give_, contact_rows_, kernels_->judge_contacts);
+  worst += worst_of(ties_, tie_give_, tie_rows_, kernels_->judge_ties);
+  return {worst.error, worst.row};
 }
 
 namespace {
@@ -451,8 +464,11 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   profile.go_on_with(Profile::kRecords);
   write_lines(mobility, rate, workers);
   write_records(mobility, set, workers);
-  push(workers);
 
+  const auto judge_now = [&] {
+    const ContactError e = judge(workers);
+    return ContactError{dt * e.worst, e.point};
+  };
   // the change of a sweep and its decay tell when it is worth asking the judge, who costs as much as some
   // sweeps
   int ask_again = 0, last = limits.max_sweeps;
@@ -475,9 +491,7 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
         (change <= 0.5 * tolerance && report.iterations >= ask_again)) {
       const InPart asking(profile, Profile::kAsks);
       ++profile.asks;
-      read_records(workers, set);
-      read_lines(mobility, workers, rate);
-      report.judged = problem.judge();
+      report.judged = judge_now();
       const double worst = report.judged->worst;
       if (std::isnan(worst)) break;
       report.converged = worst <= goal.wanted;
@@ -494,10 +508,12 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
     ++report.second_phase;
   }
   profile.go_on_with(Profile::kRecords);
-  if (!report.converged) {
-    report.converged = tolerance < goal.enough;  // enough was reached
-    read_records(workers, set);
-    read_lines(mobility, workers, rate);
+  if (!report.converged) report.converged = tolerance < goal.enough;  // enough was reached
+  read_records(workers, set);
+  read_lines(mobility, workers, rate);
+  if (!report.judged) {
+    profile.go_on_with(Profile::kJudge);
+    report.judged = judge_now();
   }
   return report;
 }

@@ -43,10 +43,11 @@ class GaussSeidel : public Solver {
                    const Workers& workers);
   void read_lines(const std::vector<Mobility>& mobility, const Workers& workers,
                   std::vector<BlockRate>& rate) const;
+  /// And lets their impulses act on the lines.
   void write_records(const std::vector<Mobility>& mobility, const RowSet& set, const Workers& workers);
   void read_records(const Workers& workers, RowSet& set) const;
-  void push(const Workers& workers);
   double sweep(const Workers& workers);
+  ContactError judge(const Workers& workers) const;
   void keep(const Workers& workers);
   void extrapolate(const Workers& workers, bool first);
 
@@ -56,6 +57,7 @@ class GaussSeidel : public Solver {
   std::vector<Rows> contact_rows_, tie_rows_;  // [records * lanes]
   std::vector<wide::ContactRecord> contacts_;
   std::vector<wide::TieRecord> ties_;
+  std::vector<wide::Give> contact_give_, tie_give_;
   std::vector<wide::BlockLine> lines_;  // blocks, the ground, then lines nobody reads
   int ground_ = 0;
 

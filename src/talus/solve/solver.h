@@ -1,7 +1,6 @@
 #pragma once
 // What every solver of the contact equations is asked, and owes. Theory: docs/theory.md section 5.
 
-#include <functional>
 #include <vector>
 
 #include "talus/base/parallel.h"
@@ -22,9 +21,7 @@ struct StepProblem {
   Smoothing smoothing;                      // of the law; off: the exact one
   RowSet& rows;                             // in: first guess; out: impulses
   std::vector<BlockRate>& rate;             // out: with these impulses
-  /// Error of what stands in `rows` and `rate`: whoever asks it last, of the result, need not be asked again.
-  const std::function<ContactError()>& judge;
-  Profile& profile;  // where the time goes
+  Profile& profile;                         // where the time goes
 };
 
 /// Contact errors at which to stop [m]: `wanted`, which is given up, once `enough` is reached, after as many

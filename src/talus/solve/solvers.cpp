@@ -63,6 +63,17 @@ SolverGoal goal_of(SolverKind kind, const RowKinds& kinds, double tolerance, dou
   return {sharper * enough, enough, giving};
 }
 
+// Whether what a solver found of itself is what is measured apart from it; they differ by the round-off of
+// velocities.
+[[maybe_unused]] bool same_error(const ContactError& error, const StepProblem& problem,
+                                 const Workers& workers) {
+  const double apart = contact_error(problem.mobility, problem.rows, problem.rate, problem.dt, workers).worst;
+  double speed = 0;
+  for (const BlockRate& v : problem.rate) speed = std::max({speed, norm(v.a), std::sqrt(contract(v.G, v.G))});
+  if (std::isnan(apart) || std::isnan(error.worst)) return std::isnan(apart) == std::isnan(error.worst);
+  return std::abs(apart - error.worst) <= 1e-6 * apart + 1e-9 * speed * problem.dt;
+}
+
 }  // namespace
 
 const SolverEntry& entry(SolverKind kind) { return kSolvers.at(static_cast<size_t>(kind) - 1); }
@@ -101,7 +112,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   Solved now;
   const auto judge = [&] {
     const InPart part(problem.profile, Profile::kJudge);
-    return problem.judge();
+    return contact_error(problem.mobility, problem.rows, problem.rate, problem.dt, workers);
   };
   const auto take = [&](const ContactError& error) {
     now.error = error;
@@ -114,6 +125,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     now.method = kind;
     now.report = solvers.of(kind).solve(problem, goal_of(kind, kinds, tolerance, sharper), limits, workers);
     take(now.report.judged ? *now.report.judged : judge());
+    TALUS_ASSERT(!now.report.judged || same_error(now.error, problem, workers));
   };
   const int few = again ? std::min(options.max_sweeps, kSweepsBeforeSecond) : options.max_sweeps;
   solve_by(first, few);

@@ -13,6 +13,9 @@ namespace talus::wide {
 
 constexpr int kLanes = 4;
 
+/// An open bound: products with it stay numbers.
+constexpr double kEndless = 1e300;
+
 // One number of each of four couples. The compiler makes of it what the machine has: one register of AVX2 or
 // two of SSE2. No product is contracted with a sum, so that both give the same bits.
 using Lanes = double __attribute__((vector_size(32)));
@@ -30,7 +33,7 @@ struct ContactLanes {
   Lanes bias_n, bias_t;
   Lanes p_n, p_t;            // impulses
   Lanes u_nn, u_nt, u_tt;    // influence of the point on itself, without compliance
-  Lanes i_nn, i_nt, i_tt;    // inverse of influence plus compliance; before prepare(): the compliances
+  Lanes i_nn, i_nt, i_tt;    // inverse of influence plus compliance
   Lanes slide_up, slide_dn;  // 1 / (w_nn +- mu w_nt)
   Lanes mu;
 };
@@ -54,18 +57,34 @@ struct alignas(64) Record {
 using ContactRecord = Record<ContactLanes>;
 using TieRecord = Record<TieLanes>;
 
+/// What of a record the sweeps do not read: compliances of its two points.
+struct alignas(64) Give {
+  Lanes n[2], t[2];
+};
+
+/// The largest error, and the row where: of equals the one that comes first, NaN before all else, none where it
+/// is zero.
+struct Worst {
+  double error = 0;  // [m/s]
+  int row = -1;
+
+  Worst& operator+=(const Worst& o);
+};
+
 /// The kernels for one kind of processor. Each works on records [0, count) in order.
 struct Kernels {
-  /// Influence and inverses from normals, arms and compliances.
-  void (*prepare_contacts)(const BlockLine*, ContactRecord*, size_t count);
-  void (*prepare_ties)(const BlockLine*, TieRecord*, size_t count);
-  /// Adds the impulses to the blocks.
-  void (*push_contacts)(BlockLine*, const ContactRecord*, size_t count);
-  void (*push_ties)(BlockLine*, const TieRecord*, size_t count);
+  /// Influence and inverses from normals, arms and compliances; and adds the impulses to the blocks.
+  void (*prepare_contacts)(BlockLine*, const Give*, ContactRecord*, size_t count);
+  void (*prepare_ties)(BlockLine*, const Give*, TieRecord*, size_t count);
   /// Solves each point with all others held; raises `largest` to the largest change of an impulse times the
   /// influence of its point on itself [m/s].
   void (*sweep_contacts)(BlockLine*, ContactRecord*, size_t count, double& largest);
   void (*sweep_ties)(BlockLine*, TieRecord*, size_t count, double& largest);
+  /// |p - Proj(p - e / Wii)| Wii of the worse row of each point (eq. 5.2), from where the blocks are now.
+  /// @param rows  of both points of each lane of each record [count * lanes * 2]
+  void (*judge_contacts)(const BlockLine*, const ContactRecord*, const Give*, const int* rows, size_t count,
+                         Worst&);
+  void (*judge_ties)(const BlockLine*, const TieRecord*, const Give*, const int* rows, size_t count, Worst&);
 };
 
 /// The fastest kernels that this processor runs, or the plain ones. All give the same bits.

@@ -1,6 +1,13 @@
 // The sweep over wide records. Included once by each file that is compiled for one kind of processor; all in
 // a nameless namespace, so that no two of them share a function.
 
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
+
+#include <cmath>
+#include <limits>
+
 #include "talus/solve/wide.h"
 
 namespace talus::wide {
@@ -9,7 +16,21 @@ namespace {
 
 using Mask = int64_t __attribute__((vector_size(32)));
 
+constexpr double kMost = std::numeric_limits<double>::max(),
+                 kLeast = std::numeric_limits<double>::denorm_min();
+
 inline Lanes all(double v) { return Lanes{v, v, v, v}; }
+// x y + z, rounded once; and z - x y.
+#ifdef __FMA__
+inline Lanes madd(Lanes x, Lanes y, Lanes z) { return _mm256_fmadd_pd(x, y, z); }
+inline Lanes nmadd(Lanes x, Lanes y, Lanes z) { return _mm256_fnmadd_pd(x, y, z); }
+#else
+inline Lanes madd(Lanes x, Lanes y, Lanes z) {
+  for (int l = 0; l < kLanes; ++l) z[l] = std::fma(x[l], y[l], z[l]);
+  return z;
+}
+inline Lanes nmadd(Lanes x, Lanes y, Lanes z) { return madd(-x, y, z); }
+#endif
 inline Lanes larger(Lanes x, Lanes y) { return x > y ? x : y; }
 inline Lanes smaller(Lanes x, Lanes y) { return x < y ? x : y; }
 inline Lanes size(Lanes x) {
@@ -61,36 +82,38 @@ struct Four {
   }
   // velocity of the point at arm (x, y), along the axes of the plane
   void velocity(Lanes x, Lanes y, Lanes& vx, Lanes& vy) const {
-    const Lanes wx = v[2] * x + v[3] * y, wy = v[4] * x + v[5] * y;
-    vx = v[0] + (k[6] * wx - k[7] * wy);
-    vy = v[1] + (k[7] * wx + k[6] * wy);
+    const Lanes wx = madd(v[2], x, v[3] * y), wy = madd(v[4], x, v[5] * y);
+    vx = madd(k[6], wx, nmadd(k[7], wy, v[0]));
+    vy = madd(k[7], wx, madd(k[6], wy, v[1]));
   }
   // answer to the impulse (fx, fy) at arm (x, y)
   void push(Lanes x, Lanes y, Lanes fx, Lanes fy) {
-    const Lanes gx = k[6] * fx + k[7] * fy, gy = k[6] * fy - k[7] * fx;
+    const Lanes gx = madd(k[6], fx, k[7] * fy), gy = nmadd(k[7], fx, k[6] * fy);
     const Lanes qxx = gx * x, qxy = gx * y, qyx = gy * x, qyy = gy * y;
-    v[0] += v[6] * fx;
-    v[1] += v[6] * fy;
-    v[2] += k[0] * qxx + k[1] * qyy;
-    v[3] += k[3] * qxy + k[4] * qyx;
-    v[4] += k[4] * qxy + k[5] * qyx;
-    v[5] += k[1] * qxx + k[2] * qyy;
+    v[0] = madd(v[6], fx, v[0]);
+    v[1] = madd(v[6], fy, v[1]);
+    v[2] = madd(k[0], qxx, madd(k[1], qyy, v[2]));
+    v[3] = madd(k[3], qxy, madd(k[4], qyx, v[3]));
+    v[4] = madd(k[4], qxy, madd(k[5], qyx, v[4]));
+    v[5] = madd(k[1], qxx, madd(k[2], qyy, v[5]));
   }
   // adds n . w n, n . w t, t . w t of the block's influence w of the arm on itself, t = n turned clockwise
   // (eq. 1.3)
   void influence(Lanes x, Lanes y, Lanes nx, Lanes ny, Lanes& nn, Lanes& nt, Lanes& tt) const {
-    const Lanes ex = k[6] * nx + k[7] * ny, ey = k[6] * ny - k[7] * nx;
-    const Lanes wxx = v[6] + k[0] * x * x + k[3] * y * y, wxy = (k[1] + k[4]) * x * y,
-                wyy = v[6] + k[2] * y * y + k[5] * x * x;
-    nn += ex * ex * wxx + all(2) * ex * ey * wxy + ey * ey * wyy;
-    nt += ex * ey * (wxx - wyy) + (ey * ey - ex * ex) * wxy;
-    tt += ey * ey * wxx - all(2) * ex * ey * wxy + ex * ex * wyy;
+    const Lanes ex = madd(k[6], nx, k[7] * ny), ey = nmadd(k[7], nx, k[6] * ny);
+    const Lanes xx = x * x, xy = x * y, yy = y * y, exx = ex * ex, exy = ex * ey, eyy = ey * ey;
+    const Lanes wxx = madd(k[0], xx, madd(k[3], yy, v[6])), wxy = (k[1] + k[4]) * xy,
+                wyy = madd(k[2], yy, madd(k[5], xx, v[6]));
+    const Lanes twice = (exy + exy) * wxy;
+    nn += madd(exx, wxx, madd(eyy, wyy, twice));
+    nt += madd(exy, wxx - wyy, (eyy - exx) * wxy);
+    tt += madd(eyy, wxx, madd(exx, wyy, -twice));
   }
 };
 
 template <class Point>
 inline void push_point(Four& a, Four& b, const Point& p, Lanes d_n, Lanes d_t) {
-  const Lanes fx = d_n * p.nx + d_t * p.ny, fy = d_n * p.ny - d_t * p.nx;
+  const Lanes fx = madd(d_n, p.nx, d_t * p.ny), fy = nmadd(d_t, p.nx, d_n * p.ny);
   a.push(p.ax, p.ay, fx, fy);
   b.push(p.bx, p.by, -fx, -fy);
 }
@@ -98,7 +121,7 @@ inline void push_point(Four& a, Four& b, const Point& p, Lanes d_n, Lanes d_t) {
 // Impulses of a point that satisfy its laws when the residual at zero impulse is (q_n, q_t) (theory 5.5).
 inline void solve_point(const ContactLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
   const Lanes zero{};
-  const Lanes stick_n = -(p.i_nn * q_n + p.i_nt * q_t), stick_t = -(p.i_nt * q_n + p.i_tt * q_t);
+  const Lanes stick_n = -madd(p.i_nn, q_n, p.i_nt * q_t), stick_t = -madd(p.i_nt, q_n, p.i_tt * q_t);
   const auto sticks = (stick_n > zero) & (size(stick_t) <= p.mu * stick_n);
   // where it slides it does so the way it would have been held from
   const Lanes slide_n = larger(-q_n * (stick_t > zero ? p.slide_up : p.slide_dn), zero);
@@ -108,13 +131,13 @@ inline void solve_point(const ContactLanes& p, Lanes q_n, Lanes q_t, Lanes& n, L
 }
 
 inline void solve_point(const TieLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
-  const Lanes stick_n = -(p.i_nn * q_n + p.i_nt * q_t), stick_t = -(p.i_nt * q_n + p.i_tt * q_t);
+  const Lanes stick_n = -madd(p.i_nn, q_n, p.i_nt * q_t), stick_t = -madd(p.i_nt, q_n, p.i_tt * q_t);
   const auto cone = [&](Lanes x) { return larger(p.mu * x + p.cohesion, Lanes{}); };
   const auto holds = (stick_n >= p.lower_n) & (stick_n <= p.upper_n) & (size(stick_t) <= cone(stick_n));
   // elsewhere one row after the other
-  const Lanes one_n = larger(smaller(-(q_n + p.w_nt * p.p_t) / p.w_nn, p.upper_n), p.lower_n);
+  const Lanes one_n = larger(smaller(-madd(p.w_nt, p.p_t, q_n) / p.w_nn, p.upper_n), p.lower_n);
   const Lanes limit = cone(one_n);
-  const Lanes one_t = larger(smaller(-(q_t + p.w_nt * one_n) / p.w_tt, limit), -limit);
+  const Lanes one_t = larger(smaller(-madd(p.w_nt, one_n, q_t) / p.w_tt, limit), -limit);
   n = holds ? stick_n : one_n;
   t = holds ? stick_t : one_t;
 }
@@ -132,10 +155,12 @@ inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count
       a.velocity(p.ax, p.ay, ax, ay);
       b.velocity(p.bx, p.by, bx, by);
       const Lanes dx = ax - bx, dy = ay - by;
-      const Lanes q_n =
-          p.nx * dx + p.ny * dy + p.bias_n + record.cross_n * other.p_n - p.u_nn * p.p_n - p.u_nt * p.p_t;
-      const Lanes q_t =
-          p.ny * dx - p.nx * dy + p.bias_t + record.cross_t * other.p_t - p.u_nt * p.p_n - p.u_tt * p.p_t;
+      // what the blocks say comes last: all else is there before
+      const Lanes rest_n =
+                      nmadd(p.u_nn, p.p_n, nmadd(p.u_nt, p.p_t, madd(record.cross_n, other.p_n, p.bias_n))),
+                  rest_t =
+                      nmadd(p.u_nt, p.p_n, nmadd(p.u_tt, p.p_t, madd(record.cross_t, other.p_t, p.bias_t)));
+      const Lanes q_n = madd(p.nx, dx, madd(p.ny, dy, rest_n)), q_t = nmadd(p.nx, dy, madd(p.ny, dx, rest_t));
       Lanes n, t;
       solve_point(p, q_n, q_t, n, t);
       const Lanes d_n = n - p.p_n, d_t = t - p.p_t;
@@ -149,62 +174,122 @@ inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count
   for (int l = 0; l < kLanes; ++l) most = largest[l] > most ? largest[l] : most;
 }
 
-template <class Point>
-inline void push_records(BlockLine* lines, const Record<Point>* records, size_t count) {
-  for (size_t r = 0; r < count; ++r) {
-    const Record<Point>& record = records[r];
-    Four a(lines, record.a), b(lines, record.b);
-    for (const Point& p : record.point) push_point(a, b, p, p.p_n, p.p_t);
-    a.write(lines, record.into_a);
-    b.write(lines, record.into_b);
-  }
-}
-
 // Influence of each point on itself, and the inverse with its compliance.
 template <class Point>
-inline void measure(const Four& a, const Four& b, Point& p, Lanes& w_nn, Lanes& w_nt, Lanes& w_tt) {
+inline void measure(const Four& a, const Four& b, Lanes c_n, Lanes c_t, Point& p, Lanes& w_nn, Lanes& w_nt,
+                    Lanes& w_tt) {
   Lanes nn{}, nt{}, tt{};
   a.influence(p.ax, p.ay, p.nx, p.ny, nn, nt, tt);
   b.influence(p.bx, p.by, p.nx, p.ny, nn, nt, tt);
-  w_nn = nn + p.i_nn, w_tt = tt + p.i_tt;
+  w_nn = nn + c_n, w_tt = tt + c_t;
   // where friction would turn the sign of the normal law (a steep arm), or nothing is left of the
   // determinant, the two rows are solved as if apart: sweeps come to the same end
   const auto apart = (p.mu * size(nt) > all(0.9) * w_nn) | (nt * nt > all(0.999) * w_nn * w_tt);
   nt = apart ? Lanes{} : nt;
   w_nt = nt;
   p.u_nn = nn, p.u_nt = nt, p.u_tt = tt;
-  const Lanes one = all(1) / (w_nn * w_tt - nt * nt);
+  const Lanes one = all(1) / nmadd(nt, nt, w_nn * w_tt);
   p.i_nn = w_tt * one, p.i_nt = -nt * one, p.i_tt = w_nn * one;
 }
 
-void prepare_contacts(const BlockLine* lines, ContactRecord* records, size_t count) {
+inline void measure_point(const Four& a, const Four& b, Lanes c_n, Lanes c_t, ContactLanes& p) {
+  Lanes w_nn, w_nt, w_tt;
+  measure(a, b, c_n, c_t, p, w_nn, w_nt, w_tt);
+  p.slide_up = all(1) / madd(p.mu, w_nt, w_nn);
+  p.slide_dn = all(1) / nmadd(p.mu, w_nt, w_nn);
+}
+inline void measure_point(const Four& a, const Four& b, Lanes c_n, Lanes c_t, TieLanes& p) {
+  measure(a, b, c_n, c_t, p, p.w_nn, p.w_nt, p.w_tt);
+}
+
+template <class Point>
+inline void prepare_records(BlockLine* lines, const Give* give, Record<Point>* records, size_t count) {
   for (size_t r = 0; r < count; ++r) {
-    const Four a(lines, records[r].a), b(lines, records[r].b);
-    for (ContactLanes& p : records[r].point) {
-      Lanes w_nn, w_nt, w_tt;
-      measure(a, b, p, w_nn, w_nt, w_tt);
-      p.slide_up = all(1) / (w_nn + p.mu * w_nt);
-      p.slide_dn = all(1) / (w_nn - p.mu * w_nt);
+    Record<Point>& record = records[r];
+    Four a(lines, record.a), b(lines, record.b);
+    for (int i = 0; i < 2; ++i) {
+      Point& p = record.point[i];
+      measure_point(a, b, give[r].n[i], give[r].t[i], p);
+      push_point(a, b, p, p.p_n, p.p_t);
+    }
+    a.write(lines, record.into_a);
+    b.write(lines, record.into_b);
+  }
+}
+
+void prepare_contacts(BlockLine* l, const Give* g, ContactRecord* r, size_t count) {
+  prepare_records(l, g, r, count);
+}
+void prepare_ties(BlockLine* l, const Give* g, TieRecord* r, size_t count) {
+  prepare_records(l, g, r, count);
+}
+
+struct Limits {
+  Lanes lower, upper;
+};
+inline Limits normal_limits(const ContactLanes&) { return {Lanes{}, all(kEndless)}; }
+inline Limits normal_limits(const TieLanes& p) { return {p.lower_n, p.upper_n}; }
+inline Limits tangential_limits(const ContactLanes& p) {
+  const Lanes limit = larger(p.mu * p.p_n, Lanes{});
+  return {-limit, limit};
+}
+inline Limits tangential_limits(const TieLanes& p) {
+  const Lanes limit = larger(p.mu * p.p_n + p.cohesion, Lanes{});
+  return {-limit, limit};
+}
+
+// |p - Proj(p - e / w)| w, without the division.
+inline Lanes missed(Lanes p, Lanes e, Lanes w, const Limits& limits) {
+  return size(larger(smaller(e, w * (p - limits.lower)), w * (p - limits.upper)));
+}
+
+// Eq. 5.2.
+template <class Point>
+inline void judge_records(const BlockLine* lines, const Record<Point>* records, const Give* give,
+                          const int* rows, size_t count, Worst& worst) {
+  for (size_t r = 0; r < count; ++r) {
+    const Record<Point>& record = records[r];
+    const Four a(lines, record.a), b(lines, record.b);
+    for (int i = 0; i < 2; ++i) {
+      const Point &p = record.point[i], &other = record.point[1 - i];
+      const Lanes c_n = give[r].n[i], c_t = give[r].t[i];
+      Lanes ax, ay, bx, by;
+      a.velocity(p.ax, p.ay, ax, ay);
+      b.velocity(p.bx, p.by, bx, by);
+      const Lanes dx = ax - bx, dy = ay - by;
+      const Lanes e_n = p.nx * dx + p.ny * dy + p.bias_n + c_n * p.p_n + record.cross_n * other.p_n,
+                  e_t = p.ny * dx - p.nx * dy + p.bias_t + c_t * p.p_t + record.cross_t * other.p_t;
+      const Lanes here = larger(missed(p.p_n, e_n, p.u_nn + c_n, normal_limits(p)),
+                                missed(p.p_t, e_t, p.u_tt + c_t, tangential_limits(p)));
+      // written so that what is no number is looked at; most points are passed over
+      const Lanes known = larger(all(worst.error), all(kLeast));
+      const auto fine = (here < known) & (size(e_n) + size(e_t) <= all(kMost));
+      if (fine[0] & fine[1] & fine[2] & fine[3]) continue;
+      for (int l = 0; l < kLanes; ++l) {
+        const bool number = std::isfinite(e_n[l]) && std::isfinite(e_t[l]) && std::isfinite(here[l]);
+        worst += {number ? here[l] : std::nan(""),
+                  rows[(r * kLanes + static_cast<size_t>(l)) * 2 + static_cast<size_t>(i)]};
+      }
     }
   }
 }
 
-void prepare_ties(const BlockLine* lines, TieRecord* records, size_t count) {
-  for (size_t r = 0; r < count; ++r) {
-    const Four a(lines, records[r].a), b(lines, records[r].b);
-    for (TieLanes& p : records[r].point) measure(a, b, p, p.w_nn, p.w_nt, p.w_tt);
-  }
+void judge_contacts(const BlockLine* l, const ContactRecord* r, const Give* g, const int* rows, size_t count,
+                    Worst& worst) {
+  judge_records(l, r, g, rows, count, worst);
+}
+void judge_ties(const BlockLine* l, const TieRecord* r, const Give* g, const int* rows, size_t count,
+                Worst& worst) {
+  judge_records(l, r, g, rows, count, worst);
 }
 
-void push_contacts(BlockLine* l, const ContactRecord* r, size_t count) { push_records(l, r, count); }
-void push_ties(BlockLine* l, const TieRecord* r, size_t count) { push_records(l, r, count); }
 void sweep_contacts(BlockLine* l, ContactRecord* r, size_t count, double& s) {
   sweep_records(l, r, count, s);
 }
 void sweep_ties(BlockLine* l, TieRecord* r, size_t count, double& s) { sweep_records(l, r, count, s); }
 
 constexpr Kernels make_kernels() {
-  return {prepare_contacts, prepare_ties, push_contacts, push_ties, sweep_contacts, sweep_ties};
+  return {prepare_contacts, prepare_ties, sweep_contacts, sweep_ties, judge_contacts, judge_ties};
 }
 
 }  // namespace

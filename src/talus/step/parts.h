@@ -21,14 +21,13 @@ struct RowSums {
   double drift = 0;
   double closed_share = 0;  // the largest, and where
   int closed_row = -1;
-  ContactError error;
-  std::vector<std::pair<int, BlockForce>> on_still;  // impulses on blocks whose motion is prescribed
+  std::vector<std::pair<int, BlockForce>> on_driven;  // impulses on blocks that are driven
 
   RowSums& operator+=(const RowSums& o);
 };
 
-/// The error of the rows as they are solved (eq. 5.2), and in the same look the work they do.
-RowSums judge_rows(const StepWork& work, const State& state);
+/// The work that row r does as it is solved (theory 8).
+void tally_row(const BlockSet& blocks, const StepWork& work, const State& state, size_t r, RowSums& sums);
 
 /// Puts the work of rows and blocks into the ledger (theory 8), and what is left out of balance into the
 /// report; writes state.row_force.

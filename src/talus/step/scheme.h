@@ -33,11 +33,24 @@ struct Scheme {
   double damping_time2() const { return 0.5 * settings.damping_stiffness * clock.dt_kick; }
 
   /// V K : G, the elastic tangent in the frame turned with the block.
-  Mat2 tangent_force(size_t i, const Mat2& G) const;
+  Mat2 tangent_force(size_t i, const Mat2& G) const {  // theory 4.9
+    const Mat2 r = rotation(elastic[i].rotation), e = transpose(r) * G;
+    const PlaneModuli& c = blocks.moduli[i];
+    const double shear = c.c33 * (e.xy + e.yx);
+    return blocks.volume[i] *
+           (r * Mat2{c.c11 * e.xx + c.c12 * e.yy, shear, shear, c.c12 * e.xx + c.c11 * e.yy});
+  }
   /// Impulse of stiffness-proportional damping (theory 4.5).
-  BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const;
+  BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const {
+    return {{}, (-damping_time2()) * tangent_force(i, before.G + after.G)};
+  }
   /// Impulse that gives a block this change of its rates: the effective mass times it.
-  BlockForce impulse_for(size_t i, const BlockRate& change) const;
+  BlockForce impulse_for(size_t i, const BlockRate& change) const {
+    BlockForce impulse = (1 + damping()) * momentum(blocks, i, change);
+    if (implicit(i))
+      impulse += BlockForce{{}, (tangent_time2() + damping_time2()) * tangent_force(i, change.G)};
+    return impulse;
+  }
 };
 
 }  // namespace talus

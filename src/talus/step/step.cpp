@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "talus/base/error.h"
 #include "talus/blocks/validate.h"
 #include "talus/rows/validate_rows.h"
+#include "talus/step/chunks.h"
 #include "talus/step/parts.h"
 
 namespace talus {
@@ -66,16 +68,11 @@ Smoothing smoothing(const ContactInput& contact, const StepClock& clock) {
   return {true, contact.smoothing_force * clock.dt_kick, contact.smoothing_slip / clock.dt};
 }
 
-RowSums solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
-                   StepReport& report) {
-  RowSums sums;
-  const std::function<ContactError()> judge = [&] {
-    sums = judge_rows(work, state);
-    return sums.error;
-  };
+void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
+                StepReport& report) {
   const StepProblem problem{
       work.mobility, work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
-      work.rows,     state.rate,     judge,         work.profile};
+      work.rows,     state.rate,     work.profile};
   const Solved solved = solve_step(scene.model, row_kinds(scene, work), settings.tolerance, settings.sharper,
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
@@ -83,13 +80,22 @@ RowSums solve_rows(const Scene& scene, const StepSettings& settings, StepWork& w
   report.second_solver = solved.second_solver;
   if (report.error.point >= 0)
     report.worst = row_name(scene, state, work, static_cast<size_t>(report.error.point));
-  return sums;
 }
 
-// What the rows carried, for the step after.
+// The work of the rows, and in the same look what contacts carry to the step after.
+RowSums settle_rows(const BlockSet& blocks, const StepWork& work, State& state) {
+  const RowRange contacts = work.rows.range(Family::kContact);
+  return work.workers.sum_chunks<RowSums>(
+      work.rows.size(), kChunkOfRows, [&](size_t begin, size_t end, RowSums& s) {
+        for (size_t r = begin; r < end; ++r) tally_row(blocks, work, state, r, s);
+        const RowRange here{std::max(begin, contacts.begin), std::min(end, contacts.end)};
+        if (here.begin < here.end) remember_contacts(work.rows, here, work.places, work.clock, state);
+      });
+}
+
+// What the other rows carried, for the step after.
 void remember(const Scene& scene, const StepWork& work, State& state) {
   remember_bonds(scene.blocks, scene.bonds, work.rows, work.clock, work.workers, state);
-  remember_contacts(work.rows, work.places, work.clock, work.workers, state);
   for (auto* points : {&state.supports, &state.boundaries, &state.ties})
     for (HeldPoint& p : *points) p.force = {0, 0};
   for (size_t r = work.rows.range(Family::kSupport).begin; r < work.rows.range(Family::kTie).end; ++r) {
@@ -122,11 +128,12 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   ++profile.steps;
   profile.points += static_cast<int64_t>(work.rows.size());
   profile.go_on_with(Profile::kRest);
-  const RowSums rows = solve_rows(scene, settings, work, state, report);
+  solve_rows(scene, settings, work, state, report);
+  profile.go_on_with(Profile::kRemember);
+  const RowSums rows = settle_rows(scene.blocks, work, state);
+  remember(scene, work, state);
   profile.go_on_with(Profile::kLedger);
   tally(scene, scheme, rows, work, state, report);
-  profile.go_on_with(Profile::kRemember);
-  remember(scene, work, state);
   return report;
 }
 

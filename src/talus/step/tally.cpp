@@ -58,31 +58,6 @@ std::array<Cause, 2> causes_of(Family family, const PointRows& p, const Impulse&
           slides(p, impulse) ? Cause::kFriction : Cause::kJoints};
 }
 
-// Theory 8.
-void judge_row(const StepWork& step, const State& state, size_t r, RowSums& s) {
-  const PointRows& p = step.rows.points[r];
-  const Impulse& impulse = step.rows.impulse[r];
-  const RowOwner owner = step.rows.owner[r];
-  const bool contact = owner.family == Family::kContact;
-  if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -step.places[owner.at()].gap);
-  if (contact && step.places[owner.at()].closed > s.closed_share)
-    s.closed_share = step.places[owner.at()].closed, s.closed_row = static_cast<int>(r);
-  const auto u1 = relative_velocity(p, state.rate);
-  s.error += {step.clock.dt * point_error(step.mobility, step.rows, r, u1, s.error.worst / step.clock.dt),
-              static_cast<int>(r)};
-  if (impulse[0] == 0 && impulse[1] == 0) return;
-  for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
-    if (block >= 0 && !step.mobility[static_cast<size_t>(block)].moves())
-      s.on_still.emplace_back(block, impulse_on(p, impulse, sign));
-  const auto u0 = relative_velocity(p, step.rate_before);
-  const std::array<Cause, 2> cause = causes_of(owner.family, p, impulse);
-  for (size_t k = 0; k < 2; ++k) {
-    s.work.before[cause[k]] += 0.5 * impulse[k] * u0[k];
-    s.work.after[cause[k]] += 0.5 * impulse[k] * u1[k];
-  }
-  s.closed += contact || (is_joint(owner.family) && p.row[0].compliance + p.row[1].compliance > 0);
-}
-
 // Theory 4.8, 8.
 void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step, size_t i, State& state,
                  BlockSums& s) {
@@ -90,9 +65,11 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
   const BlockRate &v0 = step.rate_before[i], &v1 = state.rate[i];
   if (!blocks.moves_freely(static_cast<int>(i))) return;
   const double late = scheme.late_share(), kick = step.clock.dt_kick;
-  const BlockForce viscous = (-scheme.settings.damping_mass * kick) * momentum(blocks, i, mean(v0, v1));
   add(s.work, Cause::kLoads, work_of(kick * step.load[i], v0, v1, late));
-  add(s.work, Cause::kDamping, work_of(viscous, v0, v1, late));
+  if (scheme.settings.damping_mass > 0) {
+    const BlockForce viscous = (-scheme.settings.damping_mass * kick) * momentum(blocks, i, mean(v0, v1));
+    add(s.work, Cause::kDamping, work_of(viscous, v0, v1, late));
+  }
   if (scheme.settings.damping_local > 0)
     add(s.work, Cause::kDamping, work_of(step.local_damping[i], v0, v1, late));
 
@@ -140,17 +117,32 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
 
 RowSums& RowSums::operator+=(const RowSums& o) {
   work.before += o.work.before, work.after += o.work.after;
-  closed += o.closed, drift = std::max(drift, o.drift), error += o.error;
+  closed += o.closed, drift = std::max(drift, o.drift);
   if (o.closed_share > closed_share) closed_share = o.closed_share, closed_row = o.closed_row;
-  on_still.insert(on_still.end(), o.on_still.begin(), o.on_still.end());
+  on_driven.insert(on_driven.end(), o.on_driven.begin(), o.on_driven.end());
   return *this;
 }
 
-RowSums judge_rows(const StepWork& work, const State& state) {
-  return work.workers.sum_chunks<RowSums>(work.rows.points.size(), kChunkOfRows,
-                                          [&](size_t begin, size_t end, RowSums& s) {
-                                            for (size_t r = begin; r < end; ++r) judge_row(work, state, r, s);
-                                          });
+// Theory 8.
+void tally_row(const BlockSet& blocks, const StepWork& step, const State& state, size_t r, RowSums& s) {
+  const PointRows& p = step.rows.points[r];
+  const Impulse& impulse = step.rows.impulse[r];
+  const RowOwner owner = step.rows.owner[r];
+  const bool contact = owner.family == Family::kContact;
+  if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -step.places[owner.at()].gap);
+  if (contact && step.places[owner.at()].closed > s.closed_share)
+    s.closed_share = step.places[owner.at()].closed, s.closed_row = static_cast<int>(r);
+  if (impulse[0] == 0 && impulse[1] == 0) return;
+  for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
+    if (block >= 0 && blocks.kind[static_cast<size_t>(block)] == BlockKind::kDriven)
+      s.on_driven.emplace_back(block, impulse_on(p, impulse, sign));
+  const auto u0 = relative_velocity(p, step.rate_before), u1 = relative_velocity(p, state.rate);
+  const std::array<Cause, 2> cause = causes_of(owner.family, p, impulse);
+  for (size_t k = 0; k < 2; ++k) {
+    s.work.before[cause[k]] += 0.5 * impulse[k] * u0[k];
+    s.work.after[cause[k]] += 0.5 * impulse[k] * u1[k];
+  }
+  s.closed += contact || (is_joint(owner.family) && p.row[0].compliance + p.row[1].compliance > 0);
 }
 
 void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,
@@ -160,7 +152,7 @@ void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWo
   report.drift = rows.drift;
   report.closed_share = rows.closed_share, report.closed_row = rows.closed_row;
   // a driven block passes on the work that its drive does against the rows
-  for (const auto& [block, impulse] : rows.on_still) {
+  for (const auto& [block, impulse] : rows.on_driven) {
     const auto k = static_cast<size_t>(block);
     add(work.work, Cause::kSupports, work_of(-1.0 * impulse, work.rate_before[k], state.rate[k], 0.5));
   }

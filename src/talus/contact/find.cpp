@@ -52,6 +52,9 @@ constexpr double kBeside = 0.5;
 // block.
 constexpr double kMostReach = 0.05;
 
+// Joints open by less than this share of the smaller block are closed to a corner that is not deeper in them.
+constexpr double kHairGap = 2e-4;
+
 // Whether the way from a place in a polygon to another leads out through a side that all but runs against
 // `direction` (unit).
 bool leaves_against(std::span<const Vec2> polygon, Vec2 from, Vec2 to, Vec2 direction) {
@@ -339,6 +342,9 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   const double length = b.length[ke];
   const Vec2 along = b.edge[ke] / length, n = h.point.normal;
   const double foot = dot(along, shift + a.corner[static_cast<size_t>(key.vertex)] - b.corner[ke]);
+  // a corner at the surface does not reach down into a joint that stands open by a hair
+  const double deep = stretch.length > 0 ? stretch.length : std::min(foot, length - foot);
+  if (const double hair = kHairGap / kSamePlace * same_; deep <= hair) reach = std::max(reach, hair);
   // hair gaps are looked across; close by, a neighbour may be a thin wedge beside the end of the side
   const auto filled = [&](int block, int other, Vec2 first, Vec2 direction, double of, double at, Vec2 out) {
     const double inward = std::min(2 * same_, 0.5 * of), place = std::clamp(at, inward, of - inward);

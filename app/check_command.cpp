@@ -82,6 +82,12 @@ int check_command(const ModelArguments& args, const std::string& folder, bool fo
                                       ? "pairs without a joint of their own are frictionless"
                                       : fmt::format("joint \"{}\" between pairs without their own",
                                                     run.scene.model.joints[static_cast<size_t>(joint)].name));
+  if (const ContactGive& give = run.scene.give;
+      give.stress > 0 && meets_hard(run.scene.layout, run.scene.laws))
+    fmt::print(
+        "             where they are hard they give by {:g} of a face under {:.3g} MPa ({}); a block of median\n"
+        "             size yields {:.0f} times as much in the shortest step\n",
+        kGiveClosure, give.stress / 1e6, give.cause, yields_more(run.scene, run.plans));
   fmt::print("  output     {}{}: {} rows of histories, {} rows of steps, {} frames\n",
              at_most ? "at most " : "about ", readable_bytes(p.output), p.history_rows, p.step_rows,
              p.frames);

@@ -318,7 +318,8 @@ duration = 1
   };
   const Run whole = run(2.5);  // sticks: the wave as it comes up
   check_close("A7b beta=2.5 T", std::sqrt(power(whole.above) / power(whole.below)), 1, 2e-2, 5e-3);
-  check_below("A7b beta=2.5 friction work [J]", std::abs(whole.lost), 1e-9, 1e-12);
+  // beside the elastic energy of what contacts give, about p_t^2 / 2 of their compliance
+  check_below("A7b beta=2.5 friction work [J]", std::abs(whole.lost), 1e-8, 1e-12);
   for (const double beta : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     const Run slipping = run(beta);
     std::vector<double> back;

@@ -57,9 +57,11 @@ class Check {
       for (size_t q = begin; q < end; ++q) check_pair(pairs_[q], part[q]);
     });
     FrameResult all;
-    for (const Point& p : frame_.points)
+    for (const Point& p : frame_.points) {
+      const double force = std::abs(p.normal_force);
       all.slack +=
-          std::abs(p.normal_force) * (rules_.slop * size_of(p.block_a, p.block_b) + 2 * rules_.tolerance);
+          force * (rules_.slop * size_of(p.block_a, p.block_b) + 2 * rules_.tolerance + rules_.give * force);
+    }
     for (FrameResult& r : part) {
       all.findings.insert(all.findings.end(), r.findings.begin(), r.findings.end());
       if (r.unexplained_share > all.unexplained_share)

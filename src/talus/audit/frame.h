@@ -49,6 +49,7 @@ struct Rules {
   std::vector<Law> laws;           // of the joints
   bool joints_everywhere = false;  // the model gives a joint for pairs that have none of their own
   double slop = 0;                 // overlap that hard contacts may keep, share of the smaller block's size
+  double give = 0;                 // of a hard contact point under a force [m/N]
   double tolerance = 0;            // largest contact error of a step [m]
   double thickness = 1;            // [m]
 };

@@ -112,6 +112,8 @@ class Reader {
       const auto& model = summary_["model"];
       rules_.thickness = model.value("thickness [m]", 1.0);
       rules_.tolerance = model.value("contact_tolerance [m]", 0.0);
+      if (model.contains("contact_give"))  // of runs since hard contacts give
+        rules_.give = model["contact_give"].value("per_force [m/N]", 0.0);
       rules_.joints_everywhere = model.contains("default_joint");
       in_situ_ = model.value("in_situ_stress", false);
       for (const auto& j : model["joints"]) {

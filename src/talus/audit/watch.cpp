@@ -95,7 +95,8 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
     return moves_against(shape_a, static_cast<size_t>(before.corner), shape_b, e, along, velocity);
   };
   const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
-  const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance + 3 * step.step * speed;
+  const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance +
+                         rules_.give * before.normal_force + 3 * step.step * speed;
   if (depth <= allowed) return;
   // hard, and kept its overlap at birth: it lets go
   if (now && now->hard && dot(normal, moves(&Block::next)) > 0) return;

@@ -54,7 +54,7 @@ inline void guess_compliant(const std::array<const PointRows*, 2>& p,
                             const std::array<std::array<double, 2>, 2>& u,
                             const std::array<Impulse*, 2>& guess) {
   for (int k = 0; k < 2; ++k) {
-    if (p[0]->row[k].compliance == 0) continue;
+    if (!p[0]->is_soft(k)) continue;
     const auto i = static_cast<size_t>(k);
     const auto impulse = guess_compliant(p, k, {u[0][i], u[1][i]});
     for (size_t end = 0; end < 2; ++end) {
@@ -69,7 +69,7 @@ inline double elastic_slip(const RowSet& rows, size_t r, const StepClock& clock)
   const PointRows& p = rows.points[r];
   double rate = p.row[1].compliance * rows.impulse[r][1];
   if (p.partner >= 0) rate += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
-  return -rate * (clock.dt / clock.position_factor());
+  return -rate * (p.is_soft(1) ? clock.dt / clock.position_factor() : clock.dt);
 }
 
 }  // namespace talus

@@ -86,14 +86,18 @@ struct Toe {
 class ContactRows {
  public:
   ContactRows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
-              const State& state, const std::vector<BlockRate>& before, const StepClock& clock, size_t first,
-              RowSet& rows, std::vector<ContactPlace>& place)
+              const ContactGive& give, const State& state, const std::vector<BlockRate>& before,
+              const StepClock& clock, size_t first, RowSet& rows, std::vector<ContactPlace>& place)
       : blocks_(blocks),
         model_(model),
         laws_(laws),
         state_(state),
         before_(before),
         clock_(clock),
+        give_(give.per_force(blocks.thickness) / (clock.dt * clock.dt_kick)),
+        least_give_(give.shortest_step > 0
+                        ? give.shortest_step * give.shortest_step / (clock.dt * clock.dt_kick) / kLeastYield
+                        : clock.dt / clock.dt_kick / kLeastYield),
         first_(first),
         rows_(rows),
         place_(place) {
@@ -169,7 +173,9 @@ class ContactRows {
     p.lower = 0, p.cohesion = 0;
     const bool soft = law.is_soft(0), springs = law.is_soft();
     const double size = size_of(pair), slop = model_.contact.slop * size;
-    p.row[0].bias = soft ? (q.gap + q.closure.x) / clock_.dt : hard_bias(q.gap + c.allowed, slop, clock_.dt);
+    const bool gives = give_ > 0 && !(soft && law.is_soft(1));
+    const double gap = soft ? q.gap + q.closure.x : q.gap + c.allowed;
+    p.row[0].bias = soft || gives ? gap / clock_.dt : hard_bias(gap, slop, clock_.dt);
     // what a broken face keeps, end by end, while it is in touch
     if (pair.face >= 0 && q.gap <= noticeable(blocks_, a, b))
       bound(bears.over(c.length * blocks_.thickness * clock_.dt_kick), p);
@@ -179,12 +185,18 @@ class ContactRows {
       p.row[1].bias = elastic / clock_.dt;
     } else {
       guess = {c.force[0] * clock_.dt_kick, c.force[1] * clock_.dt_kick};
-      p.row[1].bias = stuck_bias(off_anchor(c, q.slip), law, size);
+      p.row[1].bias = stuck_bias(off_anchor(c, q.slip), law.is_soft(1) || gives, size);
     }
+    bool rebounds = false;
     if (law.restitution() >= 0 || springs) {
       q.u = relative_velocity(p, before_);
-      if (law.restitution() >= 0 && q.gap + clock_.dt * q.u[0] <= 0 && q.u[0] < 0)
-        p.row[0].bias = std::min(p.row[0].bias, law.restitution() * q.u[0]);
+      rebounds = law.restitution() >= 0 && q.gap + clock_.dt * q.u[0] <= 0 && q.u[0] < 0;
+      if (rebounds) p.row[0].bias = std::min(p.row[0].bias, law.restitution() * q.u[0]);
+    }
+    if (gives) {
+      p.gives = {!soft && !rebounds, !law.is_soft(1)};
+      for (size_t row = 0; row < 2; ++row)
+        if (p.gives[row]) p.row[row].compliance = std::min(give_, least_give_ * yield(pair));
     }
     if (springs) {
       const int partner = partner_of(pair, at, k);
@@ -206,9 +218,17 @@ class ContactRows {
     rows_.owner[first_ + i] = {Family::kContact, static_cast<int>(i)};
   }
 
+  // About what two blocks yield at a corner, together [1/kg].
+  double yield(const ContactPair& pair) const {
+    double sum = 0;
+    for (const int block : {pair.a, pair.b})
+      if (blocks_.moves_freely(block)) sum += kYield / blocks_.mass[static_cast<size_t>(block)];
+    return sum;
+  }
+
   // Bias of the shear row of a place that is `off` from where it sticks [m/s].
-  double stuck_bias(double off, const JointLaw& law, double size) const {
-    return (law.is_soft(1) ? off : beyond(off, model_.contact.slop * size)) / clock_.dt;
+  double stuck_bias(double off, bool gives, double size) const {
+    return (gives ? off : beyond(off, model_.contact.slop * size)) / clock_.dt;
   }
 
   double closed_part(const ContactPair& pair, const Point& q) const {
@@ -257,7 +277,8 @@ class ContactRows {
     if (c.memory != Contact::kNone && far.memory != Contact::kNone) {
       // how far that place has slipped, not the corner that stands open
       const double corner = off_anchor(c, q.slip), closed = off_anchor(far, other.slip);
-      p.row[1].bias = stuck_bias(closed + share * (corner - closed), law_of(c), size);
+      p.row[1].bias =
+          stuck_bias(closed + share * (corner - closed), law_of(c).is_soft(1) || p.gives[1], size);
     }
     q.u = relative_velocity(p, before_);
     return share;
@@ -329,6 +350,8 @@ class ContactRows {
   const State& state_;
   const std::vector<BlockRate>& before_;
   const StepClock& clock_;
+  const double give_;        // compliance of hard contacts [1/kg]
+  const double least_give_;  // which need not be larger than this share of what their blocks yield
   const size_t first_;
   RowSet& rows_;
   std::vector<ContactPlace>& place_;
@@ -339,12 +362,13 @@ class ContactRows {
 }  // namespace
 
 void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
-                      const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
-                      const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place) {
+                      const ContactGive& give, const State& state, const std::vector<BlockRate>& before,
+                      const StepClock& clock, const Workers& workers, RowSet& rows,
+                      std::vector<ContactPlace>& place) {
   TALUS_ASSERT(before.size() == static_cast<size_t>(blocks.count) && laws.size() == model.joints.size());
   const size_t first = rows.add_more(Family::kContact, state.contacts.size());
   resize_sparingly(place, state.contacts.size());
-  const ContactRows contact_rows(blocks, model, laws, state, before, clock, first, rows, place);
+  const ContactRows contact_rows(blocks, model, laws, give, state, before, clock, first, rows, place);
   workers.for_chunks(state.pairs.size(), kRowGrain, [&](size_t begin, size_t end) {
     std::vector<Point> points;
     for (size_t q = begin; q < end; ++q) contact_rows.add(state.pairs[q], points);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "talus/contact/compliance.h"
+#include "talus/contact/contact_give.h"
 #include "talus/contact/pairs.h"
 
 namespace talus {
@@ -21,11 +22,13 @@ struct ContactPlace {
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has
 /// stiffness. First guess and anchor come from the memory of each contact.
 /// @param laws    of the model's joints
+/// @param give    of those that have no stiffness
 /// @param before  rates half a step ago
 /// @param place   gets gap and slip of each contact [n_contacts]
 void add_contact_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
-                      const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
-                      const Workers& workers, RowSet& rows, std::vector<ContactPlace>& place);
+                      const ContactGive& give, const State& state, const std::vector<BlockRate>& before,
+                      const StepClock& clock, const Workers& workers, RowSet& rows,
+                      std::vector<ContactPlace>& place);
 
 /// Stores force, anchor and slip of the contacts of some rows in the state.
 /// @pre  state.rate are the rates after the kick

@@ -53,6 +53,7 @@ enum class ContactLaw { kExact, kSmoothed };
 struct ContactInput {
   ContactLaw law = ContactLaw::kExact;
   double alpha = 0.2;          // damping of compliant rows: 0 none, 1 backward Euler
+  bool give = true;            // hard contacts give a little (theory 4.22)
   double slop = 1e-7;          // overlap of hard contacts left uncorrected, share of the smaller block's size
   double smoothing_force = 1;  // epsilon_1 of the smoothed law [N]
   double smoothing_slip = 6e-8;  // epsilon_2 [m]

@@ -340,6 +340,7 @@ class ModelReader : private SectionReader {
     ContactInput& contact = model_.contact;
     contact.law = f.get<std::string>("law") == "smoothed" ? ContactLaw::kSmoothed : ContactLaw::kExact;
     contact.alpha = f.get("alpha", contact.alpha);
+    contact.give = f.get<std::string>("stiffness") != "none";
     contact.slop = f.get("slop", contact.slop);
     contact.smoothing_force = f.get("smoothing_force", contact.smoothing_force);
     contact.smoothing_slip = f.get("smoothing_slip", contact.smoothing_slip);

@@ -23,10 +23,20 @@ std::vector<SectionSpec> action_sections() {
          .range = {.min = 0, .max = 1},
          .default_text = "0.2",
          .doc = "Numerical damping of joints with stiffness: 0 loses nothing, 1 is backward Euler."},
+        {.name = "stiffness",
+         .type = K::kChoice,
+         .default_text = "\"auto\"",
+         .choices = {"auto", "none"},
+         .doc =
+             "Of contacts whose joint has no stiffness. `auto`: under the largest stress that the model gives to be "
+             "foreseen a face closes by 1e-5 of its length, less than rock itself, so that redundant contacts "
+             "share a load in one way and large masses can be solved (theory 4.22). `none`: nothing gives; with "
+             "`law = \"smoothed\"` it never does."},
         {.name = "slop",
          .range = {.min = 0, .max = 1e-2},
          .default_text = "1e-7",
-         .doc = "Overlap of hard contacts that is left uncorrected, as share of the smaller block's size."},
+         .doc = "Overlap that is left uncorrected where contacts give nothing: with "
+                "`stiffness = \"none\"`. Share of the smaller block's size."},
         {.name = "smoothing_force",
          .dimension = D::kForce,
          .range = kPositive,

@@ -32,7 +32,12 @@ struct PointRows {
   double upper = std::numeric_limits<double>::infinity();
   double friction = 0;  // p_t lies within -+ max(0, cohesion + friction p_n); tan of the friction angle
   double cohesion = std::numeric_limits<double>::infinity();  // [N s]
-  int partner = -1;  // index in the row set of the other end of the same compliant face, -1: none
+  int partner = -1;             // index in the row set of the other end of the same compliant face, -1: none
+  std::array<bool, 2> gives{};  // rows whose compliance is the give of a hard contact, not that of a joint
+
+  /// Whether row k is one of a joint with stiffness.
+  bool is_soft(int k) const { return row[k].compliance > 0 && !gives[static_cast<size_t>(k)]; }
+  bool is_soft() const { return is_soft(0) || is_soft(1); }
 
   /// Compliance of row k with the partner's impulse, the same seen from both ends [1/kg]: of a linear closure
   /// of the face it is half the own one with the opposite sign (theory 4.6).

@@ -86,6 +86,7 @@ void Auditor::look_at_stage(const Instant& i) {
   }
   rules_.joints_everywhere = scene_.layout.default_joint >= 0;
   rules_.slop = scene_.model.contact.slop;
+  rules_.give = scene_.give.per_force(scene_.model.thickness);
   rules_.tolerance = scene_.model.solver.tolerance * tolerance_size(b);
   blocks_.clear();
   for (int k = 0; k < b.count; ++k) {

@@ -168,6 +168,11 @@ ordered_json model_in_numbers(const Scene& scene) {
   j["in_situ_stress"] = m.in_situ.given;
   j["stages"] = stages(m);
   j["monitors"] = m.monitors.size();
+  if (scene.give.stress > 0)
+    j["contact_give"] = {{"stress [Pa]", scene.give.stress},
+                         {"of", scene.give.cause},
+                         {"closure / length", kGiveClosure},
+                         {"per_force [m/N]", scene.give.per_force(m.thickness)}};
   j["contact_tolerance [m]"] = m.solver.tolerance * tolerance_size(scene.blocks);
   j["intervals [s]"] = {{"history", m.output.history_interval},
                         {"steps", m.output.steps_interval},

@@ -99,6 +99,19 @@ std::string bound_name(const Scene& scene, const StagePlan& plan) {
   return plan.bound_block >= 0 ? scene.blocks.name[static_cast<size_t>(plan.bound_block)] : "";
 }
 
+double yields_more(const Scene& scene, const std::vector<StagePlan>& plans) {
+  std::vector<double> masses;
+  for (int i = 0; i < scene.blocks.count; ++i)
+    if (scene.blocks.moves_freely(i)) masses.push_back(scene.blocks.mass[static_cast<size_t>(i)]);
+  const double per_force = scene.give.per_force(scene.blocks.thickness);
+  if (masses.empty() || plans.empty() || per_force == 0) return 0;
+  const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
+  std::nth_element(masses.begin(), middle, masses.end());
+  double dt = std::numeric_limits<double>::infinity();
+  for (const StagePlan& plan : plans) dt = std::min(dt, plan.dt);
+  return std::max(kLeastYield, kYield / *middle * dt * dt / per_force);
+}
+
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::vector<StagePlan> plans;
   std::optional<Scene> staged;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/blocks/given_motion.h"
 #include "talus/contact/pairs.h"
 #include "talus/run/resolution.h"
 
@@ -71,27 +72,6 @@ double fastest_fall(const Scene& scene, double duration) {
   return std::isinf(highest) ? 0 : std::min(std::sqrt(2 * g * (lowest - highest)), g * duration);
 }
 
-// Fastest motion that the model gives: of blocks at the start, and of what is driven [m/s].
-double fastest_given(const Scene& scene) {
-  double fastest = 0;
-  const auto follow = [&](const Motion& m) {
-    if (m.history < 0) return;
-    const History& h = scene.model.histories[static_cast<size_t>(m.history)];
-    for (size_t i = 0; i < h.time.size(); ++i) {
-      if (m.kind == Motion::kVelocity) fastest = std::max(fastest, std::abs(h.value[i]));
-      if (m.kind == Motion::kDisplacement && i > 0)
-        fastest = std::max(fastest, std::abs((h.value[i] - h.value[i - 1]) / (h.time[i] - h.time[i - 1])));
-    }
-  };
-  for (size_t i = 0; i < scene.layout.blocks.size(); ++i) {
-    const BlockShape& b = scene.layout.blocks[i];
-    fastest = std::max(fastest, norm(b.velocity) + std::abs(b.spin) * scene.blocks.radius[i]);
-    follow(b.motion_x), follow(b.motion_y);
-  }
-  for (const SupportInput& s : scene.model.supports) follow(s.x), follow(s.y);
-  return fastest;
-}
-
 }  // namespace
 
 double rigid_step(const Scene& scene, const StageInput& stage) {
@@ -101,7 +81,8 @@ double rigid_step(const Scene& scene, const StageInput& stage) {
     if (blocks.moves_freely(i)) thickness = std::min(thickness, blocks.thinness[static_cast<size_t>(i)]);
   double step = std::numeric_limits<double>::infinity();
   if (const double g = norm(scene.model.gravity); g > 0) step = 0.02 * std::sqrt(thickness / g);
-  if (const double v = fastest_given(scene) + fastest_fall(scene, stage.duration); v > 0)
+  if (const double v = fastest_given(scene.model, scene.layout, blocks) + fastest_fall(scene, stage.duration);
+      v > 0)
     step = std::min(step, 0.1 * thickness / v);
   if (stage.kind == StageKind::kDynamic)
     for (const History& h : scene.model.histories)

@@ -50,6 +50,10 @@ class Runner {
   Runner(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
          const Workers& workers)
       : scene_(scene), plans_(plans), state_(state), observer_(observer), unclamped_(scene.blocks) {
+    // stages of other steps must not find other contacts
+    scene_.give.shortest_step = std::numeric_limits<double>::infinity();
+    for (const StagePlan& plan : plans)
+      scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
     work_.workers = workers;
   }
 

@@ -68,6 +68,7 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.layout = std::move(layout);
   scene.blocks = build_blocks(scene.model, scene.layout);
   scene.laws = joint_laws(scene.model.joints);
+  scene.give = contact_give(scene.model, scene.layout, scene.blocks);
   scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);

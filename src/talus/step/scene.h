@@ -2,6 +2,7 @@
 // Everything a step needs to know and may not change: the model, its blocks, bonds and supports.
 
 #include "talus/contact/bonds.h"
+#include "talus/contact/contact_give.h"
 #include "talus/supports/bolts.h"
 #include "talus/supports/boundaries.h"
 #include "talus/supports/loads.h"
@@ -22,6 +23,7 @@ struct Scene {
   Layout layout;
   BlockSet blocks;
   std::vector<JointLaw> laws;  // of the model's joints, in the stage
+  ContactGive give;            // of hard contacts
   BondSet bonds;
   std::vector<SupportedPoint> supported;
   BoundarySet boundaries;

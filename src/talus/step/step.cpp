@@ -53,7 +53,8 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   rows.restart();
   work.profile.go_on_with(Profile::kRows);
   add_bond_rows(blocks, scene.bonds, scene.laws, state, before, clock, work.workers, rows);
-  add_contact_rows(blocks, model, scene.laws, state, before, clock, work.workers, rows, work.places);
+  add_contact_rows(blocks, model, scene.laws, scene.give, state, before, clock, work.workers, rows,
+                   work.places);
   work.profile.go_on_with(Profile::kHeld);
   add_support_rows(blocks, model, scene.supported, state, clock, rows);
   add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.column_velocity, rows);

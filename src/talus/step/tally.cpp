@@ -53,8 +53,8 @@ struct BlockSums {
 
 // Where the work of a point goes: along its normal, along its tangent.
 std::array<Cause, 2> causes_of(Family family, const PointRows& p, const Impulse& impulse) {
-  if (!is_joint(family) || !(p.row[0].compliance + p.row[1].compliance > 0)) return entry(family).cause;
-  return {p.row[0].compliance > 0 ? Cause::kJoints : Cause::kContactClosing,
+  if (!is_joint(family) || !p.is_soft()) return entry(family).cause;
+  return {p.is_soft(0) ? Cause::kJoints : Cause::kContactClosing,
           slides(p, impulse) ? Cause::kFriction : Cause::kJoints};
 }
 
@@ -129,7 +129,7 @@ void tally_row(const BlockSet& blocks, const StepWork& step, const State& state,
   const Impulse& impulse = step.rows.impulse[r];
   const RowOwner owner = step.rows.owner[r];
   const bool contact = owner.family == Family::kContact;
-  if (contact && p.row[0].compliance == 0) s.drift = std::max(s.drift, -step.places[owner.at()].gap);
+  if (contact && !p.is_soft(0)) s.drift = std::max(s.drift, -step.places[owner.at()].gap);
   if (contact && step.places[owner.at()].closed > s.closed_share)
     s.closed_share = step.places[owner.at()].closed, s.closed_row = static_cast<int>(r);
   if (impulse[0] == 0 && impulse[1] == 0) return;
@@ -142,7 +142,7 @@ void tally_row(const BlockSet& blocks, const StepWork& step, const State& state,
     s.work.before[cause[k]] += 0.5 * impulse[k] * u0[k];
     s.work.after[cause[k]] += 0.5 * impulse[k] * u1[k];
   }
-  s.closed += contact || (is_joint(owner.family) && p.row[0].compliance + p.row[1].compliance > 0);
+  s.closed += contact || (is_joint(owner.family) && p.is_soft());
 }
 
 void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,

@@ -69,6 +69,7 @@ Extent extent_of(const Model& model, const BlockSet& blocks) {
 
 }  // namespace
 
+// Eq. 4.11.
 double ContactGive::per_force(double thickness) const {
   // kn = ks = stress / (kGiveClosure length) on half of that length: no length is left
   return stress > 0 ? 2 * kGiveClosure / (stress * thickness) : 0;

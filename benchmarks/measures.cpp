@@ -86,8 +86,9 @@ LawError measure_law(const BenchScene& scene, const std::vector<BenchContact>& c
                      Vec2 gravity) {
   constexpr double kSticking = 0.999;  // friction above this share of its bound may slip
   constexpr double kLoaded = 1e-3;     // of the mean impulse
+  constexpr double kJudged = 1e-3;     // [s]
   LawError error;
-  const double speed = kGravity * h, mu = scene.friction;
+  const double speed = kGravity * kJudged, mu = scene.friction;
   double mean_impulse = 0;
   for (const BenchContact& c : contacts)
     mean_impulse += c.normal_impulse / static_cast<double>(contacts.size());
@@ -119,7 +120,7 @@ LawError measure_law(const BenchScene& scene, const std::vector<BenchContact>& c
   for (size_t i = 0; i < scene.blocks.size(); ++i) {
     if (scene.blocks[i].fixed) continue;
     const double mass = scene.density * signed_area(scene.blocks[i].corners);
-    const double missing = norm(impulse[i] + mass * h * gravity) / (mass * speed);
+    const double missing = norm(impulse[i] + mass * h * gravity) / (mass * kGravity * h);
     ++moving;
     error.balance_mean += missing;
     error.balance_max = std::max(error.balance_max, missing);
@@ -193,7 +194,8 @@ std::string csv_header() {
          "contact_points,ns_block_step,ns_point_step,overlap_max,overlap_mean,overlap_rel_max,slip_mean,slip_"
          "max,"
          "un_mean,un_max,balance_mean,balance_max,coulomb_max,drift_max,sink_max,error_worst,rss_bytes,"
-         "bytes_per_block,cpu_s_per_simulated_s";
+         "bytes_per_block,cpu_s_per_simulated_s,samples,slip_median,slip_worst,un_median,un_worst,overlap_"
+         "worst";
 }
 
 std::string csv_line(const BenchRow& row) {
@@ -209,6 +211,8 @@ std::string csv_line(const BenchRow& row) {
   add(row.law.balance_mean), add(row.law.balance_max), add(row.law.coulomb_max);
   add(row.displacement.drift_max), add(row.displacement.sink_max), add(row.error_worst);
   add(row.rss_bytes), add(row.bytes_per_block), add(row.cpu_per_simulated);
+  add(row.along.samples), add(row.along.slip_median), add(row.along.slip_worst);
+  add(row.along.un_median), add(row.along.un_worst), add(row.along.overlap_worst);
   return line;
 }
 
@@ -288,6 +292,24 @@ class PhaseClock {
   int counts_ = 0;
 };
 
+// The law error at instants evenly spaced over a phase.
+class Along {
+ public:
+  void look(const BenchEngine& engine, const BenchScene& scene, double dt, Vec2 gravity) {
+    const LawError law = measure_law(scene, engine.contacts(), dt, gravity);
+    slip_.push_back(law.slip_mean), un_.push_back(law.un_mean);
+    overlap_ = std::max(overlap_, measure_overlap(engine.blocks()).max);
+  }
+  LawAlong result() const {
+    const Spread slip = spread(slip_), un = spread(un_);
+    return {static_cast<int>(slip_.size()), slip.median, slip.max, un.median, un.max, overlap_};
+  }
+
+ private:
+  std::vector<double> slip_, un_;
+  double overlap_ = 0;
+};
+
 void fill_accuracy(const BenchEngine& engine, const BenchScene& scene, double dt, Vec2 gravity,
                    BenchRow& row) {
   const std::vector<BenchBlock> now = engine.blocks();
@@ -302,6 +324,7 @@ void fill_accuracy(const BenchEngine& engine, const BenchScene& scene, double dt
 void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions& options,
                double resident_before) {
   constexpr double kShaking = 0.3, kFrequency = 2;  // [g], [Hz]
+  constexpr int kSamples = 32;
   fmt::print(stderr, "{}, {}: {} blocks on {}, load average {:.2f}\n", engine.name(), options.scene,
              scene.moving(), cpu_model(), load_average());
   fmt::print("{}\n", csv_header());
@@ -311,14 +334,19 @@ void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions&
     const int steps = static_cast<int>(std::lround(duration / dt));
     if (steps == 0) return;
     PhaseClock clock;
+    Along along;
     Vec2 gravity{0, -kGravity};
+    const int first = phase == "settle" ? steps / 2 : 0, judged = steps - first;
     for (int i = 0; i < steps; ++i) {
       if (phase == "shake") {
         const double time = (i + 0.5) * dt;
         gravity.x = -kShaking * kGravity * std::sin(2 * std::numbers::pi * kFrequency * time);
       }
       engine.set_gravity(gravity);
-      clock.step(engine, dt, phase != "settle" || i >= steps / 2);
+      clock.step(engine, dt, i >= first);
+      // the last step of each of so many equal parts
+      const auto part = [&](int step) { return static_cast<int64_t>(step) * kSamples / judged; };
+      if (i >= first && part(i - first) != part(i + 1 - first)) along.look(engine, scene, dt, gravity);
     }
     BenchRow row;
     row.engine = engine.name(), row.scene = options.scene, row.phase = phase;
@@ -329,6 +357,7 @@ void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions&
     row.rss_bytes = resident_bytes();
     row.bytes_per_block = (row.rss_bytes - resident_before) / std::max(1, row.blocks);
     clock.fill(dt, row);
+    row.along = along.result();
     fill_accuracy(engine, scene, dt, gravity, row);
     fmt::print("{}\n", csv_line(row));
     std::fflush(stdout);

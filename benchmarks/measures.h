@@ -43,8 +43,9 @@ struct BenchContact {
   Vec2 relative_velocity;      // [m/s] of b against a at the point
 };
 
-/// How far the impulses and velocities of one step miss the contact law. Velocities are divided by g h and
-/// judged at points that carry more than a thousandth of the mean impulse; those below are about to open.
+/// How far the impulses and velocities of one step miss the contact law. Velocities are divided by g times a
+/// millisecond, whatever the step, and judged at points that carry more than a thousandth of the mean impulse;
+/// those below are about to open.
 struct LawError {
   double slip_mean = 0, slip_max = 0;        // |u_t| where |r_t| < 0.999 mu r_n: should stick
   double un_mean = 0, un_max = 0;            // |u_n|: a loaded point should stay closed
@@ -59,6 +60,14 @@ struct LawError {
 /// @param gravity  [m/s^2] body force per mass during that time, shaking included
 LawError measure_law(const BenchScene& scene, const std::vector<BenchContact>& contacts, double h,
                      Vec2 gravity);
+
+/// The law error all along a phase: of its means over the points at so many instants, the middle one and the
+/// worst.
+struct LawAlong {
+  int samples = 0;
+  double slip_median = 0, slip_worst = 0, un_median = 0, un_worst = 0;
+  double overlap_worst = 0;  // [m]
+};
 
 struct Displacement {
   double drift_max = 0;  // [m] largest sideways displacement of a moving block's centroid
@@ -100,6 +109,7 @@ struct BenchRow {
   Overlap overlap{kNotMeasured, kNotMeasured, kNotMeasured, 0, 0};
   LawError law{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured,
                kNotMeasured, kNotMeasured, kNotMeasured};
+  LawAlong along{0, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};
   Displacement displacement{kNotMeasured, kNotMeasured};
   double error_worst = kNotMeasured;  // LawError::worst() at the end; natural-map error of a one-step problem
   double rss_bytes = kNotMeasured;
@@ -141,8 +151,8 @@ class BenchEngine {
 };
 
 /// Lets the scene settle, then shakes it (walls: 0.3 g at 2 Hz, as a body force) or holds it under gravity,
-/// and prints the header and one line per phase. The first half of settling is not timed: contacts begin
-/// there.
+/// and prints the header and one line per phase: time, and accuracy at the end and at 32 instants along the
+/// phase. The first half of settling is neither timed nor judged: contacts begin there.
 /// @param resident_before [bytes] memory held before the engine was built
 void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions& options,
                double resident_before);

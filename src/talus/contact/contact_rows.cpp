@@ -23,6 +23,9 @@ constexpr double kLeastShare = 1e-9;
 // Overlaps below this share of the thinner block are not measured against it.
 constexpr double kNoticed = 0.01;
 
+// What rows begin as. Of memory: to clear a row takes longer than to copy one.
+constexpr PointRows kFresh{};
+
 // Pairs to a chunk.
 constexpr size_t kRowGrain = 256;
 
@@ -163,7 +166,9 @@ class ContactRows {
     place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair),
                  closed_part(pair, q)};
 
-    PointRows p;
+    // in its place: a copy would wait for what was just written
+    PointRows& p = rows_.points[first_ + i];
+    p = kFresh;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
     p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.corner()));
     p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
@@ -213,7 +218,6 @@ class ContactRows {
       }
       add_compliance(law, length * blocks_.thickness, partner >= 0, clock_, q.u, p);
     }
-    rows_.points[first_ + i] = p;
     rows_.impulse[first_ + i] = guess;
     rows_.owner[first_ + i] = {Family::kContact, static_cast<int>(i)};
   }

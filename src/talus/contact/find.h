@@ -33,7 +33,20 @@ struct CornerEdge {
   Vec2 normal;        // outward
 };
 
-CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner, BlockEdge edge);
+inline CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner,
+                                   BlockEdge on) {  // theory 3.2
+  const auto ia = static_cast<size_t>(corner.block), ib = static_cast<size_t>(on.block);
+  const int next = on.edge + 1 == blocks.vertex_count(on.block) ? 0 : on.edge + 1;
+  const Vec2 Xa = blocks.corner(corner), Xb = blocks.corner({on.block, on.edge}),
+             E = blocks.corner({on.block, next}) - Xb;
+  // the difference of reference places first, then the difference of displacements: both small
+  const Vec2 reference = (blocks.centroid[ia] - blocks.centroid[ib]) + (Xa - Xb);
+  const Vec2 r = reference + (displacement_at(state, ia, Xa) - displacement_at(state, ib, Xb));
+  const Vec2 e = E + state.strain_part[ib] * E;
+  const double length = norm(e);
+  const Vec2 n = turn_right(e) / length;
+  return {dot(n, r), dot(r, e) / (length * length), length, n};
+}
 
 /// How far, how deep and in whose company the points of a pair are sought.
 struct SearchRange {

@@ -6,6 +6,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/rank.h"
+#include "talus/blocks/tiles.h"
 
 namespace talus {
 
@@ -99,6 +100,7 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
     set.thinness.push_back(m.area / (2 * set.radius.back()));
     set.vertex_begin.push_back(static_cast<int>(set.arm.size()));
   }
+  set.tile = tiles_of(set.centroid);
   return set;
 }
 

@@ -46,6 +46,7 @@ struct BlockSet {
   std::vector<double> size;           // [count] square root of the area [m]
   std::vector<double> thinness;  // [count] mean thickness across the longest extent: area / (2 radius) [m]
   std::vector<double> radius;    // [count] distance of the farthest corner from the centroid [m]
+  std::vector<int> tile;         // [count] blocks that lie together (tiles_of); empty: too few to be parted
 
   std::vector<int> vertex_begin;  // [count + 1]
   std::vector<Vec2> arm;          // [n_vertices] reference arms X from the centroid, counter-clockwise [m]

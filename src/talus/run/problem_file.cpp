@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -85,6 +86,7 @@ std::string problem_text(const Instant& i) {
                            {"mobility", mobility_json(i.work.mobility[k])},
                            {"velocity", vec(i.work.rate_free[k].a)},
                            {"gradient_rate", mat(i.work.rate_free[k].G)}});
+    if (!b.tile.empty()) j["blocks"].back()["tile"] = b.tile[k];
   }
   const RowKinds kinds = row_kinds(i.scene, i.work);
   j["hard_ties"] = kinds.hard_ties;
@@ -104,11 +106,16 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
       throw std::runtime_error(fmt::format("its format is not {}", kFormat));
     std::vector<BlockRate> rate;
     std::vector<Mobility> mobility;
+    std::vector<int> tile;
     for (const ordered_json& b : j.at("blocks")) {
+      if (b.contains("tile")) tile.push_back(b.at("tile"));
       mobility.push_back(read_mobility(b.at("mobility")));
       rate.push_back({vec(b.at("velocity")), mat(b.at("gradient_rate"))});
     }
     const auto blocks = static_cast<int>(mobility.size());
+    const auto known = [blocks](int t) { return t >= 0 && t < blocks; };
+    if (!tile.empty() && (tile.size() != mobility.size() || !std::all_of(tile.begin(), tile.end(), known)))
+      throw std::runtime_error("the tiles of its blocks are not one of each, from 0 up");
     for (const ordered_json& p : j.at("points"))
       replay.rows.add(read_point(p), {p.at("guess").at(0), p.at("guess").at(1)});
     const auto points = static_cast<int>(replay.rows.points.size());
@@ -130,7 +137,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     std::vector<Impulse> guess;
     SolverSet solvers;
     Profile profile;
-    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, profile};
+    const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, profile, tile};
     replay.solved = solve_step(model, kinds, tolerance, 1, false, Workers(), solvers, problem, guess);
   } catch (const std::exception& e) {
     throw FileError(

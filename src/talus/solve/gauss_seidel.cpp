@@ -116,7 +116,9 @@ bool GaussSeidel::layout_holds(const RowSet& set, const Workers& workers) {
 }
 
 // Theory 5.5.
-void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& workers) {
+void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const int> tile,
+                          const Workers& workers) {
+  TALUS_ASSERT(tile.empty() || tile.size() == mobility.size());
   const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   // couples: the two ends of a face, else neighbours in the list with the same two blocks
   const auto n = static_cast<int>(seen_.size());
@@ -143,50 +145,89 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
     return at(c.row[0]).tie() || (c.row[1] >= 0 && at(c.row[1]).tie());
   };
 
-  // the lowest colour that neither block has
-  std::vector<uint64_t> used(mobility.size(), 0);
-  std::vector<int> colour_of(couples.size());
-  std::array<size_t, kMostColours + 1> contacts{}, ties{};
-  for (size_t c = 0; c < couples.size(); ++c) {
-    const Point& p = at(couples[c].row[0]);
-    uint64_t taken = 0;
-    if (moves(p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
-    if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
-    const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
-    colour_of[c] = colour;
-    ++(has_tie(couples[c]) ? ties : contacts)[static_cast<size_t>(colour)];
-    if (colour == kMostColours) continue;
-    if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
-    if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
+  // couples of each tile together, then those between tiles, each in the order of the list
+  const auto group_of = [&](const Rows& c) {
+    const Point& p = at(c.row[0]);
+    const int a = moves(p.block_a) && !tile.empty() ? tile[static_cast<size_t>(p.block_a)] : -1,
+              b = moves(p.block_b) && !tile.empty() ? tile[static_cast<size_t>(p.block_b)] : a;
+    return a < 0 ? b : a == b ? a : -1;
+  };
+  const size_t tiles =
+      tile.empty() ? 0 : 1 + static_cast<size_t>(*std::max_element(tile.begin(), tile.end()));
+  std::vector<size_t> group_begin(tiles + 2), in_group(couples.size());
+  {
+    std::vector<size_t> group(couples.size());
+    for (size_t c = 0; c < couples.size(); ++c) {
+      const int g = group_of(couples[c]);
+      ++group_begin[1 + (group[c] = g < 0 ? tiles : static_cast<size_t>(g))];
+    }
+    for (size_t g = 0; g <= tiles; ++g) group_begin[g + 1] += group_begin[g];
+    std::vector<size_t> place(group_begin.begin(), group_begin.end() - 1);
+    for (size_t c = 0; c < couples.size(); ++c) in_group[place[group[c]]++] = c;
   }
 
-  // places: by colour, in the order of the list; those without a colour one to a record
-  colour_.clear();
+  // the lowest colour that neither block has in the tile
+  std::vector<uint64_t> used(mobility.size(), 0);
+  std::vector<int> colour_of(couples.size());
+  struct Counts {
+    std::array<size_t, kMostColours + 1> contacts{}, ties{};
+  };
+  std::vector<Counts> counts(tiles + 1);
+  const auto colour_group = [&](size_t g) {
+    for (size_t i = group_begin[g]; i < group_begin[g + 1]; ++i) {
+      const size_t c = in_group[i];
+      const Point& p = at(couples[c].row[0]);
+      uint64_t taken = 0;
+      if (moves(p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
+      if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
+      const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
+      colour_of[c] = colour;
+      ++(has_tie(couples[c]) ? counts[g].ties : counts[g].contacts)[static_cast<size_t>(colour)];
+      if (colour == kMostColours) continue;
+      if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
+      if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
+    }
+  };
+  workers.for_chunks(tiles, 1, [&](size_t g, size_t) { colour_group(g); });
+  if (tiles > 0) used.assign(used.size(), 0);
+  colour_group(tiles);
+
+  // places: by tile and colour, in the order of the list; those without a colour one to a record
+  colour_.clear(), tile_colours_.clear();
   size_t contact_at = 0, tie_at = 0;
-  std::array<size_t, kMostColours + 1> contact_next{}, tie_next{};
-  for (size_t k = 0; k <= kMostColours; ++k) {
-    const bool in_order = k == kMostColours;
-    const auto records = [&](size_t count) { return in_order ? count : (count + kLanes - 1) / kLanes; };
-    contact_next[k] = contact_at * kLanes, tie_next[k] = tie_at * kLanes;
-    if (contacts[k] + ties[k] == 0) continue;
-    Colour colour{contact_at, contact_at + records(contacts[k]), tie_at, tie_at + records(ties[k]), in_order};
-    contact_at = colour.contact_end, tie_at = colour.tie_end;
-    colour_.push_back(colour);
+  std::vector<Counts> free_at(tiles + 1);
+  for (size_t g = 0; g <= tiles; ++g) {
+    tile_colours_.push_back(colour_.size());
+    for (size_t k = 0; k <= kMostColours; ++k) {
+      const bool in_order = k == kMostColours;
+      const auto records = [&](size_t count) { return in_order ? count : (count + kLanes - 1) / kLanes; };
+      free_at[g].contacts[k] = contact_at * kLanes, free_at[g].ties[k] = tie_at * kLanes;
+      const size_t contacts = counts[g].contacts[k], ties = counts[g].ties[k];
+      if (contacts + ties == 0) continue;
+      Colour colour{contact_at, contact_at + records(contacts), tie_at, tie_at + records(ties), in_order};
+      contact_at = colour.contact_end, tie_at = colour.tie_end;
+      colour_.push_back(colour);
+    }
   }
   contact_rows_.assign(contact_at * kLanes, {{-1, -1}});
   tie_rows_.assign(tie_at * kLanes, {{-1, -1}});
-  for (size_t c = 0; c < couples.size(); ++c) {
-    const auto k = static_cast<size_t>(colour_of[c]);
-    const bool tie = has_tie(couples[c]);
-    size_t& next = (tie ? tie_next : contact_next)[k];
-    (tie ? tie_rows_ : contact_rows_)[next] = couples[c];
-    next += k == kMostColours ? kLanes : 1;
-  }
+  workers.for_chunks(tiles + 1, 1, [&](size_t g, size_t) {
+    for (size_t i = group_begin[g]; i < group_begin[g + 1]; ++i) {
+      const size_t c = in_group[i];
+      const auto k = static_cast<size_t>(colour_of[c]);
+      const bool tie = has_tie(couples[c]);
+      size_t& place = (tie ? free_at[g].ties : free_at[g].contacts)[k];
+      (tie ? tie_rows_ : contact_rows_)[place] = couples[c];
+      place += k == kMostColours ? kLanes : 1;
+    }
+  });
   resize_sparingly(contacts_, contact_at), resize_sparingly(contact_give_, contact_at);
   resize_sparingly(ties_, tie_at), resize_sparingly(tie_give_, tie_at);
 
   // blocks that do not move are written to lines that nobody reads, one for each record that has any
   ground_ = static_cast<int>(mobility.size());
+  order_lines(tile, tiles);
+  const auto line_of = [&](int block) { return block < 0 ? ground_ : line_[static_cast<size_t>(block)]; };
   int line = ground_ + 1;
   const auto set_blocks = [&](auto& records, const std::vector<Rows>& rows) {
     constexpr size_t kChunk = 1024;
@@ -197,8 +238,8 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
         for (size_t l = 0; l < kLanes; ++l) {
           const int row = rows[r * kLanes + l].row[0];
           const int a = row < 0 ? -1 : at(row).block_a, b = row < 0 ? -1 : at(row).block_b;
-          record.a[l] = a < 0 ? ground_ : a, record.b[l] = b < 0 ? ground_ : b;
-          record.into_a[l] = moves(a) ? a : -1, record.into_b[l] = moves(b) ? b : -1;
+          record.a[l] = line_of(a), record.b[l] = line_of(b);
+          record.into_a[l] = moves(a) ? line_of(a) : -1, record.into_b[l] = moves(b) ? line_of(b) : -1;
         }
         still[begin / kChunk] += has_still(record);
       }
@@ -222,12 +263,22 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, const Workers& 
   lines_[static_cast<size_t>(ground_)] = {};
 }
 
+// Blocks of a tile have their lines side by side: they are fetched as one piece.
+void GaussSeidel::order_lines(std::span<const int> tile, size_t tiles) {
+  line_.resize(static_cast<size_t>(ground_));
+  std::vector<int> next(tiles + 1);
+  for (const int t : tile) ++next[static_cast<size_t>(t) + 1];
+  for (size_t t = 0; t < tiles; ++t) next[t + 1] += next[t];
+  for (size_t i = 0; i < line_.size(); ++i)
+    line_[i] = tile.empty() ? static_cast<int>(i) : next[static_cast<size_t>(tile[i])]++;
+}
+
 void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                               const Workers& workers) {
   workers.for_chunks(mobility.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Mobility& m = mobility[i];
-      wide::BlockLine& line = lines_[i];
+      wide::BlockLine& line = lines_[static_cast<size_t>(line_[i])];
       const Mat2 g = transpose(rotation(m.left)) * rate[i].G * rotation(m.right);
       const double values[] = {rate[i].a.x, rate[i].a.y, g.xx, g.xy, g.yx, g.yy, m.mass, 0};
       const double answer[] = {m.stretch[0], m.stretch[1], m.stretch[2], m.shear[0],
@@ -244,7 +295,7 @@ void GaussSeidel::read_lines(const std::vector<Mobility>& mobility, const Worker
     for (size_t i = begin; i < end; ++i) {
       const Mobility& m = mobility[i];
       if (!m.moves()) continue;
-      const double* v = lines_[i].rate;
+      const double* v = lines_[static_cast<size_t>(line_[i])].rate;
       rate[i] = {{v[0], v[1]},
                  rotation(m.left) * Mat2{v[2], v[3], v[4], v[5]} * transpose(rotation(m.right))};
     }
@@ -263,6 +314,45 @@ size_t grain(size_t records, int threads) {
 }
 
 }  // namespace
+
+namespace {
+
+// Largest of all: the order does not matter.
+struct Largest {
+  double value = 0;
+  Largest& operator+=(const Largest& o) {
+    value = std::max(value, o.value);
+    return *this;
+  }
+};
+
+}  // namespace
+
+template <class T, class F, class G>
+T GaussSeidel::in_colours(const Workers& workers, F contact, G tie) const {
+  const size_t tiles = tile_colours_.size() - 1;
+  T all = workers.sum_chunks<T>(tiles, 1, [&](size_t g, size_t, T& sum) {
+    for (size_t k = tile_colours_[g]; k < tile_colours_[g + 1]; ++k) {
+      const Colour& c = colour_[k];
+      contact(c.contact_begin, c.contact_end, sum);
+      tie(c.tie_begin, c.tie_end, sum);
+    }
+  });
+  for (size_t k = tile_colours_[tiles]; k < colour_.size(); ++k) {
+    const Colour& c = colour_[k];
+    const auto of = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
+    const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
+    if (contacts > 0)
+      all += workers.sum_chunks<T>(contacts, of(contacts), [&](size_t begin, size_t end, T& sum) {
+        contact(c.contact_begin + begin, c.contact_begin + end, sum);
+      });
+    if (ties > 0)
+      all += workers.sum_chunks<T>(ties, of(ties), [&](size_t begin, size_t end, T& sum) {
+        tie(c.tie_begin + begin, c.tie_begin + end, sum);
+      });
+  }
+  return all;
+}
 
 void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const RowSet& set,
                                 const Workers& workers) {
@@ -288,23 +378,18 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
     }
   };
   const auto write_all = [&](auto& records, std::vector<wide::Give>& give, const std::vector<Rows>& rows,
-                             size_t first, size_t last, size_t chunk, auto prepare) {
-    workers.for_chunks(last - first, chunk, [&](size_t begin, size_t end) {
+                             auto prepare) {
+    return [&, prepare](size_t begin, size_t end, Largest&) {
       // a few at a time: what is written is still near when it is prepared
-      for (size_t next, r = first + begin; r < first + end; r = next) {
-        next = std::min(r + kNear, first + end);
+      for (size_t next, r = begin; r < end; r = next) {
+        next = std::min(r + kNear, end);
         for (size_t i = r; i < next; ++i) write(records[i], give[i], &rows[i * kLanes]);
         prepare(lines_.data(), give.data() + r, records.data() + r, next - r);
       }
-    });
+    };
   };
-  for (const Colour& c : colour_) {
-    const auto chunk = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
-    write_all(contacts_, contact_give_, contact_rows_, c.contact_begin, c.contact_end,
-              chunk(c.contact_end - c.contact_begin), kernels_->prepare_contacts);
-    write_all(ties_, tie_give_, tie_rows_, c.tie_begin, c.tie_end, chunk(c.tie_end - c.tie_begin),
-              kernels_->prepare_ties);
-  }
+  in_colours<Largest>(workers, write_all(contacts_, contact_give_, contact_rows_, kernels_->prepare_contacts),
+                      write_all(ties_, tie_give_, tie_rows_, kernels_->prepare_ties));
 }
 
 void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
@@ -324,36 +409,16 @@ void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
   read(ties_, tie_rows_);
 }
 
-namespace {
-
-// Largest of all: the order does not matter.
-struct Largest {
-  double value = 0;
-  Largest& operator+=(const Largest& o) {
-    value = std::max(value, o.value);
-    return *this;
-  }
-};
-
-}  // namespace
-
 // Largest change of an impulse times the influence of its point on itself [m/s] (theory 5.5).
 double GaussSeidel::sweep(const Workers& workers) {
-  Largest all;
-  for (const Colour& c : colour_) {
-    const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
-    const auto of = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
-    if (contacts > 0)
-      all += workers.sum_chunks<Largest>(contacts, of(contacts), [&](size_t begin, size_t end, Largest& l) {
-        kernels_->sweep_contacts(lines_.data(), contacts_.data() + c.contact_begin + begin, end - begin,
-                                 l.value);
-      });
-    if (ties > 0)
-      all += workers.sum_chunks<Largest>(ties, of(ties), [&](size_t begin, size_t end, Largest& l) {
-        kernels_->sweep_ties(lines_.data(), ties_.data() + c.tie_begin + begin, end - begin, l.value);
-      });
-  }
-  return all.value;
+  const auto sweep_records = [&](auto& records, auto kernel) {
+    return [&, kernel](size_t begin, size_t end, Largest& l) {
+      if (begin < end) kernel(lines_.data(), records.data() + begin, end - begin, l.value);
+    };
+  };
+  return in_colours<Largest>(workers, sweep_records(contacts_, kernels_->sweep_contacts),
+                             sweep_records(ties_, kernels_->sweep_ties))
+      .value;
 }
 
 ContactError GaussSeidel::judge(const Workers& workers) const {
@@ -459,8 +524,11 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   if (report.converged) return report;
   Profile& profile = problem.profile;
   const InPart part(profile, Profile::kLayout);
-  if (!layout_holds(set, workers)) lay_out(mobility, workers), ++profile.layouts;
-  report.colours = static_cast<int>(colour_.size());
+  if (!layout_holds(set, workers)) lay_out(mobility, problem.tile, workers), ++profile.layouts;
+  for (size_t g = 0; g < tile_colours_.size(); ++g) {
+    const size_t end = g + 1 < tile_colours_.size() ? tile_colours_[g + 1] : colour_.size();
+    report.colours = std::max(report.colours, static_cast<int>(end - tile_colours_[g]));
+  }
   profile.go_on_with(Profile::kRecords);
   write_lines(mobility, rate, workers);
   write_records(mobility, set, workers);

@@ -31,14 +31,20 @@ class GaussSeidel : public Solver {
   struct Rows {
     int row[2];
   };
-  // records of one colour: [contact_begin, contact_end) and the same of ties
+  // records of one colour of a tile, or of the couples between tiles: [contact_begin, contact_end) and the same
+  // of ties
   struct Colour {
     size_t contact_begin = 0, contact_end = 0, tie_begin = 0, tie_end = 0;
     bool in_order = false;  // blocks may occur twice: one thread, record by record
   };
 
   bool layout_holds(const RowSet& set, const Workers& workers);
-  void lay_out(const std::vector<Mobility>& mobility, const Workers& workers);
+  void lay_out(const std::vector<Mobility>& mobility, std::span<const int> tile, const Workers& workers);
+  void order_lines(std::span<const int> tile, size_t tiles);
+  /// contact(begin, end, sum) and tie(begin, end, sum) over all records in the order of colours: tiles side by
+  /// side, then the couples between them, each colour side by side.
+  template <class T, class F, class G>
+  T in_colours(const Workers& workers, F contact, G tie) const;
   void write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                    const Workers& workers);
   void read_lines(const std::vector<Mobility>& mobility, const Workers& workers,
@@ -53,12 +59,14 @@ class GaussSeidel : public Solver {
 
   const wide::Kernels* kernels_;
   std::vector<Point> seen_;
-  std::vector<Colour> colour_;
+  std::vector<Colour> colour_;                 // tile by tile, then between them
+  std::vector<size_t> tile_colours_ = {0};     // where those of each tile begin, and those between tiles
   std::vector<Rows> contact_rows_, tie_rows_;  // [records * lanes]
   std::vector<wide::ContactRecord> contacts_;
   std::vector<wide::TieRecord> ties_;
   std::vector<wide::Give> contact_give_, tie_give_;
   std::vector<wide::BlockLine> lines_;  // blocks, the ground, then lines nobody reads
+  std::vector<int> line_;               // of each block
   int ground_ = 0;
 
   // second phase: impulses and rates before a sweep, and the direction in which they go on

@@ -1,6 +1,7 @@
 #pragma once
 // What every solver of the contact equations is asked, and owes. Theory: docs/theory.md section 5.
 
+#include <span>
 #include <vector>
 
 #include "talus/base/parallel.h"
@@ -22,6 +23,7 @@ struct StepProblem {
   RowSet& rows;                             // in: first guess; out: impulses
   std::vector<BlockRate>& rate;             // out: with these impulses
   Profile& profile;                         // where the time goes
+  std::span<const int> tile = {};           // BlockSet::tile
 };
 
 /// Contact errors at which to stop [m]: `wanted`, which is given up, once `enough` is reached, after as many

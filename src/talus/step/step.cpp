@@ -73,7 +73,7 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
                 StepReport& report) {
   const StepProblem problem{
       work.mobility, work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
-      work.rows,     state.rate,     work.profile};
+      work.rows,     state.rate,     work.profile,  scene.blocks.tile};
   const Solved solved = solve_step(scene.model, row_kinds(scene, work), settings.tolerance, settings.sharper,
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;

@@ -143,12 +143,12 @@ struct Solution {
 
 Solution solve(GaussSeidel& solver, const std::vector<Mobility>& mobility, const RowSet& set,
                const std::vector<BlockRate>& rate, int sweeps, double tolerance = 0,
-               const Workers& workers = Workers()) {
+               const Workers& workers = Workers(), const std::vector<int>& tile = {}) {
   Solution s{set, rate, {}};
   SolverInput options;
   options.max_sweeps = sweeps;
   Profile profile;
-  s.report = solver.solve({mobility, rate, 1, {}, s.set, s.rate, profile}, tolerance, options, workers);
+  s.report = solver.solve({mobility, rate, 1, {}, s.set, s.rate, profile, tile}, tolerance, options, workers);
   return s;
 }
 
@@ -389,6 +389,35 @@ TEST_CASE("impulses are within their bounds after any number of sweeps") {
       CHECK_FALSE(s.report.converged);
     }
   }
+}
+
+TEST_CASE("tile by tile: the same solution, the same bits for any number of threads") {
+  Dice dice(12);
+  constexpr int kBlocks = 120, kTiles = 7;
+  const BlockSet blocks = mixed_blocks(kBlocks);
+  const auto mobility = mixed_mobilities(dice, blocks);
+  const auto rate = random_rates(dice, blocks);
+  const RowSet set = random_rows(dice, mobility, 200, true);
+  std::vector<int> tile;
+  for (int i = 0; i < kBlocks; ++i) tile.push_back(dice.below(kTiles));
+  const auto run = [&](int sweeps, double tolerance, int threads, const std::vector<int>& tiles) {
+    GaussSeidel solver;
+    return solve(solver, mobility, set, rate, sweeps, tolerance, Workers(threads), tiles);
+  };
+  for (const int sweeps : {3, 40})
+    for (const int threads : {2, 3, 4})
+      CHECK(differences(run(sweeps, 0, 1, tile), run(sweeps, 0, threads, tile)) == 0);
+  // another order of the couples, another way there
+  CHECK(differences(run(3, 0, 1, tile), run(3, 0, 1, {})) > 0);
+  const Solution parted = run(20000, 1e-12, 1, tile), whole = run(20000, 1e-12, 1, {});
+  REQUIRE(parted.report.converged);
+  REQUIRE(whole.report.converged);
+  CHECK(difference(parted.rate, whole.rate) <= 1e-9);
+
+  // a layout goes with its tiles for as long as the blocks are the same
+  GaussSeidel kept;
+  const Solution first = solve(kept, mobility, set, rate, 3, 0, Workers(), tile);
+  CHECK(differences(first, solve(kept, mobility, set, rate, 3, 0, Workers(), tile)) == 0);
 }
 
 TEST_CASE("a hundred blocks on one: more couples than colours") {

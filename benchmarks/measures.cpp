@@ -296,7 +296,7 @@ class PhaseClock {
 class Along {
  public:
   void look(const BenchEngine& engine, const BenchScene& scene, double dt, Vec2 gravity) {
-    const LawError law = measure_law(scene, engine.contacts(), dt, gravity);
+    const LawError law = measure_law(scene, engine.contacts(), engine.impulse_time(dt), gravity);
     slip_.push_back(law.slip_mean), un_.push_back(law.un_mean);
     overlap_ = std::max(overlap_, measure_overlap(engine.blocks()).max);
   }
@@ -314,7 +314,7 @@ void fill_accuracy(const BenchEngine& engine, const BenchScene& scene, double dt
                    BenchRow& row) {
   const std::vector<BenchBlock> now = engine.blocks();
   row.overlap = measure_overlap(now);
-  row.law = measure_law(scene, engine.contacts(), dt, gravity);
+  row.law = measure_law(scene, engine.contacts(), engine.impulse_time(dt), gravity);
   row.displacement = measure_displacement(scene.blocks, now);
   row.error_worst = row.law.worst();
 }

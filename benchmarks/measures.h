@@ -145,6 +145,8 @@ class BenchEngine {
   virtual int sweeps() const = 0;
   virtual void set_gravity(Vec2 gravity) = 0;  // [m/s^2] for the steps that follow
   virtual void step(double dt) = 0;
+  /// Time that its impulses stand for after a step [s]: an engine with substeps gives those of the last one.
+  virtual double impulse_time(double dt) const { return dt; }
   virtual int contact_points() const = 0;
   virtual std::vector<BenchBlock> blocks() const = 0;      // current polygons, in the order of the scene
   virtual std::vector<BenchContact> contacts() const = 0;  // of the last step

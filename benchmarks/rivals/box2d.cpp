@@ -10,6 +10,11 @@
 #include "command_line.h"
 #include "rigid_shape.h"
 
+// How it was built, where that was not left to the package.
+#ifndef TALUS_RIVAL_BUILD
+#define TALUS_RIVAL_BUILD ""
+#endif
+
 namespace talus::bench {
 namespace {
 
@@ -26,7 +31,8 @@ class Box2dEngine : public BenchEngine {
   }
 
   std::string name() const override {
-    return fmt::format("box2d-{}.{}", b2_version.major, b2_version.minor);  // the last digit is not kept up
+    // the last digit is not kept up
+    return fmt::format("box2d-{}.{}{}", b2_version.major, b2_version.minor, TALUS_RIVAL_BUILD);
   }
   int sweeps() const override { return sweeps_; }
   void set_gravity(Vec2 gravity) override { world_.SetGravity(to_float(gravity)); }

@@ -191,7 +191,7 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
 
 FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face) {
   const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
-  const int next = (face.edge_b + 1) % blocks.vertex_count(face.block_b);
+  const int next = face.edge_b + 1 == blocks.vertex_count(face.block_b) ? 0 : face.edge_b + 1;
   const Vec2 edge = blocks.corner({face.block_b, next}) - blocks.corner({face.block_b, face.edge_b});
   const Vec2 now = edge + state.strain_part[b] * edge;
   FaceOffset out;
@@ -222,11 +222,16 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
                    const Workers& workers, RowSet& rows) {
   TALUS_ASSERT(state.face.size() == bonds.faces.size() && state.bond_force.size() == 2 * bonds.faces.size());
   TALUS_ASSERT(rows.size() == 0 && before.size() == static_cast<size_t>(blocks.count));
-  for (size_t f = 0; f < bonds.faces.size(); ++f) {
+  const auto holds = [&](size_t f) {
     const BondFace& face = bonds.faces[f];
-    if (state.face[f].broken || !blocks.interact(face.block_a, face.block_b)) continue;
-    const size_t at = rows.add_more(Family::kFace, 2);
-    for (const size_t end : {0U, 1U}) rows.owner[at + end] = {Family::kFace, static_cast<int>(2 * f + end)};
+    return !state.face[f].broken && blocks.interact(face.block_a, face.block_b);
+  };
+  size_t count = 0;
+  for (size_t f = 0; f < bonds.faces.size(); ++f) count += holds(f);
+  size_t next = rows.add_more(Family::kFace, 2 * count);
+  for (size_t f = 0; f < bonds.faces.size(); ++f) {
+    if (!holds(f)) continue;
+    for (const size_t end : {0U, 1U}) rows.owner[next++] = {Family::kFace, static_cast<int>(2 * f + end)};
   }
 
   const auto add = [&](size_t f, size_t at) {
@@ -235,7 +240,8 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     const FaceOffset apart = face_offset(blocks, state, face);
     std::array<std::array<double, 2>, 2> u{};
     for (size_t end = 0; end < 2; ++end) {
-      PointRows p;
+      PointRows& p = rows.points[at + end];
+      p = kFreshRows;
       p.block_a = face.block_a, p.block_b = face.block_b;
       p.arm_a = acting_arm(blocks, state, a, face.arm_a[end]);
       p.arm_b = acting_arm(blocks, state, b, face.arm_b[end]);
@@ -259,7 +265,6 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       const bool rigid = blocks.kind[a] != BlockKind::kDeformable && blocks.kind[b] != BlockKind::kDeformable;
       const double shear =
           rigid ? 0.5 * (state.bond_force[2 * f][1] + state.bond_force[2 * f + 1][1]) : force[1];
-      rows.points[at + end] = p;
       rows.impulse[at + end] = {force[0] * clock.dt_kick, shear * clock.dt_kick};
     }
     guess_compliant({&rows.points[at], &rows.points[at + 1]}, u, {&rows.impulse[at], &rows.impulse[at + 1]});

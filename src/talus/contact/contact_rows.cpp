@@ -23,9 +23,6 @@ constexpr double kLeastShare = 1e-9;
 // Overlaps below this share of the thinner block are not measured against it.
 constexpr double kNoticed = 0.01;
 
-// What rows begin as. Of memory: to clear a row takes longer than to copy one.
-constexpr PointRows kFresh{};
-
 // Pairs to a chunk.
 constexpr size_t kRowGrain = 256;
 
@@ -168,7 +165,7 @@ class ContactRows {
 
     // in its place: a copy would wait for what was just written
     PointRows& p = rows_.points[first_ + i];
-    p = kFresh;
+    p = kFreshRows;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
     p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.corner()));
     p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);

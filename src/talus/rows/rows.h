@@ -44,6 +44,9 @@ struct PointRows {
   double cross(int k) const { return partner < 0 ? 0 : -0.5 * row[k].compliance; }
 };
 
+/// What rows begin as where many are written. Of memory: to clear a row takes longer than to copy one.
+inline constexpr PointRows kFreshRows{};
+
 using Impulse = std::array<double, 2>;  // normal, tangential [N s]
 
 /// Resizes with a little to spare where the vector itself would double: rows and records are most of the

@@ -132,12 +132,13 @@ inline void solve_point(const ContactLanes& p, Lanes q_n, Lanes q_t, Lanes& n, L
 
 inline void solve_point(const TieLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes& t) {
   const Lanes stick_n = -madd(p.i_nn, q_n, p.i_nt * q_t), stick_t = -madd(p.i_nt, q_n, p.i_tt * q_t);
+  // rounded as bounds_of() does it
   const auto cone = [&](Lanes x) { return larger(p.mu * x + p.cohesion, Lanes{}); };
   const auto holds = (stick_n >= p.lower_n) & (stick_n <= p.upper_n) & (size(stick_t) <= cone(stick_n));
   // elsewhere one row after the other
-  const Lanes one_n = larger(smaller(-madd(p.w_nt, p.p_t, q_n) / p.w_nn, p.upper_n), p.lower_n);
+  const Lanes one_n = larger(smaller(-madd(p.w_nt, p.p_t, q_n) * p.r_nn, p.upper_n), p.lower_n);
   const Lanes limit = cone(one_n);
-  const Lanes one_t = larger(smaller(-madd(p.w_nt, one_n, q_t) / p.w_tt, limit), -limit);
+  const Lanes one_t = larger(smaller(-madd(p.w_nt, one_n, q_t) * p.r_tt, limit), -limit);
   n = holds ? stick_n : one_n;
   t = holds ? stick_t : one_t;
 }
@@ -214,7 +215,9 @@ inline void measure_point(const Four& a, const Four& b, Lanes c_n, Lanes c_t, Co
   p.slide_dn = all(1) / nmadd(p.mu, w_nt, w_nn);
 }
 inline void measure_point(const Four& a, const Four& b, Lanes c_n, Lanes c_t, TieLanes& p) {
-  measure(a, b, c_n, c_t, p, p.w_nn, p.w_nt, p.w_tt);
+  Lanes w_nn, w_tt;
+  measure(a, b, c_n, c_t, p, w_nn, p.w_nt, w_tt);
+  p.r_nn = all(1) / w_nn, p.r_tt = all(1) / w_tt;
 }
 
 template <class Point>

@@ -2,11 +2,12 @@
 
 namespace talus {
 
-size_t hard_ties(const RowSet& rows) {
-  size_t count = 0;
+size_t hard_ties(const RowSet& rows, const Workers& workers) {
   const RowRange faces = rows.range(Family::kFace);
-  for (size_t r = faces.begin; r < faces.end; ++r) count += rows.points[r].row[0].compliance == 0;
-  return count;
+  return workers.sum_chunks<size_t>(faces.size(), 1024, [&](size_t begin, size_t end, size_t& count) {
+    for (size_t r = faces.begin + begin; r < faces.begin + end; ++r)
+      count += rows.points[r].row[0].compliance == 0;
+  });
 }
 
 BlockForce impulse_on(const PointRows& p, const Impulse& impulse, double sign) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
+#include "talus/base/parallel.h"
 #include "talus/blocks/state.h"
 #include "talus/rows/owner.h"
 
@@ -116,7 +117,7 @@ inline bool slides(const PointRows& p, const Impulse& impulse) {
 }
 
 /// Points of faces that are tied without any give: what `auto` chooses a solver by.
-size_t hard_ties(const RowSet& rows);
+size_t hard_ties(const RowSet& rows, const Workers& workers);
 
 /// M^-1 times a generalised force or impulse. Zero for blocks whose motion is prescribed.
 inline BlockRate accelerate(const BlockSet& blocks, size_t i, const BlockForce& force) {  // eq. 1.2

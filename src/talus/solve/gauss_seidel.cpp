@@ -289,12 +289,16 @@ void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::
   });
 }
 
-void GaussSeidel::read_lines(const std::vector<Mobility>& mobility, const Workers& workers,
-                             std::vector<BlockRate>& rate) const {
-  workers.for_chunks(mobility.size(), 1024, [&](size_t begin, size_t end) {
+void GaussSeidel::read_lines(const StepProblem& problem, const Workers& workers) const {
+  std::vector<BlockRate>& rate = problem.rate;
+  rate.resize(problem.rate_free.size());
+  workers.for_chunks(rate.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const Mobility& m = mobility[i];
-      if (!m.moves()) continue;
+      const Mobility& m = problem.mobility[i];
+      if (!m.moves()) {
+        rate[i] = problem.rate_free[i];
+        continue;
+      }
       const double* v = lines_[static_cast<size_t>(line_[i])].rate;
       rate[i] = {{v[0], v[1]},
                  rotation(m.left) * Mat2{v[2], v[3], v[4], v[5]} * transpose(rotation(m.right))};
@@ -518,10 +522,12 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   const double dt = problem.dt;
   RowSet& set = problem.rows;
   std::vector<BlockRate>& rate = problem.rate;
-  rate = problem.rate_free;
   SolveReport report;
   report.converged = set.points.empty();
-  if (report.converged) return report;
+  if (report.converged) {
+    rate = problem.rate_free;
+    return report;
+  }
   Profile& profile = problem.profile;
   const InPart part(profile, Profile::kLayout);
   if (!layout_holds(set, workers)) lay_out(mobility, problem.tile, workers), ++profile.layouts;
@@ -530,7 +536,7 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
     report.colours = std::max(report.colours, static_cast<int>(end - tile_colours_[g]));
   }
   profile.go_on_with(Profile::kRecords);
-  write_lines(mobility, rate, workers);
+  write_lines(mobility, problem.rate_free, workers);
   write_records(mobility, set, workers);
 
   const auto judge_now = [&] {
@@ -578,7 +584,7 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   profile.go_on_with(Profile::kRecords);
   if (!report.converged) report.converged = tolerance < goal.enough;  // enough was reached
   read_records(workers, set);
-  read_lines(mobility, workers, rate);
+  read_lines(problem, workers);
   if (!report.judged) {
     profile.go_on_with(Profile::kJudge);
     report.judged = judge_now();

@@ -47,8 +47,7 @@ class GaussSeidel : public Solver {
   T in_colours(const Workers& workers, F contact, G tie) const;
   void write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                    const Workers& workers);
-  void read_lines(const std::vector<Mobility>& mobility, const Workers& workers,
-                  std::vector<BlockRate>& rate) const;
+  void read_lines(const StepProblem& problem, const Workers& workers) const;
   /// And lets their impulses act on the lines.
   void write_records(const std::vector<Mobility>& mobility, const RowSet& set, const Workers& workers);
   void read_records(const Workers& workers, RowSet& set) const;

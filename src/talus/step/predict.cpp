@@ -82,10 +82,13 @@ void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work
   const double time = state.history_time;
   const std::vector<Vec2> acceleration = load_acceleration(scene.model, scene.loads, blocks.count, time);
   work.load.resize(acceleration.size());
-  for (size_t k = 0; k < work.load.size(); ++k) work.load[k] = {blocks.mass[k] * acceleration[k], {}};
+  work.workers.for_chunks(work.load.size(), kChunkOfBlocks, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) work.load[k] = {blocks.mass[k] * acceleration[k], {}};
+  });
   add_edge_and_point_loads(blocks, scene.model, scene.loads, state, time, work.load);
-  for (size_t k = 0; k < state.kept_force.size(); ++k)
-    work.load[k] += (1 - state.relaxed) * state.kept_force[k];
+  work.workers.for_chunks(state.kept_force.size(), kChunkOfBlocks, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) work.load[k] += (1 - state.relaxed) * state.kept_force[k];
+  });
   {
     const InPart part(work.profile, Profile::kBolts);
     balance_bolts(state);
@@ -103,13 +106,17 @@ void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& st
   work.elastic.resize(n);
   work.local_damping.resize(settings.damping_local > 0 ? n : 0);
   const bool renew = settings.implicit || work.mobility.size() != n || work.mobility_share != scheme.share();
-  work.mobility.resize(n);
+  work.mobility.resize(n), work.rate_before.resize(n), work.rate_free.resize(n);
   work.workers.for_chunks(n, kChunkOfBlocks, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) predict_block(scene, scheme, i, renew, work, state);
+    for (size_t i = begin; i < end; ++i) {
+      work.rate_before[i] = state.rate[i];
+      predict_block(scene, scheme, i, renew, work, state);
+      work.rate_free[i] = state.rate[i];
+    }
   });
   work.mobility_share = settings.implicit ? 0 : scheme.share();
-  drive_blocks(scene.blocks, scene.model, scene.layout, state, work.clock, state.rate);
-  work.rate_free = state.rate;
+  for (auto* rate : {&state.rate, &work.rate_free})
+    drive_blocks(scene.blocks, scene.model, scene.layout, state, work.clock, *rate);
 }
 
 }  // namespace talus

@@ -117,7 +117,6 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   work.clock = {dt, 0.5 * (state.dt_before + dt), scene.model.contact.alpha, state.history_time,
                 settings.histories_run};
   work.work = {};
-  work.rate_before = state.rate;
   const Scheme scheme{scene.blocks, settings, work.clock, work.elastic};
   Profile& profile = work.profile;
   const InPart part(profile, Profile::kBlocks);

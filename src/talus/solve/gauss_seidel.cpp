@@ -115,15 +115,24 @@ bool GaussSeidel::layout_holds(const RowSet& set, const Workers& workers) {
   return same;
 }
 
-// Theory 5.5.
-void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const int> tile,
-                          const Workers& workers) {
-  TALUS_ASSERT(tile.empty() || tile.size() == mobility.size());
-  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
-  // couples: the two ends of a face, else neighbours in the list with the same two blocks
-  const auto n = static_cast<int>(seen_.size());
+// A layout in the making. Groups are the tiles, then the couples between them.
+struct GaussSeidel::Plan {
   std::vector<Rows> couples;
-  const auto at = [this](int i) -> const Point& { return seen_[static_cast<size_t>(i)]; };
+  size_t tiles = 0;
+  std::vector<size_t> group_begin;  // [groups + 1] in `in_group`
+  std::vector<size_t> in_group;     // couples group by group, each in the order of the list
+  std::vector<int> colour;          // of each couple
+  struct Counts {
+    std::array<size_t, kMostColours + 1> contacts{}, ties{};
+  };
+  std::vector<Counts> count;    // couples of each colour [groups]
+  std::vector<Counts> free_at;  // where their next one goes, in lanes [groups]
+};
+
+// The two ends of a face, else neighbours in the list with the same two blocks.
+std::vector<GaussSeidel::Rows> GaussSeidel::couples() const {
+  std::vector<Rows> couples;
+  const auto n = static_cast<int>(seen_.size());
   const auto same_blocks = [&](int i, int j) {
     const Point &p = at(i), &q = at(j);
     return p.tie() == q.tie() && p.block_a == q.block_a && p.block_b == q.block_b;
@@ -139,70 +148,75 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const
       couples.push_back({{i, -1}});
     }
   }
+  return couples;
+}
 
-  // one end of a face may have strength left when the other has none: records of ties hold both kinds
-  const auto has_tie = [&](const Rows& c) {
-    return at(c.row[0]).tie() || (c.row[1] >= 0 && at(c.row[1]).tie());
+// One end of a face may have strength left when the other has none: records of ties hold both kinds.
+bool GaussSeidel::has_tie(const Rows& c) const {
+  return at(c.row[0]).tie() || (c.row[1] >= 0 && at(c.row[1]).tie());
+}
+
+void GaussSeidel::part(const std::vector<Mobility>& mobility, std::span<const int> tile, Plan& plan) const {
+  if (!tile.empty()) plan.tiles = 1 + static_cast<size_t>(*std::max_element(tile.begin(), tile.end()));
+  const auto tile_of = [&](int block) {
+    return block >= 0 && !tile.empty() && mobility[static_cast<size_t>(block)].moves()
+               ? tile[static_cast<size_t>(block)]
+               : -1;
   };
-
-  // couples of each tile together, then those between tiles, each in the order of the list
   const auto group_of = [&](const Rows& c) {
-    const Point& p = at(c.row[0]);
-    const int a = moves(p.block_a) && !tile.empty() ? tile[static_cast<size_t>(p.block_a)] : -1,
-              b = moves(p.block_b) && !tile.empty() ? tile[static_cast<size_t>(p.block_b)] : a;
-    return a < 0 ? b : a == b ? a : -1;
+    const int a = tile_of(at(c.row[0]).block_a), b = tile_of(at(c.row[0]).block_b);
+    const int only = a < 0 ? b : b < 0 || a == b ? a : -1;
+    return only < 0 ? plan.tiles : static_cast<size_t>(only);
   };
-  const size_t tiles =
-      tile.empty() ? 0 : 1 + static_cast<size_t>(*std::max_element(tile.begin(), tile.end()));
-  std::vector<size_t> group_begin(tiles + 2), in_group(couples.size());
-  {
-    std::vector<size_t> group(couples.size());
-    for (size_t c = 0; c < couples.size(); ++c) {
-      const int g = group_of(couples[c]);
-      ++group_begin[1 + (group[c] = g < 0 ? tiles : static_cast<size_t>(g))];
-    }
-    for (size_t g = 0; g <= tiles; ++g) group_begin[g + 1] += group_begin[g];
-    std::vector<size_t> place(group_begin.begin(), group_begin.end() - 1);
-    for (size_t c = 0; c < couples.size(); ++c) in_group[place[group[c]]++] = c;
-  }
+  std::vector<size_t> group(plan.couples.size());
+  plan.group_begin.assign(plan.tiles + 2, 0);
+  for (size_t c = 0; c < group.size(); ++c) ++plan.group_begin[1 + (group[c] = group_of(plan.couples[c]))];
+  for (size_t g = 0; g <= plan.tiles; ++g) plan.group_begin[g + 1] += plan.group_begin[g];
+  std::vector<size_t> place(plan.group_begin.begin(), plan.group_begin.end() - 1);
+  plan.in_group.resize(group.size());
+  for (size_t c = 0; c < group.size(); ++c) plan.in_group[place[group[c]]++] = c;
+}
 
-  // the lowest colour that neither block has in the tile
+// The lowest colour that neither block has in the group.
+void GaussSeidel::colour(const std::vector<Mobility>& mobility, const Workers& workers, Plan& plan) const {
+  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   std::vector<uint64_t> used(mobility.size(), 0);
-  std::vector<int> colour_of(couples.size());
-  struct Counts {
-    std::array<size_t, kMostColours + 1> contacts{}, ties{};
-  };
-  std::vector<Counts> counts(tiles + 1);
+  plan.colour.resize(plan.couples.size());
+  plan.count.resize(plan.tiles + 1);
   const auto colour_group = [&](size_t g) {
-    for (size_t i = group_begin[g]; i < group_begin[g + 1]; ++i) {
-      const size_t c = in_group[i];
-      const Point& p = at(couples[c].row[0]);
+    for (size_t i = plan.group_begin[g]; i < plan.group_begin[g + 1]; ++i) {
+      const size_t c = plan.in_group[i];
+      const Point& p = at(plan.couples[c].row[0]);
       uint64_t taken = 0;
       if (moves(p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
       if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
       const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
-      colour_of[c] = colour;
-      ++(has_tie(couples[c]) ? counts[g].ties : counts[g].contacts)[static_cast<size_t>(colour)];
+      plan.colour[c] = colour;
+      Plan::Counts& count = plan.count[g];
+      ++(has_tie(plan.couples[c]) ? count.ties : count.contacts)[static_cast<size_t>(colour)];
       if (colour == kMostColours) continue;
       if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
       if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
     }
   };
-  workers.for_chunks(tiles, 1, [&](size_t g, size_t) { colour_group(g); });
-  if (tiles > 0) used.assign(used.size(), 0);
-  colour_group(tiles);
+  // tiles share no moving block
+  workers.for_chunks(plan.tiles, 1, [&](size_t g, size_t) { colour_group(g); });
+  if (plan.tiles > 0) used.assign(used.size(), 0);
+  colour_group(plan.tiles);
+}
 
-  // places: by tile and colour, in the order of the list; those without a colour one to a record
+// By group and colour, in the order of the list; couples without a colour one to a record.
+void GaussSeidel::place_rows(const Workers& workers, Plan& plan) {
   colour_.clear(), tile_colours_.clear();
   size_t contact_at = 0, tie_at = 0;
-  std::vector<Counts> free_at(tiles + 1);
-  for (size_t g = 0; g <= tiles; ++g) {
+  plan.free_at.resize(plan.tiles + 1);
+  for (size_t g = 0; g <= plan.tiles; ++g) {
     tile_colours_.push_back(colour_.size());
     for (size_t k = 0; k <= kMostColours; ++k) {
       const bool in_order = k == kMostColours;
       const auto records = [&](size_t count) { return in_order ? count : (count + kLanes - 1) / kLanes; };
-      free_at[g].contacts[k] = contact_at * kLanes, free_at[g].ties[k] = tie_at * kLanes;
-      const size_t contacts = counts[g].contacts[k], ties = counts[g].ties[k];
+      plan.free_at[g].contacts[k] = contact_at * kLanes, plan.free_at[g].ties[k] = tie_at * kLanes;
+      const size_t contacts = plan.count[g].contacts[k], ties = plan.count[g].ties[k];
       if (contacts + ties == 0) continue;
       Colour colour{contact_at, contact_at + records(contacts), tie_at, tie_at + records(ties), in_order};
       contact_at = colour.contact_end, tie_at = colour.tie_end;
@@ -211,22 +225,23 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const
   }
   contact_rows_.assign(contact_at * kLanes, {{-1, -1}});
   tie_rows_.assign(tie_at * kLanes, {{-1, -1}});
-  workers.for_chunks(tiles + 1, 1, [&](size_t g, size_t) {
-    for (size_t i = group_begin[g]; i < group_begin[g + 1]; ++i) {
-      const size_t c = in_group[i];
-      const auto k = static_cast<size_t>(colour_of[c]);
-      const bool tie = has_tie(couples[c]);
-      size_t& place = (tie ? free_at[g].ties : free_at[g].contacts)[k];
-      (tie ? tie_rows_ : contact_rows_)[place] = couples[c];
+  workers.for_chunks(plan.tiles + 1, 1, [&](size_t g, size_t) {
+    for (size_t i = plan.group_begin[g]; i < plan.group_begin[g + 1]; ++i) {
+      const size_t c = plan.in_group[i];
+      const auto k = static_cast<size_t>(plan.colour[c]);
+      const bool tie = has_tie(plan.couples[c]);
+      size_t& place = (tie ? plan.free_at[g].ties : plan.free_at[g].contacts)[k];
+      (tie ? tie_rows_ : contact_rows_)[place] = plan.couples[c];
       place += k == kMostColours ? kLanes : 1;
     }
   });
   resize_sparingly(contacts_, contact_at), resize_sparingly(contact_give_, contact_at);
   resize_sparingly(ties_, tie_at), resize_sparingly(tie_give_, tie_at);
+}
 
-  // blocks that do not move are written to lines that nobody reads, one for each record that has any
-  ground_ = static_cast<int>(mobility.size());
-  order_lines(tile, tiles);
+// Blocks that do not move are written to lines that nobody reads, one for each record that has any.
+void GaussSeidel::place_blocks(const std::vector<Mobility>& mobility, const Workers& workers) {
+  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   const auto line_of = [&](int block) { return block < 0 ? ground_ : line_[static_cast<size_t>(block)]; };
   int line = ground_ + 1;
   const auto set_blocks = [&](auto& records, const std::vector<Rows>& rows) {
@@ -261,6 +276,29 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const
   set_blocks(ties_, tie_rows_);
   resize_sparingly(lines_, static_cast<size_t>(line));
   lines_[static_cast<size_t>(ground_)] = {};
+}
+
+// Theory 5.5.
+void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const int> tile,
+                          const Workers& workers) {
+  TALUS_ASSERT(tile.empty() || tile.size() == mobility.size());
+  Plan plan;
+  plan.couples = couples();
+  part(mobility, tile, plan);
+  colour(mobility, workers, plan);
+  place_rows(workers, plan);
+  ground_ = static_cast<int>(mobility.size());
+  order_lines(tile, plan.tiles);
+  place_blocks(mobility, workers);
+}
+
+// Of the group that needs the most.
+int GaussSeidel::colours() const {
+  size_t most = 0;
+  for (size_t g = 0; g < tile_colours_.size(); ++g)
+    most = std::max(
+        most, (g + 1 < tile_colours_.size() ? tile_colours_[g + 1] : colour_.size()) - tile_colours_[g]);
+  return static_cast<int>(most);
 }
 
 // Blocks of a tile have their lines side by side: they are fetched as one piece.
@@ -316,10 +354,6 @@ size_t grain(size_t records, int threads) {
   return std::max<size_t>(
       48, (records + 4 * static_cast<size_t>(threads) - 1) / (4 * static_cast<size_t>(threads)));
 }
-
-}  // namespace
-
-namespace {
 
 // Largest of all: the order does not matter.
 struct Largest {
@@ -531,10 +565,7 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   Profile& profile = problem.profile;
   const InPart part(profile, Profile::kLayout);
   if (!layout_holds(set, workers)) lay_out(mobility, problem.tile, workers), ++profile.layouts;
-  for (size_t g = 0; g < tile_colours_.size(); ++g) {
-    const size_t end = g + 1 < tile_colours_.size() ? tile_colours_[g + 1] : colour_.size();
-    report.colours = std::max(report.colours, static_cast<int>(end - tile_colours_[g]));
-  }
+  report.colours = colours();
   profile.go_on_with(Profile::kRecords);
   write_lines(mobility, problem.rate_free, workers);
   write_records(mobility, set, workers);

@@ -40,7 +40,16 @@ class GaussSeidel : public Solver {
 
   bool layout_holds(const RowSet& set, const Workers& workers);
   void lay_out(const std::vector<Mobility>& mobility, std::span<const int> tile, const Workers& workers);
+  struct Plan;
+  const Point& at(int row) const { return seen_[static_cast<size_t>(row)]; }
+  bool has_tie(const Rows& couple) const;
+  std::vector<Rows> couples() const;
+  void part(const std::vector<Mobility>& mobility, std::span<const int> tile, Plan& plan) const;
+  void colour(const std::vector<Mobility>& mobility, const Workers& workers, Plan& plan) const;
+  void place_rows(const Workers& workers, Plan& plan);
+  void place_blocks(const std::vector<Mobility>& mobility, const Workers& workers);
   void order_lines(std::span<const int> tile, size_t tiles);
+  int colours() const;
   /// contact(begin, end, sum) and tie(begin, end, sum) over all records in the order of colours: tiles side by
   /// side, then the couples between them, each colour side by side.
   template <class T, class F, class G>

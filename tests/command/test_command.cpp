@@ -272,6 +272,14 @@ TEST_CASE("command: one step is dumped and replayed by either solver") {
                            out));
   CHECK(still.code == 4);
   has(still.text, "its time step is not positive");
+  for (const char* tile : {"0", "-1", "2000000000"}) {  // of one block only, and none at all
+    const Outcome parted =
+        shell(f, fmt::format("sed '0,/\"mobility\"/s//\"tile\": {1}, &/' {0}/step_20.json > {0}/parted.json; "
+                             "$talus replay {0}/parted.json",
+                             out, tile));
+    CHECK(parted.code == 4);
+    has(parted.text, "the tiles of its blocks are not one of each, from 0 up");
+  }
 }
 
 TEST_CASE("command: a failed step is named, written and can be replayed") {

@@ -37,4 +37,16 @@ int run_on_one_thread(int argc, char** argv, MakeEngine make_engine) {
   return 0;
 }
 
+/// The main of an engine that is made of a scene and a number of sweeps, kSweeps where the command line names
+/// none. @return as run_program()
+template <class Engine, int kSweeps>
+int run_rival(const char* name, int argc, char** argv) {
+  const auto run = [](int count, char** values) {
+    return run_on_one_thread(count, values, [](const BenchScene& scene, const BenchOptions& options) {
+      return Engine(scene, options.sweeps > 0 ? options.sweeps : kSweeps);
+    });
+  };
+  return run_program(name, run, argc, argv);
+}
+
 }  // namespace talus::bench

@@ -188,7 +188,12 @@ def median_of(rows, column):
 
 def level_of(rows):
     """Of a program, the worst mean velocities along the phase."""
-    worst = [max((number(row, column) or 0 for row in rows), default=0) for column in ("un_worst", "slip_worst")]
+    worst = []
+    for column in ("un_worst", "slip_worst"):
+        values = [number(row, column) for row in rows]
+        if not values or None in values:
+            return "-"
+        worst.append(max(values))
     return f"{worst[0]:.2g}, {worst[1]:.2g}" + ("" if max(worst) <= LEVEL else " (missed)")
 
 

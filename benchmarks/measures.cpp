@@ -86,7 +86,8 @@ LawError measure_law(const BenchScene& scene, const std::vector<BenchContact>& c
                      Vec2 gravity) {
   constexpr double kSticking = 0.999;  // friction above this share of its bound may slip
   constexpr double kLoaded = 1e-3;     // of the mean impulse
-  constexpr double kJudged = 1e-3;     // [s]
+  constexpr double kJudged =
+      1e-3;  // time over which gravity makes the velocity that others are measured by [s]
   LawError error;
   const double speed = kGravity * kJudged, mu = scene.friction;
   double mean_impulse = 0;

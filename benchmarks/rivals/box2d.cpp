@@ -107,15 +107,10 @@ class Box2dEngine : public BenchEngine {
   std::vector<b2Body*> bodies_;  // owned by world_
 };
 
-int run(int argc, char** argv) {
-  return run_on_one_thread(argc, argv, [](const BenchScene& scene, const BenchOptions& options) {
-    return Box2dEngine(scene, options.sweeps > 0 ? options.sweeps : 8);
-  });
-}
-
 }  // namespace
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  return talus::bench::run_program("rival_box2d", talus::bench::run, argc, argv);
+  using namespace talus::bench;
+  return run_rival<Box2dEngine, 8>("rival_box2d", argc, argv);
 }

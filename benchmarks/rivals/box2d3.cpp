@@ -125,15 +125,10 @@ class Box2d3Engine : public BenchEngine {
   std::vector<int32_t> index_;
 };
 
-int run(int argc, char** argv) {
-  return run_on_one_thread(argc, argv, [](const BenchScene& scene, const BenchOptions& options) {
-    return Box2d3Engine(scene, options.sweeps > 0 ? options.sweeps : 4);
-  });
-}
-
 }  // namespace
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-  return talus::bench::run_program("rival_box2d3", talus::bench::run, argc, argv);
+  using namespace talus::bench;
+  return run_rival<Box2d3Engine, 4>("rival_box2d3", argc, argv);
 }

@@ -66,6 +66,10 @@ struct BlockSet {
   int vertex_count(int i) const {
     return vertex_begin[static_cast<size_t>(i) + 1] - vertex_begin[static_cast<size_t>(i)];
   }
+  /// The corner at which an edge ends.
+  BlockCorner end_of(BlockEdge e) const {
+    return {e.block, e.edge + 1 == vertex_count(e.block) ? 0 : e.edge + 1};
+  }
   /// Reference arm of a corner.
   Vec2 corner(BlockCorner c) const {
     TALUS_ASSERT(c.corner >= 0 && c.corner < vertex_count(c.block));

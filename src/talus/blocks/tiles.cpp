@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <utility>
 
+#include "talus/geometry/polygon.h"
+
 namespace talus {
 
 namespace {
 
-// Most places of a tile: the motion of so many blocks takes half of the nearest memory of a processor, and sweeps
-// tile by tile need fewer of them the smaller tiles are (docs/performance.md). Fewest of all at which there are
+// Most places of a tile: the motion of so many blocks takes half of the nearest memory of a processor, and the
+// smaller tiles are, the fewer sweeps are needed (docs/decisions/0012-tiles.md). Fewest of all at which there are
 // tiles.
 constexpr size_t kTile = 128, kFewest = 4 * kTile;
 
@@ -36,16 +38,10 @@ uint64_t along_curve(uint32_t x, uint32_t y) {
 std::vector<int> tiles_of(const std::vector<Vec2>& places) {
   const size_t n = places.size();
   if (n < kFewest) return {};
-  Vec2 low = places.front(), high = low;
-  for (const Vec2 p : places) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+  const auto [low, high] = bounding_box(places);
   const double side = std::max(high.x - low.x, high.y - low.y);
   const double cells = static_cast<double>((1U << kBits) - 1);
-  const auto cell = [&](double from) {
-    return static_cast<uint32_t>(side > 0 ? std::clamp(from / side, 0.0, 1.0) * cells : 0);
-  };
+  const auto cell = [&](double from) { return static_cast<uint32_t>(side > 0 ? from / side * cells : 0); };
   std::vector<std::pair<uint64_t, int>> order(n);
   for (size_t i = 0; i < n; ++i)
     order[i] = {along_curve(cell(places[i].x - low.x), cell(places[i].y - low.y)), static_cast<int>(i)};

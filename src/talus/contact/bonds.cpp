@@ -191,8 +191,8 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
 
 FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face) {
   const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
-  const int next = face.edge_b + 1 == blocks.vertex_count(face.block_b) ? 0 : face.edge_b + 1;
-  const Vec2 edge = blocks.corner({face.block_b, next}) - blocks.corner({face.block_b, face.edge_b});
+  const Vec2 edge =
+      blocks.corner(blocks.end_of({face.block_b, face.edge_b})) - blocks.corner({face.block_b, face.edge_b});
   const Vec2 now = edge + state.strain_part[b] * edge;
   FaceOffset out;
   out.normal = turn_right(now) / norm(now);

@@ -139,8 +139,8 @@ class ContactRows {
     const auto b = static_cast<size_t>(c.key.block_b);
     const JointLaw& law = law_of(c);
     p.over = corner_over_edge(blocks_, state_, c.key.corner(), c.key.on());
-    const int next = c.key.edge + 1 == blocks_.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
-    p.b0 = blocks_.corner({c.key.block_b, c.key.edge}), p.edge = blocks_.corner({c.key.block_b, next}) - p.b0;
+    p.b0 = blocks_.corner({c.key.block_b, c.key.edge});
+    p.edge = blocks_.corner(blocks_.end_of(c.key.on())) - p.b0;
     p.slip = -p.over.along * norm(p.edge);
     p.closure = {};
     const bool carries = pair.shares_face || (pair.from_start && c.length > 0);

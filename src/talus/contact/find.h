@@ -36,9 +36,8 @@ struct CornerEdge {
 inline CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner,
                                    BlockEdge on) {  // theory 3.2
   const auto ia = static_cast<size_t>(corner.block), ib = static_cast<size_t>(on.block);
-  const int next = on.edge + 1 == blocks.vertex_count(on.block) ? 0 : on.edge + 1;
   const Vec2 Xa = blocks.corner(corner), Xb = blocks.corner({on.block, on.edge}),
-             E = blocks.corner({on.block, next}) - Xb;
+             E = blocks.corner(blocks.end_of(on)) - Xb;
   // the difference of reference places first, then the difference of displacements: both small
   const Vec2 reference = (blocks.centroid[ia] - blocks.centroid[ib]) + (Xa - Xb);
   const Vec2 r = reference + (displacement_at(state, ia, Xa) - displacement_at(state, ib, Xb));

@@ -171,8 +171,8 @@ Vec2 place_of(const BlockSet& blocks, const State& s, int from, const ContactKey
 double off_now(const BlockSet& blocks, const State& s, const Contact& c) {
   const ContactKey& k = c.key;
   const CornerEdge over = corner_over_edge(blocks, s, k.corner(), k.on());
-  const int next = k.edge + 1 == blocks.vertex_count(k.block_b) ? 0 : k.edge + 1;
-  return -over.along * norm(blocks.corner({k.block_b, next}) - blocks.corner({k.block_b, k.edge})) - c.anchor;
+  const Vec2 edge = blocks.corner(blocks.end_of(k.on())) - blocks.corner({k.block_b, k.edge});
+  return -over.along * norm(edge) - c.anchor;
 }
 
 // Which known contact a found point goes on from: the one with its key, else the one at its end of the same

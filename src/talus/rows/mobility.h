@@ -19,6 +19,11 @@ struct Mobility {
   bool moves() const { return mass > 0; }
 };
 
+/// Whether impulses move block `block`; the ground (-1) they do not.
+inline bool moves(const std::vector<Mobility>& mobility, int block) {
+  return block >= 0 && mobility[static_cast<size_t>(block)].moves();
+}
+
 /// Turned by the rotation of cosine and sine `r`, and back.
 inline Vec2 turned(Vec2 r, Vec2 v) { return {r.x * v.x - r.y * v.y, r.y * v.x + r.x * v.y}; }
 inline Vec2 turned_back(Vec2 r, Vec2 v) { return {r.x * v.x + r.y * v.y, r.x * v.y - r.y * v.x}; }

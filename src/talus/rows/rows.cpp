@@ -3,8 +3,9 @@
 namespace talus {
 
 size_t hard_ties(const RowSet& rows, const Workers& workers) {
+  constexpr size_t kChunk = 1024;
   const RowRange faces = rows.range(Family::kFace);
-  return workers.sum_chunks<size_t>(faces.size(), 1024, [&](size_t begin, size_t end, size_t& count) {
+  return workers.sum_chunks<size_t>(faces.size(), kChunk, [&](size_t begin, size_t end, size_t& count) {
     for (size_t r = faces.begin + begin; r < faces.begin + end; ++r)
       count += rows.points[r].row[0].compliance == 0;
   });

@@ -73,7 +73,6 @@ Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::Ve
 // Theory 5.1.
 ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet& set,
                              const std::vector<int>& points, const std::vector<BlockRate>& rate) {
-  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   ContactProblem problem;
   problem.point = points;
   std::unordered_map<int, int> local_of;  // looked up only, never walked: its order does not matter
@@ -83,8 +82,8 @@ ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet
     const PointRows& p = set.points[static_cast<size_t>(points[i])];
     problem.rows.push_back(p);
     const int local = static_cast<int>(i);
-    if (moves(p.block_a)) sides.push_back({p.block_a, {local, 1, p.arm_a}});
-    if (moves(p.block_b)) sides.push_back({p.block_b, {local, -1, p.arm_b}});
+    if (moves(mobility, p.block_a)) sides.push_back({p.block_a, {local, 1, p.arm_a}});
+    if (moves(mobility, p.block_b)) sides.push_back({p.block_b, {local, -1, p.arm_b}});
   }
   std::stable_sort(sides.begin(), sides.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

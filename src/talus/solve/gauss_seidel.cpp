@@ -122,11 +122,11 @@ struct GaussSeidel::Plan {
   std::vector<size_t> group_begin;  // [groups + 1] in `in_group`
   std::vector<size_t> in_group;     // couples group by group, each in the order of the list
   std::vector<int> colour;          // of each couple
-  struct Counts {
+  struct PerColour {
     std::array<size_t, kMostColours + 1> contacts{}, ties{};
   };
-  std::vector<Counts> count;    // couples of each colour [groups]
-  std::vector<Counts> free_at;  // where their next one goes, in lanes [groups]
+  std::vector<PerColour> count;    // couples of each colour [groups]
+  std::vector<PerColour> free_at;  // where their next one goes, in lanes [groups]
 };
 
 // The two ends of a face, else neighbours in the list with the same two blocks.
@@ -156,12 +156,11 @@ bool GaussSeidel::has_tie(const Rows& c) const {
   return at(c.row[0]).tie() || (c.row[1] >= 0 && at(c.row[1]).tie());
 }
 
-void GaussSeidel::part(const std::vector<Mobility>& mobility, std::span<const int> tile, Plan& plan) const {
+void GaussSeidel::part_couples(const std::vector<Mobility>& mobility, std::span<const int> tile,
+                               Plan& plan) const {
   if (!tile.empty()) plan.tiles = 1 + static_cast<size_t>(*std::max_element(tile.begin(), tile.end()));
   const auto tile_of = [&](int block) {
-    return block >= 0 && !tile.empty() && mobility[static_cast<size_t>(block)].moves()
-               ? tile[static_cast<size_t>(block)]
-               : -1;
+    return !tile.empty() && moves(mobility, block) ? tile[static_cast<size_t>(block)] : -1;
   };
   const auto group_of = [&](const Rows& c) {
     const int a = tile_of(at(c.row[0]).block_a), b = tile_of(at(c.row[0]).block_b);
@@ -178,8 +177,8 @@ void GaussSeidel::part(const std::vector<Mobility>& mobility, std::span<const in
 }
 
 // The lowest colour that neither block has in the group.
-void GaussSeidel::colour(const std::vector<Mobility>& mobility, const Workers& workers, Plan& plan) const {
-  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
+void GaussSeidel::give_colours(const std::vector<Mobility>& mobility, const Workers& workers,
+                               Plan& plan) const {
   std::vector<uint64_t> used(mobility.size(), 0);
   plan.colour.resize(plan.couples.size());
   plan.count.resize(plan.tiles + 1);
@@ -188,15 +187,15 @@ void GaussSeidel::colour(const std::vector<Mobility>& mobility, const Workers& w
       const size_t c = plan.in_group[i];
       const Point& p = at(plan.couples[c].row[0]);
       uint64_t taken = 0;
-      if (moves(p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
-      if (moves(p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
+      if (moves(mobility, p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
+      if (moves(mobility, p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
       const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
       plan.colour[c] = colour;
-      Plan::Counts& count = plan.count[g];
+      Plan::PerColour& count = plan.count[g];
       ++(has_tie(plan.couples[c]) ? count.ties : count.contacts)[static_cast<size_t>(colour)];
       if (colour == kMostColours) continue;
-      if (moves(p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
-      if (moves(p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
+      if (moves(mobility, p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
+      if (moves(mobility, p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
     }
   };
   // tiles share no moving block
@@ -241,7 +240,6 @@ void GaussSeidel::place_rows(const Workers& workers, Plan& plan) {
 
 // Blocks that do not move are written to lines that nobody reads, one for each record that has any.
 void GaussSeidel::place_blocks(const std::vector<Mobility>& mobility, const Workers& workers) {
-  const auto moves = [&](int block) { return block >= 0 && mobility[static_cast<size_t>(block)].moves(); };
   const auto line_of = [&](int block) { return block < 0 ? ground_ : line_[static_cast<size_t>(block)]; };
   int line = ground_ + 1;
   const auto set_blocks = [&](auto& records, const std::vector<Rows>& rows) {
@@ -254,7 +252,8 @@ void GaussSeidel::place_blocks(const std::vector<Mobility>& mobility, const Work
           const int row = rows[r * kLanes + l].row[0];
           const int a = row < 0 ? -1 : at(row).block_a, b = row < 0 ? -1 : at(row).block_b;
           record.a[l] = line_of(a), record.b[l] = line_of(b);
-          record.into_a[l] = moves(a) ? line_of(a) : -1, record.into_b[l] = moves(b) ? line_of(b) : -1;
+          record.into_a[l] = moves(mobility, a) ? line_of(a) : -1,
+          record.into_b[l] = moves(mobility, b) ? line_of(b) : -1;
         }
         still[begin / kChunk] += has_still(record);
       }
@@ -284,8 +283,8 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const
   TALUS_ASSERT(tile.empty() || tile.size() == mobility.size());
   Plan plan;
   plan.couples = couples();
-  part(mobility, tile, plan);
-  colour(mobility, workers, plan);
+  part_couples(mobility, tile, plan);
+  give_colours(mobility, workers, plan);
   place_rows(workers, plan);
   ground_ = static_cast<int>(mobility.size());
   order_lines(tile, plan.tiles);
@@ -293,7 +292,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const
 }
 
 // Of the group that needs the most.
-int GaussSeidel::colours() const {
+int GaussSeidel::most_colours() const {
   size_t most = 0;
   for (size_t g = 0; g < tile_colours_.size(); ++g)
     most = std::max(
@@ -366,14 +365,14 @@ struct Largest {
 
 }  // namespace
 
-template <class T, class F, class G>
-T GaussSeidel::in_colours(const Workers& workers, F contact, G tie) const {
+template <class F, class G>
+double GaussSeidel::in_colours(const Workers& workers, F contact, G tie) const {
   const size_t tiles = tile_colours_.size() - 1;
-  T all = workers.sum_chunks<T>(tiles, 1, [&](size_t g, size_t, T& sum) {
+  Largest all = workers.sum_chunks<Largest>(tiles, 1, [&](size_t g, size_t, Largest& most) {
     for (size_t k = tile_colours_[g]; k < tile_colours_[g + 1]; ++k) {
       const Colour& c = colour_[k];
-      contact(c.contact_begin, c.contact_end, sum);
-      tie(c.tie_begin, c.tie_end, sum);
+      contact(c.contact_begin, c.contact_end, most.value);
+      tie(c.tie_begin, c.tie_end, most.value);
     }
   });
   for (size_t k = tile_colours_[tiles]; k < colour_.size(); ++k) {
@@ -381,15 +380,16 @@ T GaussSeidel::in_colours(const Workers& workers, F contact, G tie) const {
     const auto of = [&](size_t n) { return c.in_order ? n : grain(n, workers.threads()); };
     const size_t contacts = c.contact_end - c.contact_begin, ties = c.tie_end - c.tie_begin;
     if (contacts > 0)
-      all += workers.sum_chunks<T>(contacts, of(contacts), [&](size_t begin, size_t end, T& sum) {
-        contact(c.contact_begin + begin, c.contact_begin + end, sum);
-      });
+      all +=
+          workers.sum_chunks<Largest>(contacts, of(contacts), [&](size_t begin, size_t end, Largest& most) {
+            contact(c.contact_begin + begin, c.contact_begin + end, most.value);
+          });
     if (ties > 0)
-      all += workers.sum_chunks<T>(ties, of(ties), [&](size_t begin, size_t end, T& sum) {
-        tie(c.tie_begin + begin, c.tie_begin + end, sum);
+      all += workers.sum_chunks<Largest>(ties, of(ties), [&](size_t begin, size_t end, Largest& most) {
+        tie(c.tie_begin + begin, c.tie_begin + end, most.value);
       });
   }
-  return all;
+  return all.value;
 }
 
 void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const RowSet& set,
@@ -417,7 +417,7 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
   };
   const auto write_all = [&](auto& records, std::vector<wide::Give>& give, const std::vector<Rows>& rows,
                              auto prepare) {
-    return [&, prepare](size_t begin, size_t end, Largest&) {
+    return [&, prepare](size_t begin, size_t end, double&) {
       // a few at a time: what is written is still near when it is prepared
       for (size_t next, r = begin; r < end; r = next) {
         next = std::min(r + kNear, end);
@@ -426,8 +426,8 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
       }
     };
   };
-  in_colours<Largest>(workers, write_all(contacts_, contact_give_, contact_rows_, kernels_->prepare_contacts),
-                      write_all(ties_, tie_give_, tie_rows_, kernels_->prepare_ties));
+  in_colours(workers, write_all(contacts_, contact_give_, contact_rows_, kernels_->prepare_contacts),
+             write_all(ties_, tie_give_, tie_rows_, kernels_->prepare_ties));
 }
 
 void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
@@ -450,13 +450,12 @@ void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
 // Largest change of an impulse times the influence of its point on itself [m/s] (theory 5.5).
 double GaussSeidel::sweep(const Workers& workers) {
   const auto sweep_records = [&](auto& records, auto kernel) {
-    return [&, kernel](size_t begin, size_t end, Largest& l) {
-      if (begin < end) kernel(lines_.data(), records.data() + begin, end - begin, l.value);
+    return [&, kernel](size_t begin, size_t end, double& largest) {
+      if (begin < end) kernel(lines_.data(), records.data() + begin, end - begin, largest);
     };
   };
-  return in_colours<Largest>(workers, sweep_records(contacts_, kernels_->sweep_contacts),
-                             sweep_records(ties_, kernels_->sweep_ties))
-      .value;
+  return in_colours(workers, sweep_records(contacts_, kernels_->sweep_contacts),
+                    sweep_records(ties_, kernels_->sweep_ties));
 }
 
 ContactError GaussSeidel::judge(const Workers& workers) const {
@@ -565,7 +564,7 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   Profile& profile = problem.profile;
   const InPart part(profile, Profile::kLayout);
   if (!layout_holds(set, workers)) lay_out(mobility, problem.tile, workers), ++profile.layouts;
-  report.colours = colours();
+  report.colours = most_colours();
   profile.go_on_with(Profile::kRecords);
   write_lines(mobility, problem.rate_free, workers);
   write_records(mobility, set, workers);

@@ -44,16 +44,16 @@ class GaussSeidel : public Solver {
   const Point& at(int row) const { return seen_[static_cast<size_t>(row)]; }
   bool has_tie(const Rows& couple) const;
   std::vector<Rows> couples() const;
-  void part(const std::vector<Mobility>& mobility, std::span<const int> tile, Plan& plan) const;
-  void colour(const std::vector<Mobility>& mobility, const Workers& workers, Plan& plan) const;
+  void part_couples(const std::vector<Mobility>& mobility, std::span<const int> tile, Plan& plan) const;
+  void give_colours(const std::vector<Mobility>& mobility, const Workers& workers, Plan& plan) const;
   void place_rows(const Workers& workers, Plan& plan);
   void place_blocks(const std::vector<Mobility>& mobility, const Workers& workers);
   void order_lines(std::span<const int> tile, size_t tiles);
-  int colours() const;
-  /// contact(begin, end, sum) and tie(begin, end, sum) over all records in the order of colours: tiles side by
-  /// side, then the couples between them, each colour side by side.
-  template <class T, class F, class G>
-  T in_colours(const Workers& workers, F contact, G tie) const;
+  int most_colours() const;
+  /// contact(begin, end, largest) and tie(begin, end, largest) over all records in the order of colours: tiles side
+  /// by side, then the couples between them, each colour side by side. Returns the largest of all.
+  template <class F, class G>
+  double in_colours(const Workers& workers, F contact, G tie) const;
   void write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
                    const Workers& workers);
   void read_lines(const StepProblem& problem, const Workers& workers) const;

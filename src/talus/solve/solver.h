@@ -23,7 +23,7 @@ struct StepProblem {
   RowSet& rows;                             // in: first guess; out: impulses
   std::vector<BlockRate>& rate;             // out: with these impulses
   Profile& profile;                         // where the time goes
-  std::span<const int> tile = {};           // BlockSet::tile
+  std::span<const int> tile = {};           // of each block (BlockSet::tile); empty: all in one
 };
 
 /// Contact errors at which to stop [m]: `wanted`, which is given up, once `enough` is reached, after as many

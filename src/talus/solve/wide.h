@@ -42,8 +42,9 @@ struct ContactLanes {
 struct TieLanes {
   Lanes nx, ny, ax, ay, bx, by, bias_n, bias_t, p_n, p_t, u_nn, u_nt, u_tt, i_nn, i_nt, i_tt;
   Lanes lower_n, upper_n;
-  Lanes mu, cohesion;      // p_t lies within -+ max(0, cohesion + mu p_n)
-  Lanes w_nt, r_nn, r_tt;  // influence of one row on the other; of influence plus compliance of each, 1 / w
+  Lanes mu, cohesion;  // p_t lies within -+ max(0, cohesion + mu p_n)
+  Lanes w_nt;          // influence of one row on the other
+  Lanes r_nn, r_tt;    // of each row 1 / (influence plus compliance)
 };
 
 template <class Point>

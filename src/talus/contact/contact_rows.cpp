@@ -56,14 +56,17 @@ double off_anchor(const Contact& c, double slip) {
   return anew ? c.stretch : slip - c.anchor;
 }
 
-// A contact point of a pair on its way to a row.
+// A contact point of a pair on its way to a row. look() says all of it: it is not cleared before.
 struct Point {
   CornerEdge over;
-  Vec2 b0, edge;              // of the edge, reference
-  double slip = 0;            // coordinate along the tangent
-  Vec2 closure;               // by the stress of the ground
-  double gap = 0;             // less the rise [m]
-  std::array<double, 2> u{};  // velocity half a step ago, normal and tangential
+  Vec2 corner;              // reference arm
+  Vec2 b0, edge;            // of the edge, reference
+  double slip;              // coordinate along the tangent
+  Vec2 closure;             // by the stress of the ground
+  double gap;               // less the rise [m]
+  std::array<double, 2> u;  // velocity half a step ago, normal and tangential
+
+  Vec2 foot() const { return b0 + std::clamp(over.along, 0.0, 1.0) * edge; }
 };
 
 // The part of an interface that is closed, or is going to be in this step: from one end on, as share of its
@@ -138,9 +141,15 @@ class ContactRows {
     const Contact& c = state_.contacts[i];
     const auto b = static_cast<size_t>(c.key.block_b);
     const JointLaw& law = law_of(c);
-    p.over = corner_over_edge(blocks_, state_, c.key.corner(), c.key.on());
-    p.b0 = blocks_.corner({c.key.block_b, c.key.edge});
+    p.corner = blocks_.corner(c.key.corner()), p.b0 = blocks_.corner({c.key.block_b, c.key.edge});
     p.edge = blocks_.corner(blocks_.end_of(c.key.on())) - p.b0;
+    p.over = corner_over_edge(place_of(blocks_, state_, static_cast<size_t>(c.key.block_a)),
+                              place_of(blocks_, state_, b), p.corner, p.b0, p.edge);
+    // in its place, and while it is at hand: a copy would wait for what was just written
+    PointRows& row = rows_.points[first_ + i];
+    row = kFreshRows;
+    row.normal.x = p.over.normal.x, row.normal.y = p.over.normal.y;
+    p.u = {};
     p.slip = -p.over.along * norm(p.edge);
     p.closure = {};
     const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
@@ -163,13 +172,10 @@ class ContactRows {
     place_[i] = {q.over.gap, c.memory == Contact::kNone ? q.slip - elastic : q.slip, size_of(pair),
                  closed_part(pair, q)};
 
-    // in its place: a copy would wait for what was just written
     PointRows& p = rows_.points[first_ + i];
-    p = kFreshRows;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a = acting_arm(blocks_, state_, a, blocks_.corner(c.key.corner()));
-    p.arm_b = acting_arm(blocks_, state_, b, q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
-    p.normal = q.over.normal;
+    p.arm_a = acting_arm(blocks_, state_, a, q.corner);
+    p.arm_b = acting_arm(blocks_, state_, b, q.foot());
     const JointStrength bears = law.worn(c.slip);
     p.friction = bears.friction;
     p.lower = 0, p.cohesion = 0;
@@ -288,10 +294,8 @@ class ContactRows {
   PointRows arms_of(const Point& q, const Contact& c) const {
     PointRows p;
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
-    p.arm_a = acting_arm(blocks_, state_, static_cast<size_t>(p.block_a),
-                         blocks_.corner({p.block_a, c.key.vertex}));
-    p.arm_b = acting_arm(blocks_, state_, static_cast<size_t>(p.block_b),
-                         q.b0 + std::clamp(q.over.along, 0.0, 1.0) * q.edge);
+    p.arm_a = acting_arm(blocks_, state_, static_cast<size_t>(p.block_a), q.corner);
+    p.arm_b = acting_arm(blocks_, state_, static_cast<size_t>(p.block_b), q.foot());
     p.normal = q.over.normal;
     return p;
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "talus/base/prefetch.h"
 #include "talus/solve/contact_error.h"
 
 namespace talus {
@@ -415,13 +416,26 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
       }
     }
   };
+  // rows lie in the order of the list, which is not that of the sweeps
+  const auto fetch = [&](const Rows* rows) {
+    for (int l = 0; l < kLanes; ++l)
+      for (const int row : rows[l].row) {
+        if (row < 0) continue;
+        prefetch_all(set.points[static_cast<size_t>(row)]);
+        prefetch(&set.impulse[static_cast<size_t>(row)]);
+      }
+  };
   const auto write_all = [&](auto& records, std::vector<wide::Give>& give, const std::vector<Rows>& rows,
                              auto prepare) {
     return [&, prepare](size_t begin, size_t end, double&) {
       // a few at a time: what is written is still near when it is prepared
       for (size_t next, r = begin; r < end; r = next) {
         next = std::min(r + kNear, end);
-        for (size_t i = r; i < next; ++i) write(records[i], give[i], &rows[i * kLanes]);
+        for (size_t i = r; i < next; ++i) {
+          if (i + 2 < records.size()) fetch(&rows[(i + 2) * kLanes]);
+          if (i + 1 < records.size()) prefetch_all(records[i + 1]), prefetch_all(give[i + 1]);
+          write(records[i], give[i], &rows[i * kLanes]);
+        }
         prepare(lines_.data(), give.data() + r, records.data() + r, next - r);
       }
     };

@@ -143,26 +143,11 @@ inline void solve_point(const TieLanes& p, Lanes q_n, Lanes q_t, Lanes& n, Lanes
   t = holds ? stick_t : one_t;
 }
 
-// Asks for what the records to come need: the processor by itself sees neither beyond the end of a page, which
-// holds three records, nor which blocks they join.
-template <class Point>
-inline void fetch_ahead(const BlockLine* lines, const Record<Point>* record, size_t left) {
-  constexpr size_t kAhead = 2, kLine = 64;
-  const char* there = reinterpret_cast<const char*>(record + kAhead);
-  if (left > kAhead)
-    for (size_t at = 0; at < sizeof(Record<Point>); at += kLine) __builtin_prefetch(there + at);
-  if (left <= 1) return;
-  for (int l = 0; l < kLanes; ++l)
-    for (const int32_t id : {record[1].a[l], record[1].b[l]})
-      __builtin_prefetch(lines[id].rate), __builtin_prefetch(lines[id].answer);
-}
-
 template <class Point>
 inline void sweep_records(BlockLine* lines, Record<Point>* records, size_t count, double& most) {
   Lanes largest{};
   for (size_t r = 0; r < count; ++r) {
     Record<Point>& record = records[r];
-    fetch_ahead(lines, records + r, count - r);
     Four a(lines, record.a), b(lines, record.b);
     for (int i = 0; i < 2; ++i) {
       Point& p = record.point[i];

@@ -522,7 +522,10 @@ Model read_model(const std::string& file, const std::string& text, const std::ve
   for (const std::string& item : overrides) model.text += "\n# --set " + item;
   model.hash = text_hash(model.text);
   const TomlSource source = parse_toml(text, overrides, findings);
-  if (findings.has_errors()) return model;  // after a syntax error every further message would mislead
+  if (findings.has_errors()) {  // after a syntax error every further message would mislead
+    model.shapes_readable = false;
+    return model;
+  }
   ModelReader(source, model, findings).read();
   if (!findings.has_errors()) check_names_used(source, model, findings);
   return model;

@@ -64,6 +64,13 @@ void check_message(const std::string& message, const std::vector<std::string>& p
 
 TEST_CASE("wrong input: the sound model is accepted") { CHECK(refusal(kSound) == ""); }
 
+TEST_CASE("wrong input: what cannot be read is not said to be missing") {
+  for (const std::string& text : {replaced("[model]", "[model"), std::string("talus = 1\nx = [")})
+    check_message(refusal(text), {"error: syntax:", "1 error; nothing was run"});
+  check_message(refusal(kSound, {"joint.fase.friction_angle=20"}),
+                {"the file has no [joint.fase]", "1 error; nothing was run"});
+}
+
 TEST_CASE("wrong input: each kind has its message") {
   struct Wrong {
     const char* kind;

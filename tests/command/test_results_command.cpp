@@ -159,6 +159,15 @@ TEST_CASE("command new: every beginning runs as it is" * doctest::test_suite("op
     CHECK(shell(f, fmt::format("$talus run {0}.toml -o {0} -q {1}", name, less)).code == 0);
   }
   const std::string slope = (f / "slope.toml").string();
+  // what its comment, README.md and docs/first_run.md ask the reader to change first
+  has(read_text_file(slope), "try 27 deg");
+  for (const char* angle : {"27 deg", "38 deg"}) {
+    CAPTURE(angle);
+    CHECK(
+        shell(f, fmt::format("$talus run {} -o tried -q --force --set 'joint.bedding.friction_angle=\"{}\"'",
+                             slope, angle))
+            .code == 0);
+  }
   const Outcome again = shell(f, fmt::format("$talus new {}", slope));
   CHECK(again.code == 4);
   has(again.text, "exists already");

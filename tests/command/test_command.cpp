@@ -280,6 +280,14 @@ TEST_CASE("command: one step is dumped and replayed by either solver") {
     CHECK(parted.code == 4);
     has(parted.text, "the tiles of its blocks are not one of each, from 0 up");
   }
+  for (const char* block : {"1e72", "3000000000", "0.5"}) {
+    const Outcome none =
+        shell(f, fmt::format("sed 's/\"a\": [0-9]*/\"a\": {1}/' {0}/step_20.json > {0}/none.json; "
+                             "$talus replay {0}/none.json",
+                             out, block));
+    CHECK(none.code == 4);
+    has(none.text, "stands where a whole number belongs");
+  }
 }
 
 TEST_CASE("command: a failed step is named, written and can be replayed") {

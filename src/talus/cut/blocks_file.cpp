@@ -9,6 +9,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
+#include "talus/base/json_number.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 
@@ -106,8 +107,8 @@ std::string content_hash(const std::vector<Vec2>& points, const std::vector<File
 }
 
 FileBlock file_block(const Json& in) {
-  return {in.at("id"), in.at("region"), in.at("opening"), in.at("points").get<std::vector<int>>(),
-          in.at("origins").get<std::vector<int>>()};
+  return {whole_number(in.at("id")), whole_number(in.at("region")), whole_number(in.at("opening")),
+          whole_numbers(in.at("points")), whole_numbers(in.at("origins"))};
 }
 
 // A block, its edges made known to the cut by their ends.
@@ -140,7 +141,7 @@ void read_json(const Json& in, Cut& cut) {
   for (const Json& p : in.at("points")) cut.point.push_back({p.at(0), p.at(1)});
   std::vector<FileBlock> blocks;
   for (const Json& b : in.at("blocks")) blocks.push_back(file_block(b));
-  const auto slivers = in.at("slivers").get<std::vector<int>>();
+  const auto slivers = whole_numbers(in.at("slivers"));
   if (slivers.size() != 4 || in.at("content") != content_hash(cut.point, blocks, slivers))
     throw std::runtime_error("its points or blocks have been changed");
   cut.slivers.needles = slivers[0], cut.slivers.merged = slivers[1], cut.slivers.deleted = slivers[2],

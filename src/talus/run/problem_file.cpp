@@ -8,6 +8,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
+#include "talus/base/json_number.h"
 #include "talus/base/text_file.h"
 
 namespace talus {
@@ -43,7 +44,7 @@ ordered_json point_json(const PointRows& p, const Impulse& guess) {
 PointRows read_point(const ordered_json& j) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   PointRows p;
-  p.block_a = j.at("a"), p.block_b = j.at("b");
+  p.block_a = whole_number(j.at("a")), p.block_b = whole_number(j.at("b"));
   p.arm_a = vec(j.at("arm_a")), p.arm_b = vec(j.at("arm_b")), p.normal = vec(j.at("normal"));
   for (size_t k = 0; k < 2; ++k) {
     const ordered_json& r = j.at("rows").at(k);
@@ -51,7 +52,7 @@ PointRows read_point(const ordered_json& j) {
   }
   p.lower = bound(j.at("lower"), -infinity), p.upper = bound(j.at("upper"), infinity);
   p.friction = j.at("friction"), p.cohesion = bound(j.at("cohesion"), infinity);
-  p.partner = j.at("partner");
+  p.partner = whole_number(j.at("partner"));
   return p;
 }
 
@@ -108,7 +109,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     std::vector<Mobility> mobility;
     std::vector<int> tile;
     for (const ordered_json& b : j.at("blocks")) {
-      if (b.contains("tile")) tile.push_back(b.at("tile"));
+      if (b.contains("tile")) tile.push_back(whole_number(b.at("tile")));
       mobility.push_back(read_mobility(b.at("mobility")));
       rate.push_back({vec(b.at("velocity")), mat(b.at("gradient_rate"))});
     }
@@ -129,7 +130,9 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     }
     const double dt = j.at("dt [s]");
     if (!(dt > 0)) throw std::runtime_error("its time step is not positive");
-    const RowKinds kinds{j.at("hard_ties"), j.value("give", false)};
+    const int hard_ties = whole_number(j.at("hard_ties"));
+    if (hard_ties < 0) throw std::runtime_error("it has fewer than no hard ties");
+    const RowKinds kinds{static_cast<size_t>(hard_ties), j.value("give", false)};
     replay.points = points, replay.blocks = blocks;
     Model model;
     model.solver = options;

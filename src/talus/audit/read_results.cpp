@@ -79,7 +79,11 @@ class Reader {
   void judge_ends() {
     const auto& s = summary_;
     if (s.contains("solver")) {
-      const auto failed = s["solver"].value("failed_steps", int64_t{0});
+      const nlohmann::json count = s["solver"].value("failed_steps", nlohmann::json(0));
+      if (!count.is_number_integer())
+        throw FileError(fmt::format("{}: says that {} steps failed", (folder_ / "summary.json").string(),
+                                    count.dump()));
+      const auto failed = count.get<int64_t>();
       add_failed(failed, first_failed_, s["solver"].value("contact_error_at", std::string()), out_.report);
     }
     if (!s.contains("energy [J]")) return;

@@ -125,7 +125,11 @@ int stage_at(const json& summary, double t) {
 
 size_t blocks_in(const RunFolder& run) {
   if (!run.blocks.rows.empty()) return run.blocks.rows.size();
-  return run.summary.contains("blocks") ? run.summary["blocks"].value("all", size_t{0}) : 0;
+  if (!run.summary.contains("blocks") || !run.summary["blocks"].contains("all")) return 0;
+  const json& all = run.summary["blocks"]["all"];
+  if (!all.is_number_unsigned())
+    throw FileError(fmt::format("{}: its summary.json says that it has {} blocks", run.name, all.dump()));
+  return all.get<size_t>();
 }
 
 // Four numbers a quantity, with the digits that a legend shows.

@@ -75,7 +75,8 @@ void exact(const std::string& name, int threads, double error_share) {
       "exact {}: step to {:.0e} / step of 20 sweeps = {:.3g} ({:.3g} to {:.3g}); sweeps {:.0f} ({:.0f} to "
       "{:.0f}); error {:.2g} (at most {:.2g}) of the smallest block against {:.2g} ({:.2g}) with 20 sweeps; "
       "{} of 285 steps above it\n",
-      name, error_share, r.median, r.min, r.max, k.median, k.min, k.max, e.median, e.max, p.median, p.max, missed);
+      name, error_share, r.median, r.min, r.max, k.median, k.min, k.max, e.median, e.max, p.median, p.max,
+      missed);
 }
 
 // Local damping until the unbalanced force is below 1e-7 of the mean.

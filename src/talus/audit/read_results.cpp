@@ -81,8 +81,9 @@ class Reader {
     if (s.contains("solver")) {
       const nlohmann::json count = s["solver"].value("failed_steps", nlohmann::json(0));
       if (!count.is_number_integer())
-        throw FileError(
-            fmt::format("{}: says that {} steps failed", (folder_ / "summary.json").string(), count.dump()));
+        throw FileError(fmt::format(
+            "{}: solver.failed_steps is {}, which is no number of steps: talus did not write that",
+            (folder_ / "summary.json").string(), count.dump()));
       const auto failed = count.get<int64_t>();
       add_failed(failed, first_failed_, s["solver"].value("contact_error_at", std::string()), out_.report);
     }

@@ -10,7 +10,7 @@ inline void prefetch(const void* there) {
   asm volatile("");
 }
 
-/// The lines of an object.
+/// The lines of an object, which need not begin where one does.
 template <class T>
 void prefetch_all(const T& object) {
   constexpr unsigned kLine = 64;

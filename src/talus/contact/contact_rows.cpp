@@ -56,15 +56,15 @@ double off_anchor(const Contact& c, double slip) {
   return anew ? c.stretch : slip - c.anchor;
 }
 
-// A contact point of a pair on its way to a row. look() says all of it: it is not cleared before.
+// A contact point of a pair on its way to a row.
 struct Point {
   CornerEdge over;
-  Vec2 corner;              // reference arm
-  Vec2 b0, edge;            // of the edge, reference
-  double slip;              // coordinate along the tangent
-  Vec2 closure;             // by the stress of the ground
-  double gap;               // less the rise [m]
-  std::array<double, 2> u;  // velocity half a step ago, normal and tangential
+  Vec2 corner;                // reference arm
+  Vec2 b0, edge;              // of the edge, reference
+  double slip = 0;            // coordinate along the tangent
+  Vec2 closure;               // by the stress of the ground
+  double gap = 0;             // less the rise [m]
+  std::array<double, 2> u{};  // velocity half a step ago, normal and tangential
 
   Vec2 foot() const { return b0 + std::clamp(over.along, 0.0, 1.0) * edge; }
 };
@@ -141,11 +141,10 @@ class ContactRows {
     const Contact& c = state_.contacts[i];
     const auto b = static_cast<size_t>(c.key.block_b);
     const JointLaw& law = law_of(c);
+    p.over = corner_over_edge(blocks_, state_, c.key.corner(), c.key.on());
     p.corner = blocks_.corner(c.key.corner()), p.b0 = blocks_.corner({c.key.block_b, c.key.edge});
     p.edge = blocks_.corner(blocks_.end_of(c.key.on())) - p.b0;
-    p.over = corner_over_edge(place_of(blocks_, state_, static_cast<size_t>(c.key.block_a)),
-                              place_of(blocks_, state_, b), p.corner, p.b0, p.edge);
-    // in its place, and while it is at hand: a copy would wait for what was just written
+    // the row in its place, and its normal while that is at hand: copies would wait for what was just written
     PointRows& row = rows_.points[first_ + i];
     row = kFreshRows;
     row.normal.x = p.over.normal.x, row.normal.y = p.over.normal.y;

@@ -27,40 +27,24 @@ struct ContactPoint {
 
 /// Gap and foot of a corner over an edge; digits are kept however far both are from the origin.
 struct CornerEdge {
-  double gap;     // [m]
-  double along;   // foot as share of the edge, 0 at its first corner
-  double length;  // of the edge now [m]
-  Vec2 normal;    // outward
+  double gap = 0;     // [m]
+  double along = 0;   // foot as share of the edge, 0 at its first corner
+  double length = 0;  // of the edge now [m]
+  Vec2 normal;        // outward
 };
 
-/// Where a block is, and how it is deformed.
-struct BlockPlace {
-  Vec2 centroid, displacement;  // reference; since then
-  Mat2 strain_part;             // F - I
-
-  Vec2 displacement_at(Vec2 X) const { return displacement + strain_part * X; }
-};
-inline BlockPlace place_of(const BlockSet& blocks, const State& state, size_t i) {
-  return {blocks.centroid[i], state.displacement[i], state.strain_part[i]};
-}
-
-/// @param Xa, Xb, E  the corner, the first corner of the edge, and the edge: reference arms
-inline CornerEdge corner_over_edge(const BlockPlace& a, const BlockPlace& b, Vec2 Xa, Vec2 Xb,
-                                   Vec2 E) {  // theory 3.2
+inline CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner,
+                                   BlockEdge on) {  // theory 3.2
+  const auto ia = static_cast<size_t>(corner.block), ib = static_cast<size_t>(on.block);
+  const Vec2 Xa = blocks.corner(corner), Xb = blocks.corner({on.block, on.edge}),
+             E = blocks.corner(blocks.end_of(on)) - Xb;
   // the difference of reference places first, then the difference of displacements: both small
-  const Vec2 reference = (a.centroid - b.centroid) + (Xa - Xb);
-  const Vec2 r = reference + (a.displacement_at(Xa) - b.displacement_at(Xb));
-  const Vec2 e = E + b.strain_part * E;
+  const Vec2 reference = (blocks.centroid[ia] - blocks.centroid[ib]) + (Xa - Xb);
+  const Vec2 r = reference + (displacement_at(state, ia, Xa) - displacement_at(state, ib, Xb));
+  const Vec2 e = E + state.strain_part[ib] * E;
   const double length = norm(e);
   const Vec2 n = turn_right(e) / length;
   return {dot(n, r), dot(r, e) / (length * length), length, n};
-}
-inline CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner,
-                                   BlockEdge on) {
-  const Vec2 Xb = blocks.corner({on.block, on.edge});
-  return corner_over_edge(place_of(blocks, state, static_cast<size_t>(corner.block)),
-                          place_of(blocks, state, static_cast<size_t>(on.block)), blocks.corner(corner), Xb,
-                          blocks.corner(blocks.end_of(on)) - Xb);
 }
 
 /// How far, how deep and in whose company the points of a pair are sought.

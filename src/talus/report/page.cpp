@@ -128,7 +128,10 @@ size_t blocks_in(const RunFolder& run) {
   if (!run.summary.contains("blocks") || !run.summary["blocks"].contains("all")) return 0;
   const json& all = run.summary["blocks"]["all"];
   if (!all.is_number_unsigned())
-    throw FileError(fmt::format("{}: its summary.json says that it has {} blocks", run.name, all.dump()));
+    throw FileError(
+        fmt::format("{}: blocks.all of its summary.json is {}, which is no number of blocks: talus did "
+                    "not write that",
+                    run.name, all.dump()));
   return all.get<size_t>();
 }
 

@@ -349,6 +349,9 @@ namespace {
 // Records that are written before they are prepared.
 constexpr size_t kNear = 16;
 
+// So many records before it is due a row is asked for, and the record to be written.
+constexpr size_t kRowAhead = 2, kRecordAhead = 1;
+
 // Records of one colour to a thread: enough for the work to outweigh the handing over.
 size_t grain(size_t records, int threads) {
   return std::max<size_t>(
@@ -432,8 +435,9 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
       for (size_t next, r = begin; r < end; r = next) {
         next = std::min(r + kNear, end);
         for (size_t i = r; i < next; ++i) {
-          if (i + 2 < records.size()) fetch(&rows[(i + 2) * kLanes]);
-          if (i + 1 < records.size()) prefetch_all(records[i + 1]), prefetch_all(give[i + 1]);
+          if (i + kRowAhead < records.size()) fetch(&rows[(i + kRowAhead) * kLanes]);
+          if (i + kRecordAhead < records.size())
+            prefetch_all(records[i + kRecordAhead]), prefetch_all(give[i + kRecordAhead]);
           write(records[i], give[i], &rows[i * kLanes]);
         }
         prepare(lines_.data(), give.data() + r, records.data() + r, next - r);

@@ -125,8 +125,8 @@ int stage_at(const json& summary, double t) {
 
 size_t blocks_in(const RunFolder& run) {
   if (!run.blocks.rows.empty()) return run.blocks.rows.size();
-  if (!run.summary.contains("blocks") || !run.summary["blocks"].contains("all")) return 0;
-  const json& all = run.summary["blocks"]["all"];
+  if (!run.summary.contains("blocks")) return 0;
+  const json all = run.summary["blocks"].value("all", json(0U));  // throws where `blocks` is no object
   if (!all.is_number_unsigned())
     throw FileError(
         fmt::format("{}: blocks.all of its summary.json is {}, which is no number of blocks: talus did "

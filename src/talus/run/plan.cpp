@@ -84,11 +84,10 @@ void limit_by_column(const Scene& scene, const StageInput& stage, const ColumnSt
     plan.bound_block = -1, plan.bound_column = column.boundary;
   }
   if (plan.dt >= column.dt)
-    findings.error(
-        stage.where_step, "stage." + stage.name + ".time_step",
-        fmt::format("{:.4g} s is above the stable limit {:.4g} s of the {}", plan.dt, column.dt,
-                    bound_name(scene, plan)),
-        "use \"auto\" or a smaller step: no elasticity = \"implicit\" and no moment clamp helps there");
+    findings.error(stage.where_step, "stage." + stage.name + ".time_step",
+                   fmt::format("{:.4g} s is above the stable limit {:.4g} s of the {}", plan.dt, column.dt,
+                               bound_name(scene, plan)),
+                   "use \"auto\", a smaller step or elasticity = \"implicit\": no moment clamp helps there");
 }
 
 }  // namespace
@@ -132,9 +131,9 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     plan.dt_bound = bound.dt;
     plan.bound_block = bound.block;
     const std::string path = "stage." + stage.name;
-    // the free field has a limit of its own, whatever is done about blocks
+    // the free field has a limit of its own where its elasticity is explicit
     const ColumnStep column =
-        stage.kind == StageKind::kDynamic
+        stage.kind == StageKind::kDynamic && !stage.implicit
             ? stable_step(scene.boundaries.free_field, scene.model.inertia == Inertia::kLumped)
             : ColumnStep{};
     double wanted =

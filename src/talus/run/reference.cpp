@@ -38,7 +38,7 @@ PointMotion Reference::at(const Instant& i) const {
     const FreeField& field = i.scene.boundaries.free_field;
     const GroundColumn& column = field.columns[static_cast<size_t>(column_)];
     return {at_height(field, column, height_, i.state.column_displacement),
-            at_height(field, column, height_, i.work.column_velocity)};
+            at_height(field, column, height_, i.work.columns.velocity)};
   }
   PointMotion mean;
   for (const Part& p : parts_) {

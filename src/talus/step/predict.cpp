@@ -13,13 +13,13 @@ BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a,
 // Theory 4.12.
 void kick_free_field(const Scene& scene, const StepSettings& settings, const std::vector<Vec2>& acceleration,
                      StepWork& work, State& state) {
-  work.column_velocity = state.column_rate;
-  if (!work.clock.histories_run) return;
-  kick_columns(scene.boundaries.free_field, scene.model.histories, work.clock, settings.damping_mass,
-               scene.model.inertia == Inertia::kLumped, acceleration, state);
-  if (state.dt_before == 0) return;  // at the start: the velocity of the start
-  for (size_t i = 0; i < state.column_rate.size(); ++i)
-    work.column_velocity[i] = 0.5 * (work.column_velocity[i] + state.column_rate[i]);
+  if (work.clock.histories_run) {
+    kick_columns(scene.boundaries.free_field, scene.model.histories, work.clock, settings.damping_mass,
+                 scene.model.inertia == Inertia::kLumped, settings.implicit, acceleration, state,
+                 work.columns);
+  } else {
+    work.columns = {state.column_rate, state.column_displacement};
+  }
 }
 
 // Share of the unbalanced force, set against the motion of the whole block in the metric of its mass: the

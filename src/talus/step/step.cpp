@@ -57,7 +57,7 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
                    work.places);
   work.profile.go_on_with(Profile::kHeld);
   add_support_rows(blocks, model, scene.supported, state, clock, rows);
-  add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.column_velocity, rows);
+  add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.columns, rows);
   add_tie_rows(blocks, scene.boundaries.ties, state, clock, rows);
   work.profile.go_on_with(Profile::kBolts);
   add_bolt_rows(blocks, state, before, clock, rows);

@@ -63,7 +63,7 @@ struct StepWork {
   std::vector<ContactPlace> places;  // of state.contacts
   RowSet rows;                       // of all families
   std::vector<BlockRate> rate_before;
-  std::vector<Vec2> column_velocity;  // [n_column_nodes] of the free field at this instant [m/s]
+  ColumnMotion columns;  // of the free field
   KickWork work;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted

@@ -150,12 +150,12 @@ class BoundaryMaker {
 };
 
 // The traction of the free field on a point: stress times normal times area [N] (theory 4.12).
-Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const State& state) {
+Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const ColumnMotion& columns) {
   const FreeField& field = set.free_field;
   Vec2 force;
   for (const auto& [element, area] : p.beside) {
-    const auto s = column_stress(field, field.columns[static_cast<size_t>(p.column)], element,
-                                 state.column_displacement);
+    const auto s =
+        column_stress(field, field.columns[static_cast<size_t>(p.column)], element, columns.displacement);
     force += area * Vec2{s[0] * p.normal.x + s[2] * p.normal.y, s[2] * p.normal.x + s[1] * p.normal.y};
   }
   return force;
@@ -163,10 +163,10 @@ Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const Stat
 
 // Velocity of the medium behind the point as it would be without the blocks (theory 4.11, 4.12).
 Vec2 medium_velocity(const Model& model, const BoundarySet& set, const BoundaryPoint& p,
-                     const StepClock& clock, const std::vector<Vec2>& column_velocity) {
+                     const StepClock& clock, const ColumnMotion& columns) {
   if (p.column >= 0)
     return at_height(set.free_field, set.free_field.columns[static_cast<size_t>(p.column)], p.height,
-                     column_velocity);
+                     columns.velocity);
   const BoundaryInput& b = model.boundaries[static_cast<size_t>(p.boundary)];
   const auto value = [&](int history) {
     return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(clock.history_time);
@@ -203,9 +203,9 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
 // Eq. 4.3.
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
                        const std::vector<BlockRate>& before, const StepClock& clock,
-                       const std::vector<Vec2>& column_velocity, RowSet& rows) {
+                       const ColumnMotion& columns, RowSet& rows) {
   TALUS_ASSERT(state.boundaries.size() == set.points.size() &&
-               column_velocity.size() == state.column_rate.size());
+               columns.velocity.size() == state.column_rate.size());
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& point = set.points[i];
     if (!point.active) continue;
@@ -225,8 +225,8 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
       if (hold != StaticHold::kFixed) p.cohesion = 0;
     } else {
       const auto u = relative_velocity(p, before);
-      const Vec2 target = medium_velocity(model, set, point, clock, column_velocity),
-                 push = free_field_force(set, point, state);
+      const Vec2 target = medium_velocity(model, set, point, clock, columns),
+                 push = free_field_force(set, point, columns);
       for (size_t k = 0; k < 2; ++k) {
         const double z = point.dashpot[k], force = state.boundaries[i].kept[k] + dot(axis[k], push);
         p.row[k].compliance = 2 / (z * clock.dt_kick);

@@ -45,9 +45,9 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
 ///   dynamic: u + u_before - 2 target - 2 F/z + 2 p/(z dt_kick), F the kept reaction and the free-field
 ///   stress; static: u + (displacement - place held)/dt.
 /// @param before           rates half a step ago
-/// @param column_velocity  [n_column_nodes] of the free field at this instant [m/s]
+/// @param columns          of the free field in this step
 void add_boundary_rows(const BlockSet& blocks, const Model& model, const BoundarySet& set, const State& state,
                        const std::vector<BlockRate>& before, const StepClock& clock,
-                       const std::vector<Vec2>& column_velocity, RowSet& rows);
+                       const ColumnMotion& columns, RowSet& rows);
 
 }  // namespace talus

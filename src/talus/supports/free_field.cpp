@@ -27,78 +27,108 @@ ColumnMass mass_of(const FreeField& field, const GroundColumn& c, bool lumped) {
   return m;
 }
 
-// Solves a tridiagonal system by elimination from the first row; `diagonal` and `right` are used up.
-void solve_tridiagonal(const std::vector<double>& lower, std::vector<double>& diagonal,
-                       const std::vector<double>& upper, std::vector<double>& right) {
-  const size_t n = diagonal.size();
-  for (size_t i = 1; i < n; ++i) {
-    const double f = lower[i - 1] / diagonal[i - 1];
-    diagonal[i] -= f * upper[i - 1];
-    right[i] -= f * right[i - 1];
-  }
-  for (size_t i = n; i-- > 0;) {
-    if (i + 1 < n) right[i] -= upper[i] * right[i + 1];
-    right[i] /= diagonal[i];
-  }
-}
+// One equation per node, in both axes at once, coupled with the nodes above and below.
+struct ColumnEquations {
+  explicit ColumnEquations(size_t nodes)
+      : diagonal(nodes, Mat2{}), above(nodes - 1, Mat2{}), below(nodes - 1, Mat2{}), right(nodes) {}
 
-// One column along one axis through a kick: (M (1 + b) + C dt/2) v+ = (M (1 - b) - C dt/2) v- + dt F, the
-// dashpots C at base and top, b from mass-proportional damping.
+  std::vector<Mat2> diagonal, above, below;
+  std::vector<Vec2> right;
+
+  // Elimination from the foot upwards; the equations are used up.
+  std::vector<Vec2> solve() {
+    const size_t n = right.size();
+    for (size_t i = 1; i < n; ++i) {
+      const Mat2 f = below[i - 1] * inverse(diagonal[i - 1]);
+      diagonal[i] = diagonal[i] - f * above[i - 1];
+      right[i] -= f * right[i - 1];
+    }
+    for (size_t i = n; i-- > 0;) {
+      if (i + 1 < n) right[i] -= above[i] * right[i + 1];
+      right[i] = inverse(diagonal[i]) * right[i];
+    }
+    return std::move(right);
+  }
+};
+
+double& on_axis(Vec2& v, int axis) { return axis == 0 ? v.x : v.y; }
+double& on_axis(Mat2& m, int axis) { return axis == 0 ? m.xx : m.yy; }
+
+// Stress xy, yy per strain of shear and of height: what an element pulls its upper node back with [Pa].
+Mat2 modulus(const Stiffness& c) { return {c[2][2], c[2][1], c[1][2], c[1][1]}; }
+
+// One column through a kick (eq. 4.4): (M (1 + b) + C dt/2 + s K) v+ = (M (1 - b) - C dt/2 + r^2 s K) v- + dt F,
+// the dashpots C at base and top, b from mass-proportional damping, s K of elasticity where it is implicit.
 class ColumnKick {
  public:
   ColumnKick(const FreeField& field, const GroundColumn& column, const std::vector<History>& histories,
-             const StepClock& clock, double damping_mass, bool lumped)
-      : c_(column),
+             const StepClock& clock, double damping_mass, bool lumped, bool implicit)
+      : field_(field),
+        c_(column),
         histories_(histories),
         t_(clock),
-        damping_mass_(damping_mass),
+        damping_(0.5 * damping_mass * clock.dt_kick),
+        stiff_time2_(implicit ? clock.dt * clock.dt_kick / clock.position_factor() : 0),
         mass_(mass_of(field, column, lumped)) {}
 
-  // @param v      in: rates before; out: after
-  // @param force  of the stresses and body forces [Pa]
-  void run(int axis, std::vector<double>& v, const std::vector<double>& force) const {
+  // @param v      rates before
+  // @param force  of the stresses and body forces on each node [Pa]
+  std::vector<Vec2> rates_after(const std::vector<Vec2>& v, const std::vector<Vec2>& force) const {
     const size_t n = v.size();
-    const double b = 0.5 * damping_mass_ * t_.dt_kick;
-    std::vector<double> diagonal(n), right(n), lower(n - 1), upper(n - 1);
+    ColumnEquations e(n);
     for (size_t i = 0; i < n; ++i) {
-      diagonal[i] = (1 + b) * mass_.diagonal[i];
-      double momentum = mass_.diagonal[i] * v[i];
+      Vec2 momentum = mass_.diagonal[i] * v[i];
       if (i > 0) momentum += mass_.beside[i - 1] * v[i - 1];
       if (i + 1 < n) momentum += mass_.beside[i] * v[i + 1];
-      right[i] = (1 - b) * momentum + t_.dt_kick * force[i];
+      e.diagonal[i] = (1 + damping_) * mass_.diagonal[i] * kIdentity;
+      e.right[i] = (1 - damping_) * momentum + t_.dt_kick * force[i];
     }
-    for (size_t i = 0; i + 1 < n; ++i) lower[i] = upper[i] = (1 + b) * mass_.beside[i];
-    set_base(axis, v[0], diagonal[0], upper[0], right[0]);
-    const double top = 0.5 * c_.top_impedance[axis] * t_.dt_kick;
-    diagonal[n - 1] += top, right[n - 1] -= top * v[n - 1];
-    solve_tridiagonal(lower, diagonal, upper, right);
-    v = std::move(right);
+    for (size_t k = 0; k + 1 < n; ++k) {
+      const ColumnElement& element = field_.elements[static_cast<size_t>(c_.first_element) + k];
+      const Mat2 stiff = stiff_time2_ / element.height * modulus(element.stiffness);
+      const Vec2 kept = t_.old_share() * (stiff * (v[k + 1] - v[k]));
+      e.above[k] = e.below[k] = (1 + damping_) * mass_.beside[k] * kIdentity - stiff;
+      e.diagonal[k] += stiff, e.diagonal[k + 1] += stiff;
+      e.right[k] -= kept, e.right[k + 1] += kept;
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      set_base(axis, v[0], e);
+      const double top = 0.5 * c_.top_impedance[axis] * t_.dt_kick;
+      Vec2 last = v[n - 1];
+      on_axis(e.diagonal[n - 1], axis) += top, on_axis(e.right[n - 1], axis) -= top * on_axis(last, axis);
+    }
+    return e.solve();
   }
 
  private:
-  void set_base(int axis, double before, double& diagonal, double& upper, double& right) const {
+  void set_base(int axis, Vec2 before, ColumnEquations& e) const {
     const ColumnBase& base = c_.base;
+    double& right = on_axis(e.right[0], axis);
     if (base.viscous) {
       const double half = 0.5 * base.impedance[axis] * t_.dt_kick;
       const int history = base.history[axis];
       const double bare =
           history < 0 ? 0
                       : base.incoming * histories_[static_cast<size_t>(history)].value_at(t_.history_time);
-      diagonal += half;
-      right += half * (2 * bare - before);
+      on_axis(e.diagonal[0], axis) += half;
+      right += half * (2 * bare - on_axis(before, axis));
     } else if (base.motion[axis].kind != Motion::kFree) {
       const Motion& m = base.motion[axis];
-      diagonal = 1, upper = 0;
+      Mat2& own = e.diagonal[0];
+      (axis == 0 ? own.xy : own.yx) = 0;
+      on_axis(own, axis) = 1;
+      if (!e.above.empty()) e.above[0] = (axis == 0 ? Mat2{0, 0, 0, 1} : Mat2{1, 0, 0, 0}) * e.above[0];
       right =
           (m.displacement_at(t_.history_end(), histories_) - m.displacement_at(t_.history_time, histories_)) /
           t_.dt;
     }
   }
 
+  const FreeField& field_;
   const GroundColumn& c_;
   const std::vector<History>& histories_;
   const StepClock& t_;
-  const double damping_mass_;
+  const double damping_, stiff_time2_;
   const ColumnMass mass_;
 };
 
@@ -131,26 +161,36 @@ ColumnStep stable_step(const FreeField& field, bool lumped) {
 
 // Eq. 4.4.
 void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
-                  double damping_mass, bool lumped, const std::vector<Vec2>& acceleration, State& state) {
+                  double damping_mass, bool lumped, bool implicit, const std::vector<Vec2>& acceleration,
+                  State& state, ColumnMotion& motion) {
   TALUS_ASSERT(state.column_rate.size() == field.height.size());
+  const std::vector<Vec2> before = state.column_rate;
   for (const GroundColumn& c : field.columns) {
-    const auto n = static_cast<size_t>(c.elements) + 1, first = static_cast<size_t>(c.first_node);
-    std::vector<double> force[2] = {std::vector<double>(n), std::vector<double>(n)},
-                        v[2] = {force[0], force[0]};
+    const auto n = static_cast<size_t>(c.elements) + 1;
+    std::vector<Vec2> force(n);
     for (size_t e = 0; e + 1 < n; ++e) {
       const int index = c.first_element + static_cast<int>(e);
       const ColumnElement& element = field.elements[static_cast<size_t>(index)];
       const auto stress = column_stress(field, c, index, state.column_displacement);
+      const Vec2 pull{stress[2], stress[1]};
       const double half = 0.5 * element.density * element.height;
       const Vec2 body = half * acceleration[static_cast<size_t>(element.block)];
-      force[0][e] += stress[2] + body.x, force[0][e + 1] += body.x - stress[2];
-      force[1][e] += stress[1] + body.y, force[1][e + 1] += body.y - stress[1];
+      force[e] += body + pull, force[e + 1] += body - pull;
     }
-    for (size_t i = 0; i < n; ++i)
-      v[0][i] = state.column_rate[first + i].x, v[1][i] = state.column_rate[first + i].y;
-    const ColumnKick kick(field, c, histories, clock, damping_mass, lumped);
-    for (int axis = 0; axis < 2; ++axis) kick.run(axis, v[axis], force[axis]);
-    for (size_t i = 0; i < n; ++i) state.column_rate[first + i] = {v[0][i], v[1][i]};
+    const auto node = before.begin() + c.first_node;
+    const ColumnKick kick(field, c, histories, clock, damping_mass, lumped, implicit);
+    const std::vector<Vec2> after = kick.rates_after({node, node + static_cast<std::ptrdiff_t>(n)}, force);
+    std::copy(after.begin(), after.end(), state.column_rate.begin() + c.first_node);
+  }
+  motion.velocity = state.column_rate;
+  motion.displacement = state.column_displacement;
+  const bool starts = state.dt_before == 0;
+  for (size_t i = 0; i < before.size(); ++i) {
+    // at the start: the velocity of the start
+    motion.velocity[i] = starts ? before[i] : 0.5 * (before[i] + state.column_rate[i]);
+    if (implicit)
+      motion.displacement[i] +=
+          clock.dt / clock.position_factor() * (state.column_rate[i] - clock.old_share() * before[i]);
   }
 }
 

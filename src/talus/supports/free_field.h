@@ -48,19 +48,29 @@ struct FreeField {
 void add_column(const Model& model, const Layout& layout, int boundary,
                 const std::vector<SelectedEdge>& edges, FreeField& field, Findings& findings);
 
-/// Longest stable step of the columns [s], and the boundary of the model whose column sets it; infinite and
-/// -1 without any.
+/// Longest stable step of the columns while their elasticity is explicit [s], and the boundary of the model
+/// whose column sets it; infinite and -1 without any.
 struct ColumnStep {
   double dt = std::numeric_limits<double>::infinity();
   int boundary = -1;
 };
 ColumnStep stable_step(const FreeField& field, bool lumped);
 
-/// Rates of all nodes after the kick. @pre  the histories run
+/// What the columns do in a step.
+struct ColumnMotion {
+  std::vector<Vec2> velocity;      // [n_column_nodes] at this instant [m/s]
+  std::vector<Vec2> displacement;  // whose stress acts in the kick: of this instant, or with implicit
+                                   // elasticity that and what the rates make of it [m]
+};
+
+/// The kick of all columns: new rates in `state`, the motion of the step in `motion`.
+/// @pre  the histories run
 /// @param damping_mass  [1/s]
+/// @param implicit      elasticity of the ground is in the mass of the step, as that of blocks (theory 4.9)
 /// @param acceleration  body force per mass on each block [m/s2]
 void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
-                  double damping_mass, bool lumped, const std::vector<Vec2>& acceleration, State& state);
+                  double damping_mass, bool lumped, bool implicit, const std::vector<Vec2>& acceleration,
+                  State& state, ColumnMotion& motion);
 
 /// Stress xx, yy, xy in an element [Pa]. @param column  that it belongs to
 std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
+
 #include "support/run_case.h"
 #include "talus/run/joint_report.h"
 #include "talus/supports/boundaries.h"
@@ -187,6 +189,75 @@ TEST_CASE("a column that limits the time step is named, and a step above its lim
   CHECK_THROWS_WITH_AS(prepare_run("case.toml", fast, {"stage.go.time_step=0.7 ms"}, findings),
                        doctest::Contains("is above the stable limit 0.0005556 s of the free field of left"),
                        InputError);
+  // with elasticity in the mass of the step nothing limits it
+  Findings others("case.toml", fast);
+  const PreparedRun implicit =
+      prepare_run("case.toml", fast, {"stage.go.elasticity=implicit", "stage.go.time_step=5 ms"}, others);
+  CHECK(std::isinf(implicit.plans[0].dt_bound));
+  CHECK(implicit.plans[0].dt == doctest::Approx(5e-3));
+  CHECK(bound_name(implicit.scene, implicit.plans[0]).empty());
+}
+
+TEST_CASE("the kick of a column solves (M + s K) v+ = (M + r^2 s K) v- + dt F with axes coupled") {
+  // inclined joints couple shear with height; the foot is free along y and driven along x
+  FreeField field;
+  for (const double h : {0.0, 1.0, 3.0}) field.height.push_back(h);
+  const std::vector<JointsOfRock> joints{{{std::cos(0.7), std::sin(0.7)}, 0.5, 2e9, 1e9}};
+  for (const double height : {1.0, 2.0})
+    field.elements.push_back({height, 2000, jointed_stiffness(kRock, joints), 0});
+  GroundColumn column;
+  column.elements = 2;
+  column.base.motion[0].kind = Motion::kFixed, column.base.motion[1].kind = Motion::kFree;
+  field.columns.push_back(column);
+  State s;
+  s.dt_before = 1e-3;
+  s.column_displacement = {{0, 1e-3}, {2e-3, -1e-3}, {1e-3, 3e-3}};
+  s.column_rate = {{0, 2}, {1, -1}, {-2, 0.5}};
+  StepClock clock;
+  clock.dt = clock.dt_kick = 2e-3, clock.alpha = 0.2;
+  const Vec2 gravity{0.5, -3};
+
+  // the same by hand, all equations of both axes in one matrix
+  Eigen::Matrix<double, 6, 6> M, K;
+  Eigen::Matrix<double, 6, 1> F, before, u;
+  M.setZero(), K.setZero(), F.setZero();
+  for (int e = 0; e < 2; ++e) {
+    const double h = e + 1.0, m = 2000 * h;
+    const Stiffness& c = field.elements[0].stiffness;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        for (int k = 0; k < 2; ++k) M(2 * (e + i) + k, 2 * (e + j) + k) += i == j ? m / 3 : m / 6;
+        const double sign = (i == j ? 1 : -1) / h;
+        K(2 * (e + i), 2 * (e + j)) += sign * c[2][2], K(2 * (e + i), 2 * (e + j) + 1) += sign * c[2][1];
+        K(2 * (e + i) + 1, 2 * (e + j)) += sign * c[1][2],
+            K(2 * (e + i) + 1, 2 * (e + j) + 1) += sign * c[1][1];
+      }
+    for (int i = 0; i < 2; ++i) F(2 * (e + i)) += m / 2 * gravity.x, F(2 * (e + i) + 1) += m / 2 * gravity.y;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const auto n = static_cast<size_t>(i);
+    before(2 * i) = s.column_rate[n].x, before(2 * i + 1) = s.column_rate[n].y;
+    u(2 * i) = s.column_displacement[n].x, u(2 * i + 1) = s.column_displacement[n].y;
+  }
+  const double k = 4 / (1.2 * 1.2), r2 = std::pow(0.8 / 1.2, 2), stiff = 2e-3 * 2e-3 / k;
+  Eigen::Matrix<double, 6, 6> A = M + stiff * K;
+  Eigen::Matrix<double, 6, 1> b = (M + r2 * stiff * K) * before + 2e-3 * (F - K * u);
+  A.row(0).setZero(), A(0, 0) = 1, b(0) = 0;
+  const Eigen::Matrix<double, 6, 1> after = A.partialPivLu().solve(b);
+
+  ColumnMotion motion;
+  kick_columns(field, {}, clock, 0, false, true, {gravity}, s, motion);
+  for (int i = 0; i < 3; ++i) {
+    const auto n = static_cast<size_t>(i);
+    CHECK(s.column_rate[n].x == doctest::Approx(after(2 * i)).epsilon(1e-10));
+    CHECK(s.column_rate[n].y == doctest::Approx(after(2 * i + 1)).epsilon(1e-10));
+    CHECK(motion.velocity[n].y ==
+          doctest::Approx(0.5 * (before(2 * i + 1) + after(2 * i + 1))).epsilon(1e-10));
+    // the stress that acted is that of u + dt/k (v+ - r^2 v-)
+    CHECK(motion.displacement[n].y ==
+          doctest::Approx(u(2 * i + 1) + 2e-3 / k * (after(2 * i + 1) - r2 * before(2 * i + 1)))
+              .epsilon(1e-10));
+  }
 }
 
 TEST_CASE("the side at which the joint with the largest slip ends is named") {

@@ -72,7 +72,10 @@ struct Worst {
   Worst& operator+=(const Worst& o);
 };
 
-/// The kernels for one kind of processor. Each works on records [0, count) in order.
+/// Rows of a strip of a dense matrix (block_factor.h): its columns lie one behind the other.
+constexpr size_t kStripRows = 12;
+
+/// The kernels for one kind of processor. Those of records work on [0, count) in order.
 struct Kernels {
   /// Influence and inverses from normals, arms and compliances; and adds the impulses to the blocks.
   void (*prepare_contacts)(BlockLine*, const Give*, ContactRecord*, size_t count);
@@ -86,6 +89,15 @@ struct Kernels {
   void (*judge_contacts)(const BlockLine*, const ContactRecord*, const Give*, const int* rows, size_t count,
                          Worst&);
   void (*judge_ties)(const BlockLine*, const TieRecord*, const Give*, const int* rows, size_t count, Worst&);
+
+  // Strips: twelve rows of a, b and c, column by column.
+  /// c -= a b^T, where a and b have `depth` columns and c twelve.
+  void (*subtract_products)(const double* a, const double* b, size_t depth, double* c);
+  /// c := c d^-T, d a factor of twelve rows with the reciprocals of its diagonal on it.
+  void (*divide_strip)(const double* d, double* c);
+  /// y -= a x, of twelve rows and `count` columns; and x -= a^T y.
+  void (*subtract_columns)(const double* a, const double* x, size_t count, double* y);
+  void (*subtract_rows)(const double* a, const double* y, size_t count, double* x);
 };
 
 /// The fastest kernels that this processor runs, or the plain ones. All give the same bits.

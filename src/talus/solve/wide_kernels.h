@@ -291,8 +291,67 @@ void sweep_contacts(BlockLine* l, ContactRecord* r, size_t count, double& s) {
 }
 void sweep_ties(BlockLine* l, TieRecord* r, size_t count, double& s) { sweep_records(l, r, count, s); }
 
+// Strips need not begin at a line of the cache.
+using LooseLanes = double __attribute__((vector_size(32), aligned(8)));
+inline Lanes read(const double* p) { return *reinterpret_cast<const LooseLanes*>(p); }
+inline void write(double* p, Lanes v) { *reinterpret_cast<LooseLanes*>(p) = v; }
+
+constexpr size_t kParts = kStripRows / kLanes;  // registers of a column
+
+void subtract_products(const double* a, const double* b, size_t depth, double* c) {
+  for (size_t first = 0; first < kStripRows; first += kLanes) {
+    double* to = c + kStripRows * first;
+    Lanes sum[kLanes][kParts];
+    for (size_t j = 0; j < kLanes; ++j)
+      for (size_t i = 0; i < kParts; ++i) sum[j][i] = read(to + kStripRows * j + kLanes * i);
+    for (size_t k = 0; k < depth; ++k) {
+      const double *x = a + kStripRows * k, *y = b + kStripRows * k + first;
+      const Lanes x0 = read(x), x1 = read(x + kLanes), x2 = read(x + 2 * kLanes);
+      for (size_t j = 0; j < kLanes; ++j) {
+        const Lanes s = all(y[j]);
+        sum[j][0] = nmadd(x0, s, sum[j][0]);
+        sum[j][1] = nmadd(x1, s, sum[j][1]);
+        sum[j][2] = nmadd(x2, s, sum[j][2]);
+      }
+    }
+    for (size_t j = 0; j < kLanes; ++j)
+      for (size_t i = 0; i < kParts; ++i) write(to + kStripRows * j + kLanes * i, sum[j][i]);
+  }
+}
+
+void divide_strip(const double* d, double* c) {
+  for (size_t j = 0; j < kStripRows; ++j) {
+    double* to = c + kStripRows * j;
+    Lanes x[kParts] = {read(to), read(to + kLanes), read(to + 2 * kLanes)};
+    for (size_t k = 0; k < j; ++k) {
+      const Lanes s = all(d[kStripRows * k + j]);
+      for (size_t i = 0; i < kParts; ++i) x[i] = nmadd(read(c + kStripRows * k + kLanes * i), s, x[i]);
+    }
+    for (size_t i = 0; i < kParts; ++i) write(to + kLanes * i, x[i] * all(d[kStripRows * j + j]));
+  }
+}
+
+void subtract_columns(const double* a, const double* x, size_t count, double* y) {
+  Lanes sum[kParts] = {read(y), read(y + kLanes), read(y + 2 * kLanes)};
+  for (size_t k = 0; k < count; ++k) {
+    const Lanes s = all(x[k]);
+    for (size_t i = 0; i < kParts; ++i) sum[i] = nmadd(read(a + kStripRows * k + kLanes * i), s, sum[i]);
+  }
+  for (size_t i = 0; i < kParts; ++i) write(y + kLanes * i, sum[i]);
+}
+
+void subtract_rows(const double* a, const double* y, size_t count, double* x) {
+  const Lanes y0 = read(y), y1 = read(y + kLanes), y2 = read(y + 2 * kLanes);
+  for (size_t k = 0; k < count; ++k) {
+    const double* column = a + kStripRows * k;
+    const Lanes s = madd(read(column + 2 * kLanes), y2, madd(read(column + kLanes), y1, read(column) * y0));
+    x[k] -= (s[0] + s[1]) + (s[2] + s[3]);
+  }
+}
+
 constexpr Kernels make_kernels() {
-  return {prepare_contacts, prepare_ties, sweep_contacts, sweep_ties, judge_contacts, judge_ties};
+  return {prepare_contacts, prepare_ties,      sweep_contacts, sweep_ties,       judge_contacts,
+          judge_ties,       subtract_products, divide_strip,   subtract_columns, subtract_rows};
 }
 
 }  // namespace

@@ -14,14 +14,16 @@ std::vector<SectionSpec> run_sections() {
          .type = K::kChoice,
          .default_text = "\"auto\"",
          .choices = {kSolverName.begin(), kSolverName.end()},
-         .doc = "`newton`: semismooth, per island of touching blocks. `gauss_seidel`: projected, point by "
-                "point, by all threads. `auto`: what is faster for the number of contact points "
-                "(docs/performance.md has the table)."},
+         .doc =
+             "`newton`: semismooth, per island of touching blocks. `gauss_seidel`: projected, point by "
+             "point, by all threads. `primal_newton`: semismooth in the velocities of the blocks, for large "
+             "compressed masses whose joints have stiffness. `auto`: what is faster for the number of contact "
+             "points (docs/performance.md has the table)."},
         {.name = "second_solver",
          .type = K::kBool,
          .default_text = "true",
-         .doc = "A step that misses the tolerance is tried by the other method (by Newton up to 8000 contact "
-                "points)."},
+         .doc = "A step that misses the tolerance is tried by another method (by `newton` up to 8000 contact "
+                "points, by `primal_newton` where joints have stiffness and sweeps are slow)."},
         {.name = "jacobian",
          .type = K::kChoice,
          .default_text = "\"analytic\"",

@@ -9,10 +9,11 @@
 namespace talus {
 
 /// kAuto: what is faster for a step.
-enum class SolverKind { kAuto, kNewton, kGaussSeidel };
+enum class SolverKind { kAuto, kNewton, kGaussSeidel, kPrimalNewton };
 
-inline constexpr std::array<std::string_view, 3> kSolverName{"auto", "newton", "gauss_seidel"};
-static_assert(kSolverName.size() == static_cast<size_t>(SolverKind::kGaussSeidel) + 1);
+inline constexpr std::array<std::string_view, 4> kSolverName{"auto", "newton", "gauss_seidel",
+                                                             "primal_newton"};
+static_assert(kSolverName.size() == static_cast<size_t>(SolverKind::kPrimalNewton) + 1);
 
 inline constexpr std::string_view name_of(SolverKind kind) { return kSolverName[static_cast<size_t>(kind)]; }
 

@@ -92,6 +92,7 @@ std::string problem_text(const Instant& i) {
   const RowKinds kinds = row_kinds(i.scene, i.work);
   j["hard_ties"] = kinds.hard_ties;
   j["give"] = kinds.give;
+  j["at_rest"] = kinds.at_rest;
   j["points"] = ordered_json::array();
   for (size_t r = 0; r < i.work.rows.points.size(); ++r)
     j["points"].push_back(point_json(i.work.rows.points[r], i.work.guess[r]));
@@ -132,7 +133,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     if (!(dt > 0)) throw std::runtime_error("its time step is not positive");
     const int hard_ties = whole_number(j.at("hard_ties"));
     if (hard_ties < 0) throw std::runtime_error("it has fewer than no hard ties");
-    const RowKinds kinds{static_cast<size_t>(hard_ties), j.value("give", false)};
+    const RowKinds kinds{static_cast<size_t>(hard_ties), j.value("give", false), j.value("at_rest", false)};
     replay.points = points, replay.blocks = blocks;
     Model model;
     model.solver = options;

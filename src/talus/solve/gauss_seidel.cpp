@@ -26,6 +26,10 @@ constexpr int kMostColours = 63;
 // Sweeps before the second phase: most steps end within them.
 constexpr int kPlainSweeps = 30;
 
+// Sweeps from one look at how far they have come to the next; the second tells how many are still to be
+// expected.
+constexpr int kBetweenLooks = 40;
+
 // The judge finds about so many times the change that the next sweep would make, where sweeps are slow; as much
 // as the last one made at least, where they are fast. Measured on shaken rock and walls.
 constexpr double kErrorOfNext = 1.3;
@@ -596,6 +600,14 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
   int ask_again = 0, last = limits.max_sweeps;
   double tolerance = goal.enough, change_before = 0, error_of_change = 0;
   bool first = true;
+  double change_at_look = 0;
+  const auto hopeless = [&](double change) {
+    if (goal.worth == 0 || report.iterations % kBetweenLooks != 0) return false;
+    const double decay = report.iterations > kBetweenLooks ? change / change_at_look : 0;
+    change_at_look = change;
+    if (decay == 0 || change <= tolerance) return false;
+    return decay >= 1 || kBetweenLooks * std::log(tolerance / change) / std::log(decay) > goal.worth;
+  };
   profile.go_on_with(Profile::kSweeps);
   while (!report.converged && report.iterations < last) {
     const bool second = report.iterations >= kPlainSweeps;
@@ -623,6 +635,10 @@ SolveReport GaussSeidel::solve(const StepProblem& problem, const SolverGoal& goa
       }
       if (change > 0) error_of_change = worst / change;
       ask_again = report.iterations + std::max(kSweepsBetween, report.iterations / 5);
+    }
+    if (!report.converged && hopeless(change)) {
+      report.gave_up = true;
+      break;
     }
     if (!second || report.converged || report.iterations == last) continue;
     extrapolate(workers, first);

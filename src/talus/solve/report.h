@@ -13,6 +13,7 @@ struct SolveReport {
   int colours = 0;       // of Gauss-Seidel's couples
   int islands = 0;
   int largest_island = 0;              // points
+  bool gave_up = false;                // sweeps: more were to be expected than they are worth
   bool converged = true;               // by the solver's own residual; the judge is contact_error()
   std::optional<ContactError> judged;  // what the judge said when it was last asked, if of just what stands
 };

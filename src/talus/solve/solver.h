@@ -31,6 +31,7 @@ struct StepProblem {
 struct SolverGoal {
   double wanted = 0, enough = 0;
   bool early = false;  // just reached will do: ask the judge as soon as it is likely
+  int worth = 0;       // sweeps give up where more than so many are still to be expected; 0: never
   SolverGoal(double both) : wanted(both), enough(both) {}
   SolverGoal(double wanted_, double enough_, bool early_ = false)
       : wanted(wanted_), enough(enough_), early(early_) {}

@@ -7,6 +7,7 @@
 #include "talus/base/error.h"
 #include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
+#include "talus/solve/primal_newton.h"
 
 namespace talus {
 
@@ -35,6 +36,13 @@ constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
                                           .mended = SolverKind::kNewton,
                                           .far_off = false,
                                           .goes_on = true,
+                                          .most_points = kAny},
+                              SolverEntry{.kind = SolverKind::kPrimalNewton,
+                                          .make = make<PrimalNewton>,
+                                          .smoothed = false,
+                                          .mended = SolverKind::kGaussSeidel,
+                                          .far_off = false,
+                                          .goes_on = false,
                                           .most_points = kAny}};
 static_assert(kSolvers.size() + 1 == kSolverName.size());
 static_assert(std::ranges::all_of(kSolvers, [](const SolverEntry& e) {
@@ -48,6 +56,12 @@ constexpr size_t kNewtonFaster = 12, kNewtonFasterTied = 2000;
 // Sweeps after which a step that another solver can mend is given to it.
 constexpr int kSweepsBeforeSecond = 500;
 
+// Where joints give and sweeps are slow, Newton's method in velocities ends a step in one to three factors, each as
+// dear as some 140 sweeps whatever the size; it is asked where more than so many sweeps are still to be expected
+// (theory 5.8), of at least so many points: a thousand sweeps of fewer are over in no time.
+constexpr int kWorthOfFactors = 300;
+constexpr size_t kFewestPrimal = 2000;
+
 // Solvers stop earlier than the judge. Errors left in hard rows are pushed back in the next step, which is
 // work out of nothing, and those in redundant ties add up, until no motion satisfies them all; Newton goes so
 // far at no cost.
@@ -58,9 +72,15 @@ constexpr double kStopGiving = 0.5;
 
 // Where a solver stops (theory 5.7).
 SolverGoal goal_of(SolverKind kind, const RowKinds& kinds, double tolerance, double sharper) {
-  const bool giving = kind == SolverKind::kGaussSeidel && kinds.give && kinds.hard_ties == 0;
+  const bool giving =
+      kind == SolverKind::kGaussSeidel && kinds.give && !kinds.at_rest && kinds.hard_ties == 0;
   const double enough = (giving ? kStopGiving : kStop) * tolerance;
   return {sharper * enough, enough, giving};
+}
+
+// Sweeps after which they are given up for another solver; 0: none is any better.
+int worth_of_sweeps(SolverKind kind, const RowKinds& kinds, size_t points) {
+  return kind == SolverKind::kGaussSeidel && kinds.give && points >= kFewestPrimal ? kWorthOfFactors : 0;
 }
 
 // Whether what a solver found of itself is what is measured apart from it; they differ by the round-off of
@@ -128,17 +148,22 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     // the smoothed law misses the exact one by design: there the solver's own residual is the judge
     now.failed = smoothed ? !now.report.converged : !(now.error.worst <= tolerance);
   };
-  const auto solve_by = [&](SolverKind kind, int sweeps) {
+  const auto solve_by = [&](SolverKind kind, int sweeps, int worth = 0) {
     SolverInput limits = options;
     limits.max_sweeps = sweeps;
+    SolverGoal goal = goal_of(kind, kinds, tolerance, sharper);
+    goal.worth = worth;
     now.method = kind;
-    now.report = solvers.of(kind).solve(problem, goal_of(kind, kinds, tolerance, sharper), limits, workers);
+    now.report = solvers.of(kind).solve(problem, goal, limits, workers);
     take(now.report.judged ? *now.report.judged : judge());
     TALUS_ASSERT(!now.report.judged || same_error(now.error, problem, workers));
   };
   const int few = again ? std::min(options.max_sweeps, kSweepsBeforeSecond) : options.max_sweeps;
-  solve_by(first, few);
-  if (!now.failed || !again) return now;
+  const int worth =
+      options.second_solver && !smoothed ? worth_of_sweeps(first, kinds, problem.rows.points.size()) : 0;
+  solve_by(first, few, worth);
+  const bool gave_up = now.report.gave_up;
+  if (!gave_up && (!now.failed || !again)) return now;
 
   struct Attempt {
     Solved solved;
@@ -153,8 +178,9 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     best_stands = std::isnan(best.solved.error.worst) || now.error.worst <= best.solved.error.worst;
     if (best_stands) best = {now, problem.rows.impulse, problem.rate};
   };
-  attempt(second, few, entry(first).far_off);
-  if (best.solved.failed && few < options.max_sweeps)
+  if (gave_up && !std::isnan(now.error.worst)) attempt(SolverKind::kPrimalNewton, few, false);
+  if (best.solved.failed && again) attempt(second, few, entry(first).far_off);
+  if (best.solved.failed && (gave_up || few < options.max_sweeps))
     for (const SolverEntry& e : kSolvers)
       if (e.goes_on && best.solved.failed) attempt(e.kind, options.max_sweeps, false);
   if (!best_stands) {

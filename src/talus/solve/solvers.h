@@ -39,6 +39,7 @@ class SolverSet {
 struct RowKinds {
   size_t hard_ties = 0;  // points of faces that are tied without any give
   bool give = false;     // some joints give
+  bool at_rest = false;  // a static stage: what is near rest moves by less than errors of rows that give
 };
 
 /// What the model asks for; for `auto`, what is faster for so many points, `hard_ties` of which tie faces

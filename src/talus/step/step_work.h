@@ -78,8 +78,7 @@ struct StepWork {
 /// initial ones. @pre  between kick() and drift()
 BlockRate rate_now(const StepWork& work, const State& state, size_t i);
 
-/// What the rows of the step are like, for whoever solves them. What is near rest moves by less than errors of
-/// rows that give: static stages are solved as if nothing gave. @pre  the rows are gathered
+/// What the rows of the step are like, for whoever solves them. @pre  the rows are gathered
 RowKinds row_kinds(const Scene& scene, const StepWork& work);
 
 /// "striker corner 1 on bar[0,0] edge 3", for messages.

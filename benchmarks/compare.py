@@ -27,6 +27,8 @@ QUICK_SECONDS, QUICK_REPETITIONS = 0.25, 2
 
 TALUS = "talus-bench"
 RIVALS = ["rivals/rival_box2d", "rivals/rival_box2d_o3", "rivals/rival_box2d3", "rivals/rival_chipmunk"]
+# with a driver that is not built, where TALUS_NTDDA names the program; larger walls take it hours
+NTDDA, NTDDA_SCENES = os.path.join("rivals", "ntdda.py"), ["wall_400", "wall_1k"]
 ONE_STEP_TALUS, ONE_STEP_RIVALS = "talus-one-step", ["rivals/rival_siconos"]
 
 RATIOS = [("ms_step_median", "step time"), ("cpu_s_per_simulated_s", "CPU per simulated second"),
@@ -105,6 +107,15 @@ def programs(options, names):
     return [path for path in paths if os.path.exists(path)]
 
 
+def rivals(options, scene):
+    """Paths of the programs that run a whole scene."""
+    paths = programs(options, RIVALS)
+    if os.environ.get("TALUS_NTDDA") and scene in NTDDA_SCENES:
+        os.environ.setdefault("TALUS_SCENE_BLOCKS", os.path.join(options.build_dir, "benchmarks", "scene-blocks"))
+        paths.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), NTDDA))
+    return paths
+
+
 def plan(options):
     """(program, arguments) of one repetition: talus before every other program, so that each ratio is of
     neighbours in time."""
@@ -119,7 +130,7 @@ def plan(options):
     for scene in scenes:
         settle, shake = (QUICK_SECONDS, QUICK_SECONDS) if options.quick else durations(scene)
         common = [scene, "--dt", str(options.dt), "--settle", str(settle), "--shake", str(shake)]
-        for rival in programs(options, RIVALS):
+        for rival in rivals(options, scene):
             for talus in programs(options, [TALUS]):
                 yield talus, common + tuned
             yield rival, common

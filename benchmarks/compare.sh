@@ -1,12 +1,13 @@
 #!/bin/bash
 # Times talus and other programs on the same scenes, in turn on one machine; prints the ratios with the errors
 # reached. Installs the other programs' packages where they are missing and builds their drivers; where
-# TALUS_BOX2D2_SOURCE and TALUS_BOX2D3_SOURCE name folders with sources of Box2D, those too (rivals/README.md).
+# TALUS_BOX2D2_SOURCE and TALUS_BOX2D3_SOURCE name folders with sources of Box2D, those too, and ntdda where TALUS_NTDDA
+# names it (rivals/README.md).
 # Usage: benchmarks/compare.sh BUILD_DIR OUT_DIR [--quick] [--scenes wall_1k,wall_7k] [--repetitions 5]
 #          [--dt 1e-3] [--sweeps 10] [--threads T]     the last two are talus's own
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-[ $# -ge 2 ] || { sed -n '2,6s/^# //p' "$0"; exit 2; }
+[ $# -ge 2 ] || { sed -n '2,7s/^# //p' "$0"; exit 2; }
 build=$1 out=$2
 shift 2
 

@@ -232,8 +232,8 @@ double number_of(const std::string& option, const char* text) {
 BenchOptions read_options(int argc, char** argv) {
   if (argc < 2 || argc % 2 != 0)
     throw std::invalid_argument(
-        "usage: SCENE [--dt s] [--settle s] [--shake s] [--sweeps n] [--threads n] [--slop m] [--tolerance "
-        "e]");
+        "usage: SCENE [--dt s] [--settle s] [--shake s] [--shake_g a] [--sweeps n] [--threads n] [--slop m] "
+        "[--tolerance e]");
   BenchOptions options;
   options.scene = argv[1];
   for (int i = 2; i + 1 < argc; i += 2) {
@@ -245,6 +245,8 @@ BenchOptions read_options(int argc, char** argv) {
       options.settle = value;
     } else if (option == "--shake") {
       options.shake = value;
+    } else if (option == "--shake_g") {
+      options.shake_g = value;
     } else if (option == "--sweeps") {
       options.sweeps = static_cast<int>(value);
     } else if (option == "--threads") {
@@ -324,7 +326,7 @@ void fill_accuracy(const BenchEngine& engine, const BenchScene& scene, double dt
 
 void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions& options,
                double resident_before) {
-  constexpr double kShaking = 0.3, kFrequency = 2;  // [g], [Hz]
+  constexpr double kFrequency = 2;  // [Hz]
   constexpr int kSamples = 32;
   fmt::print(stderr, "{}, {}: {} blocks on {}, load average {:.2f}\n", engine.name(), options.scene,
              scene.moving(), cpu_model(), load_average());
@@ -341,7 +343,7 @@ void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions&
     for (int i = 0; i < steps; ++i) {
       if (phase == "shake") {
         const double time = (i + 0.5) * dt;
-        gravity.x = -kShaking * kGravity * std::sin(2 * std::numbers::pi * kFrequency * time);
+        gravity.x = -options.shake_g * kGravity * std::sin(2 * std::numbers::pi * kFrequency * time);
       }
       engine.set_gravity(gravity);
       clock.step(engine, dt, i >= first);

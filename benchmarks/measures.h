@@ -128,6 +128,7 @@ struct BenchOptions {
   std::string scene;
   double dt = 1e-3;              // [s] --dt
   double settle = 1, shake = 2;  // [s] --settle, --shake (the hold of scenes that are not shaken)
+  double shake_g = 0.3;          // [g] --shake_g; amplitude of the shaking of walls
   int sweeps = 0;                // --sweeps; 0 leaves the engine's own number
   int threads = 1;               // --threads
   double slop = kNotMeasured;    // [m] --slop; overlap an engine tolerates, its own if not given
@@ -152,8 +153,8 @@ class BenchEngine {
   virtual std::vector<BenchContact> contacts() const = 0;  // of the last step
 };
 
-/// Lets the scene settle, then shakes it (walls: 0.3 g at 2 Hz, as a body force) or holds it under gravity,
-/// and prints the header and one line per phase: time, and accuracy at the end and at 32 instants along the
+/// Lets the scene settle, then shakes it (walls: at 2 Hz, as a body force) or holds it under gravity, and
+/// prints the header and one line per phase: time, and accuracy at the end and at 32 instants along the
 /// phase. The first half of settling is neither timed nor judged: contacts begin there.
 /// @param resident_before [bytes] memory held before the engine was built
 void run_scene(BenchEngine& engine, const BenchScene& scene, const BenchOptions& options,

@@ -1,6 +1,6 @@
 // talus on one scene: settles it, shakes or holds it, and prints one CSV line per phase like the rivals do.
-// Usage: talus-bench SCENE [--dt S] [--settle S] [--shake S] [--sweeps N] [--threads N] [--tolerance SHARE]
-//        [--stiffness PA_PER_M] [--explicit 1] [--profile 1]
+// Usage: talus-bench SCENE [--dt S] [--settle S] [--shake S] [--shake_g G] [--sweeps N] [--threads N]
+//        [--tolerance SHARE] [--stiffness PA_PER_M] [--explicit 1] [--profile 1]
 
 #include <cstdio>
 #include <cstdlib>

@@ -27,8 +27,10 @@ QUICK_SECONDS, QUICK_REPETITIONS = 0.25, 2
 
 TALUS = "talus-bench"
 RIVALS = ["rivals/rival_box2d", "rivals/rival_box2d_o3", "rivals/rival_box2d3", "rivals/rival_chipmunk"]
-# with a driver that is not built, where TALUS_NTDDA names the program; larger walls take it hours
-NTDDA, NTDDA_SCENES = os.path.join("rivals", "ntdda.py"), ["wall_400", "wall_1k"]
+# drivers that are not built, where TALUS_LMGC90 and TALUS_NTDDA name the programs; both take steps of their own
+HERE = os.path.dirname(os.path.abspath(__file__))
+LMGC90, NTDDA = os.path.join(HERE, "rivals", "lmgc90.py"), os.path.join(HERE, "rivals", "ntdda.py")
+NTDDA_SCENES = ["wall_400", "wall_1k"]  # larger walls take it hours
 ONE_STEP_TALUS, ONE_STEP_RIVALS = "talus-one-step", ["rivals/rival_siconos"]
 
 RATIOS = [("ms_step_median", "step time"), ("cpu_s_per_simulated_s", "CPU per simulated second"),
@@ -54,9 +56,8 @@ def cpu_model():
 
 def commit():
     """Of the sources, with a plus where they have been changed since."""
-    here = os.path.dirname(os.path.abspath(__file__))
     try:
-        done = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=here, capture_output=True, text=True)
+        done = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=HERE, capture_output=True, text=True)
         return done.stdout.strip() or "unknown"
     except OSError:
         return "unknown"
@@ -107,13 +108,15 @@ def programs(options, names):
     return [path for path in paths if os.path.exists(path)]
 
 
-def rivals(options, scene):
-    """Paths of the programs that run a whole scene."""
-    paths = programs(options, RIVALS)
+def rivals(options, scene, common, lengths):
+    """(program, arguments) of those that run a whole scene."""
+    result = [(path, common) for path in programs(options, RIVALS)]
+    os.environ.setdefault("TALUS_SCENE_BLOCKS", os.path.join(options.build_dir, "benchmarks", "scene-blocks"))
+    if os.environ.get("TALUS_LMGC90"):
+        result.append((LMGC90, [scene] + lengths))
     if os.environ.get("TALUS_NTDDA") and scene in NTDDA_SCENES:
-        os.environ.setdefault("TALUS_SCENE_BLOCKS", os.path.join(options.build_dir, "benchmarks", "scene-blocks"))
-        paths.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), NTDDA))
-    return paths
+        result.append((NTDDA, [scene] + lengths))
+    return result
 
 
 def plan(options):
@@ -129,11 +132,12 @@ def plan(options):
             tuned += ["--" + name, str(getattr(options, name))]
     for scene in scenes:
         settle, shake = (QUICK_SECONDS, QUICK_SECONDS) if options.quick else durations(scene)
-        common = [scene, "--dt", str(options.dt), "--settle", str(settle), "--shake", str(shake)]
-        for rival in rivals(options, scene):
+        lengths = ["--settle", str(settle), "--shake", str(shake)]
+        common = [scene, "--dt", str(options.dt)] + lengths
+        for rival in rivals(options, scene, common, lengths):
             for talus in programs(options, [TALUS]):
                 yield talus, common + tuned
-            yield rival, common
+            yield rival
     for scene in one_step:
         for rival in programs(options, ONE_STEP_RIVALS):
             for program in programs(options, [ONE_STEP_TALUS]) + [rival]:
@@ -178,7 +182,8 @@ def neighbours(rows):
         elif place in last:
             talus = last[place]
             threads = "" if talus["threads"] == "1" else f", {talus['threads']} threads"
-            key = (row["scene"], row["phase"], row["dt"], talus["engine"] + threads, row["engine"])
+            dt = row["dt"] if row["dt"] == talus["dt"] else f"{talus['dt']} / {row['dt']}"
+            key = (row["scene"], row["phase"], dt, talus["engine"] + threads, row["engine"])
             result.setdefault(key, []).append((talus, row))
     return result
 

@@ -21,10 +21,17 @@ constexpr int kMostIterations = 100;
 // Force out of balance as share of the largest, at which the bar is taken to be in balance.
 constexpr double kBalanced = 1e-9;
 
+// Round-off of an elongation, as share of the slips that it is the difference of: across a closed joint the bar is so short
+// that this is a force beyond the balance asked for.
+constexpr double kRoundOff = 4 * std::numeric_limits<double>::epsilon();
+
 // And what is too much to go on with.
 constexpr double kMostLeft = 1e-3;
 
 constexpr int kMostHalvings = 120;
+
+// Whole steps from where the bar was a step ago: it hardly moves, and few springs begin or cease to yield.
+constexpr int kMostFromBefore = 6;
 
 // A spring that yields: force and tangent at elongation x from its place without force.
 struct Law {
@@ -54,7 +61,7 @@ class Chain {
   // @param yields  false: as if no spring had a limit
   void evaluate(const std::vector<double>& slip, bool yields) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    scale_ = 0;
+    scale_ = round_off_ = 0;
     for (size_t i = 0; i < slip.size(); ++i) {
       const BoltNode& n = bolt_.nodes[i];
       const double limit = yields ? n.limit : kInfinity;
@@ -69,6 +76,9 @@ class Chain {
       const double limit = yields ? s.yield : kInfinity;
       const Law l = law(s.stiffness, soft_, limit, slip[j + 1] - slip[j] + rock_[j] - s.plastic);
       residual_[j] -= l.force, residual_[j + 1] += l.force, linked_[j] = l.tangent;
+      const double sizes =
+          std::abs(slip[j]) + std::abs(slip[j + 1]) + std::abs(rock_[j]) + std::abs(s.plastic);
+      round_off_ = std::max(round_off_, l.tangent * kRoundOff * sizes);
       scale_ = std::max(scale_, std::abs(l.force));
     }
   }
@@ -79,6 +89,9 @@ class Chain {
     return most;
   }
   double scale() const { return scale_; }
+  bool balanced() const {
+    return imbalance() <= std::max(kBalanced * scale_, std::min(round_off_, kMostLeft * scale_));
+  }
 
   // Slope of the energy along a step, at the last evaluation.
   double slope(const std::vector<double>& step) const {
@@ -106,7 +119,7 @@ class Chain {
   const std::vector<double>& rock_;
   const Bolt& bolt_;
   std::vector<double> residual_, held_, linked_;  // [n_nodes]; springs of nodes; segments, the last unused
-  double scale_ = 0, soft_ = 0;
+  double scale_ = 0, soft_ = 0, round_off_ = 0;
 };
 
 std::vector<double> plus(const std::vector<double>& a, double part, const std::vector<double>& b) {
@@ -136,12 +149,22 @@ void go_along(const std::vector<double>& step, Chain& chain, std::vector<double>
   slope_at(low > 0 ? low : high);
 }
 
-// Minimises the energy of the chain: from the elastic answer Newton's steps, as far as each leads down.
-// Returns the force left out of balance, as share of the largest (eq. 4.9).
+// Minimises the energy of the chain: Newton's steps from where it was; where these do not end, from the elastic answer, as
+// far as each leads down. The energy is convex: both find the same. Returns the force left out of balance, as
+// share of the largest, 0 where it is no more than asked for (eq. 4.9).
 double solve(const std::vector<double>& rock, const Bolt& bolt, std::vector<double>& slip) {
   Chain chain(rock, bolt);
-  slip.clear();
-  for (const BoltNode& n : bolt.nodes) slip.push_back(n.slip);
+  std::vector<double> before;
+  for (const BoltNode& n : bolt.nodes) before.push_back(n.slip);
+  slip = before;
+  chain.evaluate(slip, true);
+  for (int k = 1; k <= kMostFromBefore; ++k) {
+    slip = plus(slip, 1, chain.newton_step());
+    chain.evaluate(slip, true);
+    // the second refines what round-off left of the first
+    if (k >= 2 && chain.balanced()) return 0;
+  }
+  slip = before;
   for (int refine = 0; refine < 2; ++refine) {
     chain.evaluate(slip, false);
     slip = plus(slip, 1, chain.newton_step());
@@ -149,13 +172,13 @@ double solve(const std::vector<double>& rock, const Bolt& bolt, std::vector<doub
   chain.evaluate(slip, true);
   std::vector<double> best = slip;
   double least = chain.imbalance();
-  for (int k = 0; k < kMostIterations && least > kBalanced * chain.scale(); ++k) {
+  for (int k = 0; k < kMostIterations && !chain.balanced(); ++k) {
     go_along(chain.newton_step(), chain, slip);
     if (chain.imbalance() < least) best = slip, least = chain.imbalance();
   }
   slip = best;
   chain.evaluate(slip, true);
-  return chain.scale() > 0 ? least / chain.scale() : 0;
+  return chain.balanced() ? 0 : least / chain.scale();
 }
 
 // Takes over the slips; ruptures the segment that is stretched most beyond its limit: the others may unload

@@ -218,6 +218,7 @@ TEST_CASE("statics of a bar across three joints, drawn to and fro at random, is 
                    right = i < bolt.segments.size() ? bolt.segments[i].force : 0;
       const double grout = n.stiffness * (n.slip - n.plastic);
       CHECK(std::abs(grout) <= n.limit * (1 + 1e-9));
+      CHECK(std::abs(n.slip) < 1);  // not balanced by forces of metres of slip
       worst = std::max(worst, std::abs(left - right + grout) / most);
     }
   }

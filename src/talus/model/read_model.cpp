@@ -369,8 +369,11 @@ class ModelReader : private SectionReader {
     model_.solver.method = solver_called(f.get<std::string>("method"));
     model_.solver.second_solver = f.get("second_solver", true);
     model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
-    if (model_.solver.method == SolverKind::kGaussSeidel && model_.contact.law == ContactLaw::kSmoothed)
-      findings_.error(f.where("method"), f.path_of("method"), "gauss_seidel solves the exact law only",
+    const bool only_exact =
+        model_.solver.method != SolverKind::kAuto && model_.solver.method != SolverKind::kNewton;
+    if (only_exact && model_.contact.law == ContactLaw::kSmoothed)
+      findings_.error(f.where("method"), f.path_of("method"),
+                      fmt::format("{} solves the exact law only", name_of(model_.solver.method)),
                       "use method = \"newton\" with contact.law = \"smoothed\"");
     model_.solver.tolerance = f.get("tolerance", 1e-8);
     model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));

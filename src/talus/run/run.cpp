@@ -368,12 +368,21 @@ class Runner {
     ++result_.failed_steps;
     if (scene_.model.solver.stop_on_failure) {
       throw NumericalError(fmt::format(
-          "step {} at t = {:.9g} s: the contact equations were not solved; error {:.3g} m after {} "
-          "iterations, allowed {:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a "
+          "step {} at t = {:.9g} s: the contact equations were not solved; error {:.3g} m after {}, "
+          "allowed {:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a "
           "wider solver.tolerance may help; solver.on_failure = \"continue\" counts such steps instead of "
           "stopping",
-          state.step, state.time, r.error.worst, r.solve.iterations, settings_.tolerance, r.worst));
+          state.step, state.time, r.error.worst, attempts_text(r.attempts), settings_.tolerance, r.worst));
     }
+  }
+
+  // "80 iterations of gauss_seidel, 6 of primal_newton".
+  static std::string attempts_text(const Attempts& attempts) {
+    std::string text;
+    for (size_t i = 0; i < attempts.count; ++i)
+      text += fmt::format("{}{} {}of {}", i == 0 ? "" : ", ", attempts.list[i].iterations,
+                          i == 0 ? "iterations " : "", name_of(attempts.list[i].solver));
+    return text;
   }
 
   // How deep a contact has gone, where, and what would keep it from it.

@@ -139,6 +139,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   if (again || keep_guess) guess = problem.rows.impulse;
 
   Solved now;
+  Attempts attempts;
   const auto judge = [&] {
     const InPart part(problem.profile, Profile::kJudge);
     return contact_error(problem.mobility, problem.rows, problem.rate, problem.dt, workers);
@@ -155,6 +156,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     goal.worth = worth;
     now.method = kind;
     now.report = solvers.of(kind).solve(problem, goal, limits, workers);
+    attempts.add(kind, now.report.iterations);
     take(now.report.judged ? *now.report.judged : judge());
     TALUS_ASSERT(!now.report.judged || same_error(now.error, problem, workers));
   };
@@ -163,6 +165,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
       options.second_solver && !smoothed ? worth_of_sweeps(first, kinds, problem.rows.points.size()) : 0;
   solve_by(first, few, worth);
   const bool gave_up = now.report.gave_up;
+  now.attempts = attempts;
   if (!gave_up && (!now.failed || !again)) return now;
 
   struct Attempt {
@@ -190,6 +193,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     take(judge());
   }
   now.second_solver = true;
+  now.attempts = attempts;
   solvers.drop(second);  // what it keeps is for steps that are all its own
   return now;
 }

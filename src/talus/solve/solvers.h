@@ -46,12 +46,25 @@ struct RowKinds {
 /// without any give.
 SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties);
 
+/// Who worked at a step, in their order, and how many iterations or sweeps each.
+struct Attempts {
+  struct One {
+    SolverKind solver = SolverKind::kAuto;
+    int iterations = 0;
+  };
+  std::array<One, kSolverName.size() + 1> list{};
+  size_t count = 0;
+
+  void add(SolverKind solver, int iterations) { list.at(count++) = {solver, iterations}; }
+};
+
 struct Solved {
   SolverKind method = SolverKind::kAuto;  // whose result stands
   SolveReport report;
   ContactError error;
   bool failed = false;         // error above the tolerance
   bool second_solver = false;  // another solver was asked
+  Attempts attempts;
 };
 
 /// Solves a step: the chosen solver; where its result misses the tolerance, another; then sweeps from the

@@ -40,14 +40,15 @@ struct StepReport {
   std::string worst;           // name of the row with the worst error
   bool failed = false;         // error above the tolerance
   bool second_solver = false;  // the other solver was asked
-  double closed_share = 0;     // largest overlap of a contact, as share of the thinner block there
-  int closed_row = -1;         // its row
-  double drift = 0;            // deepest overlap of hard contacts before the step [m]
-  double unbalanced = 0;       // largest unbalanced force of a block / mean force on blocks
-  int worst_block = -1;        // whose unbalanced force is the largest
-  double worst_force = 0;      // that force [N]
-  double nudge = 0;            // kinetic energy that the forces on blocks would give them in half a step [J]
-  double speed_left = 0;       // static stages: share of the velocity that is left (set by run/)
+  Attempts attempts;
+  double closed_share = 0;  // largest overlap of a contact, as share of the thinner block there
+  int closed_row = -1;      // its row
+  double drift = 0;         // deepest overlap of hard contacts before the step [m]
+  double unbalanced = 0;    // largest unbalanced force of a block / mean force on blocks
+  int worst_block = -1;     // whose unbalanced force is the largest
+  double worst_force = 0;   // that force [N]
+  double nudge = 0;         // kinetic energy that the forces on blocks would give them in half a step [J]
+  double speed_left = 0;    // static stages: share of the velocity that is left (set by run/)
   Energy energy;
   int broken_faces = 0;  // in the drift that follows
 };

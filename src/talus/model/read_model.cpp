@@ -375,6 +375,11 @@ class ModelReader : private SectionReader {
       findings_.error(f.where("method"), f.path_of("method"),
                       fmt::format("{} solves the exact law only", name_of(model_.solver.method)),
                       "use method = \"newton\" with contact.law = \"smoothed\"");
+    if (only_exact && model_.solver.jacobian == JacobianKind::kDifference)
+      findings_.error(
+          f.where("jacobian"), f.path_of("jacobian"),
+          fmt::format("difference quotients are of newton; {} takes none", name_of(model_.solver.method)),
+          "leave it out, or use method = \"newton\"");
     model_.solver.tolerance = f.get("tolerance", 1e-8);
     model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
     model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";

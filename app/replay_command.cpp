@@ -33,7 +33,7 @@ int replay_command(const ReplayArguments& args) {
              r.solved.report.islands, r.solved.report.largest_island);
   fmt::print("  {:<14} {} iterations, contact error {:.3e} m{}\n", name_of(r.solved.method),
              r.solved.report.iterations, r.solved.error.worst,
-             r.solved.second_solver ? "; the first solver failed" : "");
+             r.solved.attempts.several() ? "; the first solver failed" : "");
   double normal = 0, shear = 0;
   for (const Impulse& p : r.rows.impulse) normal += p[0], shear += std::abs(p[1]);
   fmt::print("  impulses       normal {:.12g} N s in all, tangential {:.12g} N s in magnitude\n", normal,

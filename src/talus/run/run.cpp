@@ -351,7 +351,7 @@ class Runner {
       result_.worst_error_time = state.time;
       result_.worst_error_row = r.worst;
     }
-    result_.second_solver_steps += r.second_solver;
+    result_.second_solver_steps += r.attempts.several();
     ++result_.steps_by[static_cast<size_t>(r.method)];
     result_.deepest_drift = std::max(result_.deepest_drift, r.drift);
     result_.energy = r.energy;

@@ -216,16 +216,16 @@ void BlockFactor::analyse(const std::vector<std::array<int, 2>>& pairs, const st
   share_out();
 }
 
+bool BlockFactor::goes_before(int a, int b) const {
+  const auto i = static_cast<size_t>(a), j = static_cast<size_t>(b);
+  return front_of_[i] != front_of_[j] ? front_of_[i] < front_of_[j] : place_in_front_[i] < place_in_front_[j];
+}
+
 // Boundaries, from the leaves upwards.
 void BlockFactor::join_fronts(const std::vector<std::array<int, 2>>& pairs) {
-  const auto later = [&](int a, int b) {
-    const auto i = static_cast<size_t>(a), j = static_cast<size_t>(b);
-    return front_of_[i] != front_of_[j] ? front_of_[i] < front_of_[j]
-                                        : place_in_front_[i] < place_in_front_[j];
-  };
   for (size_t k = 0; k < pairs.size(); ++k) {
     const auto [a, b] = pairs[k];
-    const int first = later(a, b) ? a : b;
+    const int first = goes_before(a, b) ? a : b;
     fronts_[static_cast<size_t>(front_of_[static_cast<size_t>(first)])].pairs.push_back(static_cast<int>(k));
   }
   for (size_t f = 0; f < fronts_.size(); ++f) {
@@ -238,7 +238,7 @@ void BlockFactor::join_fronts(const std::vector<std::array<int, 2>>& pairs) {
       for (const int b : pairs[static_cast<size_t>(k)]) take(b);
     for (const int c : front.children)
       for (const int b : fronts_[static_cast<size_t>(c)].boundary) take(b);
-    std::sort(rim.begin(), rim.end(), later);
+    std::sort(rim.begin(), rim.end(), [this](int a, int b) { return goes_before(a, b); });
     rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
     for (const int c : front.children) {
       Front& child = fronts_[static_cast<size_t>(c)];
@@ -319,12 +319,8 @@ void BlockFactor::gather(Front& front, const std::vector<Tile>& diagonal, const 
   const auto local = [&](int block) -> size_t {
     const auto b = static_cast<size_t>(block);
     if (&fronts_[static_cast<size_t>(front_of_[b])] == &front) return static_cast<size_t>(place_in_front_[b]);
-    const auto later = [&](int x, int y) {
-      const auto i = static_cast<size_t>(x), j = static_cast<size_t>(y);
-      return front_of_[i] != front_of_[j] ? front_of_[i] < front_of_[j]
-                                          : place_in_front_[i] < place_in_front_[j];
-    };
-    const auto it = std::lower_bound(front.boundary.begin(), front.boundary.end(), block, later);
+    const auto it = std::lower_bound(front.boundary.begin(), front.boundary.end(), block,
+                                     [this](int x, int y) { return goes_before(x, y); });
     return 2 * own + static_cast<size_t>(it - front.boundary.begin());
   };
   for (const int k : front.pairs) {

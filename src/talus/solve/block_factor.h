@@ -61,6 +61,8 @@ class BlockFactor {
   };
 
   class Dissection;
+  /// In the order of elimination.
+  bool goes_before(int a, int b) const;
   void join_fronts(const std::vector<std::array<int, 2>>& pairs);
   void share_out();
   void gather(Front& front, const std::vector<Tile>& diagonal, const std::vector<Tile>& beside);

@@ -165,8 +165,6 @@ class Equations {
     });
   }
 
-  size_t blocks() const { return moving_.size(); }
-
   // Velocities that the impulses of the rows give.
   std::vector<double> start() const {
     std::vector<double> v(6 * moving_.size());

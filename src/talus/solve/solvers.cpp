@@ -192,7 +192,6 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     now = best.solved;
     take(judge());
   }
-  now.second_solver = true;
   now.attempts = attempts;
   solvers.drop(second);  // what it keeps is for steps that are all its own
   return now;

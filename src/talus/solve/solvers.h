@@ -56,14 +56,14 @@ struct Attempts {
   size_t count = 0;
 
   void add(SolverKind solver, int iterations) { list.at(count++) = {solver, iterations}; }
+  bool several() const { return count > 1; }
 };
 
 struct Solved {
   SolverKind method = SolverKind::kAuto;  // whose result stands
   SolveReport report;
   ContactError error;
-  bool failed = false;         // error above the tolerance
-  bool second_solver = false;  // another solver was asked
+  bool failed = false;  // error above the tolerance
   Attempts attempts;
 };
 

@@ -79,7 +79,7 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
   report.error = solved.error, report.failed = solved.failed;
-  report.second_solver = solved.second_solver, report.attempts = solved.attempts;
+  report.attempts = solved.attempts;
   if (report.error.point >= 0)
     report.worst = row_name(scene, state, work, static_cast<size_t>(report.error.point));
 }

@@ -37,9 +37,8 @@ struct StepReport {
   SolverKind method = SolverKind::kAuto;  // whose result stands
   SolveReport solve;
   ContactError error;
-  std::string worst;           // name of the row with the worst error
-  bool failed = false;         // error above the tolerance
-  bool second_solver = false;  // the other solver was asked
+  std::string worst;    // name of the row with the worst error
+  bool failed = false;  // error above the tolerance
   Attempts attempts;
   double closed_share = 0;  // largest overlap of a contact, as share of the thinner block there
   int closed_row = -1;      // its row

@@ -113,7 +113,8 @@ TEST_CASE("block factor: the solutions of Eigen's simplicial one") {
     double most = 0;
     for (size_t i = 0; i < x.size(); ++i)
       most = std::max(most, std::abs(x[i] - y[static_cast<Eigen::Index>(i)]));
-    CHECK(most < 1e-13 * y.lpNorm<Eigen::Infinity>() * 10);
+    // both are round-off away from the answer; diagonals outweigh their rows, so that it is not magnified
+    CHECK(most < 1e-12 * y.lpNorm<Eigen::Infinity>());
   }
 }
 

@@ -156,6 +156,7 @@ struct RestWatch {
   double before = 0;   // the same between the last two looks
   double sharper = 1;  // share of the solver's tolerance to which steps are solved
   int stuck = 0;       // looks in a row that stall or, at the sharpest, are without any progress
+  double length = 0;   // of the next step of a stage from rest [s]
 };
 
 struct State {

@@ -22,6 +22,11 @@ struct LookAhead {
 bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state);
 
+/// Whether no two blocks of a pair come together in the step by more than their points were sought ahead.
+/// @param rate  with which they move over clock.dt
+bool points_reach(const BondSet& bonds, const BlockSet& blocks, const State& state,
+                  const std::vector<BlockRate>& rate, const StepClock& clock, const Workers& workers);
+
 struct SearchReport {
   int searched = 0;    // pairs whose contact points were sought anew
   double seconds = 0;  // that took, all threads together

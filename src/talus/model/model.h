@@ -204,6 +204,7 @@ struct StageInput {
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;
+  bool from_rest = false;        // static: backward Euler, every step from rest (theory 4.23)
   bool implicit = false;         // block-implicit elasticity
   bool elasticity_auto = false;  // implicit where theory 4.9 asks for it (set by build_scene)
   double damping_mass = 0;       // [1/s]

@@ -74,6 +74,15 @@ SectionSpec stage_section() {
                "h/v and 1/50 of the shortest period of the histories, h the least thickness of a block, v "
                "the fastest motion given, and of blocks that nothing holds the end of their fall to the "
                "lowest place of the model."},
+       {.name = "integration",
+        .type = K::kChoice,
+        .default_text = "\"dynamic\"",
+        .choices = {"dynamic", "implicit"},
+        .doc =
+            "Static stages. `dynamic`: they move, damped, until at rest. `implicit`: steps of backward Euler "
+            "(theory 4.23), each from rest to what is nearly the balance of its loads, that grow from "
+            "`time_step` (\"auto\": 20 ms) to 16 times that while nothing breaks, and are halved where "
+            "one fails; `relaxation` is then, unless given, over the first eight."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

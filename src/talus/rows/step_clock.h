@@ -10,6 +10,7 @@ struct StepClock {
   double alpha = 0.2;         // damping of compliant rows and of implicit elasticity
   double history_time = 0;    // of the histories at the start of the step [s]
   bool histories_run = true;  // false: they stand still (static stages)
+  bool from_rest = false;     // nothing moves before the step nor after it
 
   double history_end() const { return history_time + (histories_run ? dt : 0); }
   /// Factor 4 / (1 + alpha)^2 on the position.

@@ -162,6 +162,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
     }
     plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
     plan.dt = stage.duration / static_cast<double>(plan.steps);
+    if (stage.from_rest) plan.steps *= kMostShortened;
     if (stage.implicit) {
       plan.dt_bound = plan.dt_undamped = std::numeric_limits<double>::infinity();
       plan.bound_block = -1;

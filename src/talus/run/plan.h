@@ -9,8 +9,12 @@
 
 namespace talus {
 
+/// Lengths of the steps of a stage from rest: the first is so many times the shortest, the longest so many times
+/// the first (theory 4.23).
+inline constexpr int kMostShortened = 64, kMostLengthened = 16;
+
 struct StagePlan {
-  double dt = 0;           // [s]
+  double dt = 0;           // [s]; the first of a stage from rest
   int64_t steps = 0;       // of a static stage: the most
   double dt_bound = 0;     // stable limit before any clamp [s]; infinite when no block deforms
   int bound_block = -1;    // the block that sets it

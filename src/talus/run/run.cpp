@@ -9,6 +9,7 @@
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/base/memory_reserve.h"
+#include "talus/contact/pairs.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 #include "talus/run/check_monitors.h"
@@ -98,6 +99,8 @@ class Runner {
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
     state_.rest = {};
+    state_.rest.length = plan.dt;
+    if (stage.from_rest) stop_motion(scene_, state_);
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {
       state_.displacement_start = state_.displacement;
@@ -114,6 +117,7 @@ class Runner {
                  .tolerance = scene_.model.solver.tolerance * tolerance_size(scene_.blocks),
                  .histories_run = stage.kind == StageKind::kDynamic,
                  .implicit = stage.implicit,
+                 .from_rest = stage.from_rest,
                  .keep_guess = true};
     work_.mobility.clear();  // of other inertias
   }
@@ -135,7 +139,7 @@ class Runner {
   void take_steps(int index) {
     const auto k = static_cast<size_t>(index);
     const StageInput& stage = scene_.model.stages[k];
-    const StagePlan& plan = plans_[k];
+    StagePlan plan = plans_[k];
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
 
@@ -145,13 +149,18 @@ class Runner {
         result_.interrupted = true;
         break;
       }
+      if (stage.from_rest && state_.time >= out.begin + stage.duration) break;
       settings_.sharper = state_.rest.sharper;
-      StepReport report = kick(scene_, settings_, plan.dt, work_, state_);
+      StepReport report = stage.from_rest ? kick_from_rest(stage, out, plan)
+                                          : kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);
       show({scene_, state_, work_, report, plan, index, n == 0, false});
-      go_on_or_fail(index, n, report);
+      go_on_or_fail(index, n, plan, report);
       ++out.steps;
-      state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
+      if (stage.from_rest)
+        lengthen(stage, report, plans_[k].dt);
+      else
+        state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
       last_ = report;
       state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
@@ -169,17 +178,53 @@ class Runner {
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
 
+  // A step of backward Euler, of half the length where it was not solved or blocks went further than contacts were
+  // sought (theory 4.23). `plan` gets the length it had.
+  StepReport kick_from_rest(const StageInput& stage, const StageResult& out, StagePlan& plan) {
+    double& length = state_.rest.length;
+    const double shortest = plans_[result_.stages.size() - 1].dt / kMostShortened;
+    const State before = state_;
+    for (;;) {
+      plan.dt = length;
+      // what acts at the end of the step; sums of lengths are round-off short of the times meant
+      const double end = (state_.time - out.begin + length) * (1 + 1e-12);
+      state_.relaxed = stage.relaxed_at(end, state_.relaxed);
+      const StepReport report = kick(scene_, settings_, length, work_, state_);
+      const bool reach =
+          points_reach(scene_.bonds, scene_.blocks, state_, state_.rate, work_.clock, work_.workers);
+      if (reach && !report.failed) return report;
+      if (length <= shortest) {
+        if (report.failed) return report;
+        throw NumericalError(fmt::format(
+            "step {} at t = {:.9g} s: blocks go further than contacts are sought, also in a step of {:.3g} s: "
+            "they fall or slide. integration = \"dynamic\" follows them",
+            state_.step, state_.time, length));
+      }
+      const double half = 0.5 * length;
+      state_ = before;
+      length = half;
+    }
+  }
+
+  // What breaks changes the balance: no longer step before it is found.
+  void lengthen(const StageInput& stage, const StepReport& report, double first) {
+    if (report.broken_faces > 0) return;
+    const double most = is_relaxed(stage, 0) ? kMostLengthened * first : first;
+    state_.rest.length = std::min(2 * state_.rest.length, most);
+  }
+
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
   // and shown once more with everything in its place.
-  void go_on_or_fail(int index, int64_t n, StepReport& report) {
-    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+  void go_on_or_fail(int index, int64_t n, const StagePlan& plan, StepReport& report) {
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
+    // from the start of the stage, not by adding: the last step ends exactly on the stage's end
+    const double end = settings_.from_rest
+                           ? state_.time + plan.dt
+                           : result_.stages.back().begin + plan.dt * static_cast<double>(n + 1);
     try {
       note(report, state_);
-      // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-      drift(scene_, result_.stages.back().begin + plan.dt * static_cast<double>(n + 1), work_, state_,
-            report);
+      drift(scene_, end, work_, state_, report);
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
@@ -318,11 +363,12 @@ class Runner {
 
   // Forces in balance is not enough: a block that swings through its rest position is in balance there.
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
-           report.speed_left <= stage.unbalanced;
+    return n >= 1 && is_relaxed(stage, n) && (!stage.from_rest || report.broken_faces == 0) &&
+           report.unbalanced <= stage.unbalanced && report.speed_left <= stage.unbalanced;
   }
 
   bool is_relaxed(const StageInput& stage, int64_t n) const {
+    if (stage.from_rest) return stage.relaxation.empty() || state_.relaxed >= stage.relaxation.back().y;
     return stage.relaxation.empty() ||
            plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
   }

@@ -124,6 +124,21 @@ void judge_pairs(const Standing& standing, const State& state, const Scene& scen
                      fmt::format("block {} touches something, and is excavated by then", k));
 }
 
+void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResult& now, const State& state) {
+  if (stage.from_rest) {
+    promise_loaded(state.rest.length >= 0.99 * plan.dt / kMostShortened &&
+                       state.rest.length <= 1.01 * plan.dt * kMostLengthened,
+                   fmt::format("\"length\" of its next step is {}", state.rest.length));
+    promise_loaded(state.dt_before == 0, "it moves in a stage whose steps begin at rest");
+    return;
+  }
+  // as drift() counts time
+  const double time = now.begin + plan.dt * static_cast<double>(now.steps);
+  promise_loaded(
+      std::abs(state.time - time) <= 1e-3 * plan.dt,
+      fmt::format("it stands at {} s, and {} steps of its stage end at {} s", state.time, now.steps, time));
+}
+
 void judge_standing(const Standing& standing, const State& state, const PreparedRun& prepared) {
   const Scene& scene = prepared.scene;
   const std::vector<StageResult>& stages = standing.result.stages;
@@ -142,11 +157,7 @@ void judge_standing(const Standing& standing, const State& state, const Prepared
   const StagePlan& plan = prepared.plans[stages.size() - 1];
   const StageResult& now = stages.back();
   promise_loaded(now.steps <= plan.steps, "its steps are not those of the model");
-  // as drift() counts time
-  const double time = now.begin + plan.dt * static_cast<double>(now.steps);
-  promise_loaded(
-      std::abs(state.time - time) <= 1e-3 * plan.dt,
-      fmt::format("it stands at {} s, and {} steps of its stage end at {} s", state.time, now.steps, time));
+  judge_clock(scene.model.stages[stages.size() - 1], plan, now, state);
   const RunResult& r = standing.result;
   for (const int64_t count : {r.steps, r.failed_steps, r.second_solver_steps, r.iterations})
     promise_loaded(count >= 0 && count <= kMostCount, "it has counted less than nothing, or endlessly");

@@ -138,6 +138,13 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
   if (before.kind != now.kind) state.candidates.reach.clear();
 }
 
+void stop_motion(const Scene& scene, State& state) {
+  const double before = ledger_energy(scene, state);
+  std::fill(state.rate.begin(), state.rate.end(), BlockRate{});
+  state.dt_before = 0;
+  state.work[Cause::kDamping] += ledger_energy(scene, state) - before;
+}
+
 // Eq. 2.3.
 double ledger_energy(const Scene& scene, const State& state) {
   const BlockSet& blocks = scene.blocks;

@@ -26,6 +26,9 @@ std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector
 void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supported_before,
                  const Scene& scene, State& state);
 
+/// Takes their motion from all blocks; its energy goes to the ledger as damping.
+void stop_motion(const Scene& scene, State& state);
+
 /// Kinetic and strain energy less the work of gravity, as the ledger counts them between two steps [J]: what
 /// a change of the scene adds to it is no work.
 double ledger_energy(const Scene& scene, const State& state);

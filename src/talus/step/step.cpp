@@ -115,8 +115,13 @@ void remember(const Scene& scene, const StepWork& work, State& state) {
 StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work,
                      State& state) {
   StepReport report;
-  work.clock = {dt, 0.5 * (state.dt_before + dt), scene.model.contact.alpha, state.history_time,
-                settings.histories_run};
+  // alpha = 1 weights the end of the step alone
+  work.clock = {dt,
+                settings.from_rest ? dt : 0.5 * (state.dt_before + dt),
+                settings.from_rest ? 1 : scene.model.contact.alpha,
+                state.history_time,
+                settings.histories_run,
+                settings.from_rest};
   work.work = {};
   const Scheme scheme{scene.blocks, settings, work.clock, work.elastic};
   Profile& profile = work.profile;

@@ -21,6 +21,7 @@ struct StepSettings {
   double sharper = 1;            // share of it to which steps are solved where that takes few sweeps more
   bool histories_run = true;     // false: their clock stands still (static stages)
   bool implicit = false;         // block-implicit elasticity (theory 4.9)
+  bool from_rest = false;        // backward Euler, and blocks stand after it (theory 4.23)
   bool keep_guess = false;       // StepWork::guess is wanted, for a problem file
 };
 

@@ -157,6 +157,7 @@ struct RestWatch {
   double sharper = 1;  // share of the solver's tolerance to which steps are solved
   int stuck = 0;       // looks in a row that stall or, at the sharpest, are without any progress
   double length = 0;   // of the next step of a stage from rest [s]
+  int whole = 0;       // such steps in a row that were not halved
 };
 
 struct State {

@@ -91,9 +91,9 @@ void each_field(Is<Bolt> auto& b, auto&& f) {
 }
 
 void each_field(Is<RestWatch> auto& r, auto&& f) {
-  auto& [steps, best, before, sharper, stuck, length] = r;
+  auto& [steps, best, before, sharper, stuck, length, whole] = r;
   f("steps", steps), f("best", best), f("before", before), f("sharper", sharper), f("stuck", stuck);
-  f("length", length);
+  f("length", length), f("whole", whole);
 }
 
 void each_field(Is<State> auto& s, auto&& f) {

@@ -468,20 +468,19 @@ class Updater {
 
 }  // namespace
 
-bool points_reach(const BondSet& bonds, const BlockSet& blocks, const State& state,
-                  const std::vector<BlockRate>& rate, const StepClock& clock, const Workers& workers) {
-  std::atomic<bool> reach{true};
-  workers.for_chunks(state.pairs.size(), 2048, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end && reach.load(std::memory_order_relaxed); ++i) {
-      const ContactPair& pair = state.pairs[i];
-      if (held_by_faces(bonds, state, pair)) continue;
-      const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
-      const double together =
-          norm(rate[a].a - rate[b].a) + turning_speed(blocks, rate, a) + turning_speed(blocks, rate, b);
-      if (!(clock.dt * together <= pair.margin)) reach = false;
-    }
-  });
-  return reach;
+Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& state,
+                     const std::vector<BlockRate>& rate, double dt, const Workers& workers) {
+  return workers.sum_chunks<Approach>(
+      state.pairs.size(), 2048, [&](size_t begin, size_t end, Approach& most) {
+        for (size_t i = begin; i < end; ++i) {
+          const ContactPair& pair = state.pairs[i];
+          if (held_by_faces(bonds, state, pair)) continue;
+          const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+          const double together = dt * (norm(rate[a].a - rate[b].a) + turning_speed(blocks, rate, a) +
+                                        turning_speed(blocks, rate, b));
+          most += {together / pair.margin, together / std::min(blocks.size[a], blocks.size[b])};
+        }
+      });
 }
 
 // Theory 3.1.

@@ -3,6 +3,7 @@
 // skin, and in each pair contact points that are sought anew only when the two have moved against each other.
 // Theory: docs/theory.md 3.7.
 
+#include <algorithm>
 #include "talus/base/parallel.h"
 #include "talus/contact/bonds.h"
 #include "talus/contact/find.h"
@@ -22,10 +23,19 @@ struct LookAhead {
 bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state);
 
-/// Whether no two blocks of a pair come together in the step by more than their points were sought ahead.
-/// @param rate  with which they move over clock.dt
-bool points_reach(const BondSet& bonds, const BlockSet& blocks, const State& state,
-                  const std::vector<BlockRate>& rate, const StepClock& clock, const Workers& workers);
+/// How far the blocks of a pair come together in a step, at most.
+struct Approach {
+  double of_margin = 0;  // as a multiple of how far ahead their contact points were sought
+  double of_size = 0;    // as share of the smaller one
+
+  Approach& operator+=(const Approach& o) {
+    of_margin = std::max(of_margin, o.of_margin), of_size = std::max(of_size, o.of_size);
+    return *this;
+  }
+};
+/// @param rate  with which they move over dt
+Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& state,
+                     const std::vector<BlockRate>& rate, double dt, const Workers& workers);
 
 struct SearchReport {
   int searched = 0;    // pairs whose contact points were sought anew

@@ -61,7 +61,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
     return f.unbreakable || !scene.laws[static_cast<size_t>(f.joint)].is_soft(0);
   });
   const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
-                                     2 * static_cast<size_t>(hard)) == SolverKind::kNewton;
+                                     {.hard_ties = 2 * static_cast<size_t>(hard)}) == SolverKind::kNewton;
   p.memory = 1600.0 * p.blocks + 32 * corners + points * (600 + (factors ? 2 * 32 * 16 * 6 : 0));
   return p;
 }

@@ -43,6 +43,11 @@ constexpr int kStalls = 2, kMostStuck = 4;
 // rest.
 constexpr double kSolverShare = 0.02;
 
+// Steps of a stage from rest: how far blocks of a pair may come together in one, as share of the smaller; how many in a
+// row have to go without halving before one is longer.
+constexpr double kMostApproach = 0.1;
+constexpr int kWhole = 2;
+
 // Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.
 constexpr double kFarToGo = 1e-3;
 
@@ -99,7 +104,7 @@ class Runner {
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
     state_.rest = {};
-    state_.rest.length = plan.dt;
+    state_.rest.length = plan.dt, state_.rest.whole = kWhole;
     if (stage.from_rest) stop_motion(scene_, state_);
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {
@@ -171,6 +176,8 @@ class Runner {
       if (stage.kind == StageKind::kStatic && watch_rest(stage, report, plan, n)) break;
     }
     out.end = state_.time;
+    // the next stage begins at rest; until now they told how far to look ahead
+    if (stage.from_rest && out.at_rest) std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
       result_.no_rest = true;
       throw NumericalError(no_rest(stage, out));
@@ -178,39 +185,52 @@ class Runner {
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
 
-  // A step of backward Euler, of half the length where it was not solved or blocks went further than contacts were
-  // sought (theory 4.23). `plan` gets the length it had.
+  // A step of backward Euler. Where blocks come together by more than their contact points were sought ahead it is
+  // taken again, looking as far as they went; where that does not help, it was not solved or they go too far it is
+  // taken with half the length (theory 4.23). `plan` gets the length it had.
   StepReport kick_from_rest(const StageInput& stage, const StageResult& out, StagePlan& plan) {
-    double& length = state_.rest.length;
     const double shortest = plans_[result_.stages.size() - 1].dt / kMostShortened;
     const State before = state_;
+    double length = state_.rest.length;
+    bool looked = false, halved = false;
     for (;;) {
       plan.dt = length;
       // what acts at the end of the step; sums of lengths are round-off short of the times meant
       const double end = (state_.time - out.begin + length) * (1 + 1e-12);
       state_.relaxed = stage.relaxed_at(end, state_.relaxed);
       const StepReport report = kick(scene_, settings_, length, work_, state_);
-      const bool reach =
-          points_reach(scene_.bonds, scene_.blocks, state_, state_.rate, work_.clock, work_.workers);
-      if (reach && !report.failed) return report;
-      if (length <= shortest) {
+      const Approach approach =
+          approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
+      const bool far = !(approach.of_size <= kMostApproach);
+      if (!report.failed && !far && approach.of_margin <= 1) {
+        state_.rest.length = length;
+        state_.rest.whole = halved ? 0 : state_.rest.whole + 1;
+        return report;
+      }
+      const bool look = !report.failed && !far && !looked;
+      if (!look && length <= shortest) {
         if (report.failed) return report;
         throw NumericalError(fmt::format(
-            "step {} at t = {:.9g} s: blocks go further than contacts are sought, also in a step of {:.3g} s: "
-            "they fall or slide. integration = \"dynamic\" follows them",
-            state_.step, state_.time, length));
+            "step {} at t = {:.9g} s: blocks come together by {:.2g} of the smaller one, also in a step of {:.3g} s: "
+            "something falls or slides. integration = \"dynamic\" follows it",
+            state_.step, state_.time, approach.of_size, length));
       }
-      const double half = 0.5 * length;
+      std::vector<BlockRate> rate = std::move(state_.rate);
       state_ = before;
-      length = half;
+      if (look)
+        state_.rate = std::move(rate);
+      else
+        length *= 0.5, halved = true;
+      looked = look;
     }
   }
 
-  // What breaks changes the balance: no longer step before it is found.
+  // What breaks changes the balance: no longer step before it is found. Nor soon after one that had to be shortened.
   void lengthen(const StageInput& stage, const StepReport& report, double first) {
-    if (report.broken_faces > 0) return;
-    const double most = is_relaxed(stage, 0) ? kMostLengthened * first : first;
-    state_.rest.length = std::min(2 * state_.rest.length, most);
+    RestWatch& rest = state_.rest;
+    if (rest.whole < kWhole) return;
+    const bool longer = is_relaxed(stage, 0) && report.broken_faces == 0;
+    rest.length = std::max(rest.length, std::min(2 * rest.length, longer ? kMostLengthened * first : first));
   }
 
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,

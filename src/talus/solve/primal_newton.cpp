@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "talus/base/error.h"
 #include "talus/solve/block_factor.h"
@@ -11,24 +12,28 @@ namespace talus {
 
 namespace {
 
-// Rows that do not give at all get the share 1 / kStiff of their influence, about a centre that follows the
-// impulse: what they settle at is exact.
+// Rows that do not give at all get the share 1 / kStiff of their influence, or of what the stiffest other row of a block
+// gives where that is less, about a centre that follows the impulse: what they settle at is exact.
 constexpr double kStiff = 1e7;
 
 // The centre is moved once velocities are found to this share of the error.
 constexpr double kInner = 0.1;
 
-// Iterations on the exact Jacobian: to this residual, by so many at most; a factor that needs more than kWorn is
-// made anew.
-constexpr double kResidual = 1e-4;
-constexpr int kMostInner = 30, kWorn = 10;
+// Iterations on the exact Jacobian: to this residual where the faces that stand are expected to stay so, to the other
+// where some are not, by so many at most.
+constexpr double kResidual = 1e-4, kRoughResidual = 1e-2;
+constexpr int kMostInner = 30;
+
+// A new factor costs about as much as five such iterations, and each face that opens, closes, slips or sticks since
+// the factor was made may ask for one more.
+constexpr size_t kMostChanged = 4;
 
 // Sweeps before: from far off, where free velocities say nothing about which points are closed, Newton's method
 // finds no way.
 constexpr int kSweepsFirst = 40;
 
 // Iterations that may pass without the residual halving, and how often a step is halved for it.
-constexpr int kPatience = 3, kMostHalved = 8;
+constexpr int kPatience = 6, kMostHalved = 8;
 
 constexpr size_t kChunkOfFaces = 512, kChunkOfBlocks = 512;
 
@@ -139,6 +144,15 @@ struct FaceTangent {
   double n[2][2] = {}, t[2][2] = {}, slide[2][2] = {};
 };
 
+// How many faces have other parts in the symmetric matrix.
+size_t differing(const std::vector<FaceTangent>& a, const std::vector<FaceTangent>& b) {
+  size_t count = 0;
+  for (size_t f = 0; f < a.size(); ++f)
+    count +=
+        std::memcmp(a[f].n, b[f].n, sizeof a[f].n) != 0 || std::memcmp(a[f].t, b[f].t, sizeof a[f].t) != 0;
+  return count;
+}
+
 // Inverse of C on what is free, zero elsewhere.
 void invert_free(const double C[2][2], const int at[2], size_t count, double out[2][2]) {
   const bool first = at[0] == 0, second = count > 1 && at[1] == 0;
@@ -160,14 +174,16 @@ class Equations {
     number_faces();
     const size_t points = problem.rows.size();
     row_.resize(points), prox_.resize(points), centre_.resize(points), bias_.resize(points);
+    find_least_give();
     workers.for_chunks(points, kChunkOfFaces, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) add_row(i);
     });
   }
 
-  // Velocities that the impulses of the rows give.
-  std::vector<double> start() const {
+  // Velocities that the impulses of the rows give; none from rest.
+  std::vector<double> start(bool from_rest) const {
     std::vector<double> v(6 * moving_.size());
+    if (from_rest) return v;
     std::vector<BlockRate> rate = problem_.rate_free;
     apply_impulses(problem_.mobility, problem_.rows, rate);
     for (size_t k = 0; k < moving_.size(); ++k) put(v, k, to_unknowns(mobility(k), rate[moving_[k]]));
@@ -346,6 +362,19 @@ class Equations {
     couple_begin_.push_back(faces_.size());
   }
 
+  // In a long step a block of little mass yields to a row far more than the joints around it do.
+  void find_least_give() {
+    least_give_.assign(moving_.size(), std::numeric_limits<double>::infinity());
+    for (const PointRows& p : problem_.rows.points)
+      for (const int block : {p.block_a, p.block_b})
+        for (const Row& row : p.row) {
+          const int b = number(block);
+          if (b < 0 || row.compliance <= 0) continue;
+          double& least = least_give_[static_cast<size_t>(b)];
+          least = std::min(least, row.compliance);
+        }
+  }
+
   void add_row(size_t i) {
     const PointRows& p = problem_.rows.points[i];
     Rows& r = row_[i];
@@ -372,6 +401,8 @@ class Equations {
         for (size_t m = 0; m < 6; ++m)
           for (size_t n = 0; n < 6; ++n) influence += x[m] * inverse_[b][6 * m + n] * x[n];
       }
+      for (const int b : r.block)
+        if (b >= 0) influence = std::min(influence, least_give_[static_cast<size_t>(b)]);
       prox_[i][k] = p.row[k].compliance > 0 ? 0 : influence / kStiff;
       centre_[i][k] = problem_.rows.impulse[i][k];
     }
@@ -487,7 +518,8 @@ class Equations {
   std::vector<size_t> moving_;  // blocks that move
   std::vector<int> number_;     // of each block among them
   std::vector<Tile> mass_, inverse_;
-  std::vector<double> free_;  // v*
+  std::vector<double> free_;        // v*
+  std::vector<double> least_give_;  // of each moving block: the least compliance of a row that has one
   std::vector<Face> faces_;
   std::vector<size_t> couple_begin_;  // faces of the same two blocks, and where the last end
   std::vector<int> couple_pair_;      // index among pairs_, -1: one of the blocks stands still
@@ -496,13 +528,13 @@ class Equations {
   std::vector<std::array<double, 2>> prox_, centre_, bias_;  // of each point
 };
 
-// Solves J x = b by generalised minimal residuals, `near` being close to J^-1; how many times it was asked.
+// Solves J x = b by generalised minimal residuals, `near` being close to J^-1.
 template <class J, class P>
-int minimal_residual(const Equations& with, J times, P near, const std::vector<double>& b,
-                     std::vector<double>& x) {
+void minimal_residual(const Equations& with, J times, P near, const std::vector<double>& b, double residual,
+                      std::vector<double>& x) {
   const double size = std::sqrt(with.product(b, b));
   x.assign(b.size(), 0);
-  if (!(size > 0)) return 0;
+  if (!(size > 0)) return;
   std::vector<std::vector<double>> basis{b}, turned;
   for (double& v : basis[0]) v /= size;
   std::vector<std::vector<double>> column;  // of the triangle
@@ -529,7 +561,7 @@ int minimal_residual(const Equations& with, J times, P near, const std::vector<d
     h[k] = r;
     column.push_back(std::move(h));
     right.push_back(-sine[k] * right[k]), right[k] *= cosine[k];
-    if (!(std::abs(right[k + 1]) > kResidual * size) || !(last > 0)) {
+    if (!(std::abs(right[k + 1]) > residual * size) || !(last > 0)) {
       ++k;
       break;
     }
@@ -544,7 +576,6 @@ int minimal_residual(const Equations& with, J times, P near, const std::vector<d
   }
   for (size_t i = 0; i < k; ++i)
     for (size_t j = 0; j < x.size(); ++j) x[j] += y[i] * turned[i][j];
-  return static_cast<int>(k);
 }
 
 // Adds the longest of the halved steps that brings the square of the residual down, or the one that leaves the least.
@@ -575,11 +606,14 @@ PrimalNewton::~PrimalNewton() = default;
 
 SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
                                 const Workers& workers) {
-  SolverInput few = limits;
-  few.max_sweeps = std::min(limits.max_sweeps, kSweepsFirst);
-  SolveReport report = kept_->sweeps.solve(problem, goal, few, workers);
-  if (report.converged) return report;
-  report.iterations = 0;
+  SolveReport report;
+  if (!problem.from_rest) {
+    SolverInput few = limits;
+    few.max_sweeps = std::min(limits.max_sweeps, kSweepsFirst);
+    report = kept_->sweeps.solve(problem, goal, few, workers);
+    if (report.converged) return report;
+    report.iterations = 0;
+  }
   const InPart part(problem.profile, Profile::kNewton);
   Equations equations(problem, workers);
   BlockFactor& factor = kept_->factor;
@@ -587,9 +621,11 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
   std::vector<Tile> diagonal, beside;
   bool factored = false;
 
-  std::vector<double> v = equations.start();
-  std::vector<FaceTangent> tangent;
-  ContactError best = *report.judged;
+  std::vector<double> v = equations.start(problem.from_rest);
+  std::vector<FaceTangent> tangent, of_factor;
+  ContactError best;
+  best.worst = std::numeric_limits<double>::infinity();
+  if (report.judged) best = *report.judged;
   std::vector<Impulse> best_impulse = problem.rows.impulse;
   double before = std::numeric_limits<double>::infinity();
   int idle = 0;
@@ -601,7 +637,7 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
   for (;; ++report.iterations) {
     // the first time as if what sweeps have opened, closed and brought to slip were so: their velocities say nothing yet
     // of impulses, as joints give little
-    const bool first = report.iterations == 0;
+    const bool first = report.iterations == 0 && !problem.from_rest;
     std::vector<double> F = equations.residual(v, &tangent, first);
     if (!first) {
       const ContactError error = judge();
@@ -609,7 +645,7 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
       if (error.worst < best.worst) best = error, best_impulse = problem.rows.impulse;
       report.converged = best.worst <= goal.enough;
       if (best.worst <= goal.wanted) break;
-      if (report.iterations == 1 && !(error.worst <= best.worst)) {
+      if (report.iterations == 1 && !problem.from_rest && !(error.worst <= best.worst)) {
         std::fill(v.begin(), v.end(), 0.0);  // sweeps have not come far enough
         F = equations.residual(v, &tangent);
       }
@@ -622,14 +658,13 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
     for (double& x : down) x = -x;
     const auto jacobian = [&](const std::vector<double>& x) { return equations.jacobian_times(tangent, x); };
     const auto near = [&](std::vector<double>& x) { factor.solve(x); };
-    int inner = kMostInner;
-    if (factored) inner = minimal_residual(equations, jacobian, near, down, step);
-    if (inner > kWorn) {
+    if (!factored || differing(tangent, of_factor) > kMostChanged) {
       equations.tiles(tangent, diagonal, beside);
       factored = factor.factorize(diagonal, beside, workers);
       if (!factored) break;
-      minimal_residual(equations, jacobian, near, down, step);
+      of_factor = tangent;
     }
+    minimal_residual(equations, jacobian, near, down, first ? kResidual : kRoughResidual, step);
     if (first) {
       for (size_t i = 0; i < v.size(); ++i) v[i] += step[i];
       continue;

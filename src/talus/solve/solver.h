@@ -24,6 +24,7 @@ struct StepProblem {
   std::vector<BlockRate>& rate;             // out: with these impulses
   Profile& profile;                         // where the time goes
   std::span<const int> tile = {};           // of each block (BlockSet::tile); empty: all in one
+  bool from_rest = false;                   // of backward Euler: v* is far off, what does not move is near
 };
 
 /// Contact errors at which to stop [m]: `wanted`, which is given up, once `enough` is reached, after as many

@@ -113,12 +113,14 @@ Solver& SolverSet::of(SolverKind kind) {
   return *made;
 }
 
-SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties) {
+SolverKind chosen_solver(const Model& model, size_t points, const RowKinds& kinds) {
   if (model.solver.method != SolverKind::kAuto) return model.solver.method;
   if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
     return SolverKind::kNewton;
-  return points <= (2 * hard_ties > points ? kNewtonFasterTied : kNewtonFaster) ? SolverKind::kNewton
-                                                                                : SolverKind::kGaussSeidel;
+  if (kinds.from_rest && kinds.give) return SolverKind::kPrimalNewton;
+  return points <= (2 * kinds.hard_ties > points ? kNewtonFasterTied : kNewtonFaster)
+             ? SolverKind::kNewton
+             : SolverKind::kGaussSeidel;
 }
 
 // Theory 5.7.
@@ -130,10 +132,12 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   TALUS_ASSERT(problem.rows.impulse.size() == problem.rows.points.size());
   const SolverInput& options = model.solver;
   const bool smoothed = model.contact.law == ContactLaw::kSmoothed;
-  const SolverKind first = chosen_solver(model, problem.rows.points.size(), kinds.hard_ties),
+  const SolverKind first = chosen_solver(model, problem.rows.points.size(), kinds),
                    second = entry(first).mended;
-  const bool again =
-      options.second_solver && !smoothed && problem.rows.points.size() <= entry(second).most_points;
+  // a shorter step from rest costs less than thousands of sweeps
+  const bool shorter = kinds.from_rest && first == SolverKind::kPrimalNewton;
+  const bool again = options.second_solver && !smoothed && !shorter &&
+                     problem.rows.points.size() <= entry(second).most_points;
   TALUS_ASSERT(!smoothed || entry(first).smoothed);
   guess.clear();
   if (again || keep_guess) guess = problem.rows.impulse;

@@ -37,14 +37,15 @@ class SolverSet {
 
 /// What the rows of a step are like.
 struct RowKinds {
-  size_t hard_ties = 0;  // points of faces that are tied without any give
-  bool give = false;     // some joints give
-  bool at_rest = false;  // a static stage: what is near rest moves by less than errors of rows that give
+  size_t hard_ties = 0;    // points of faces that are tied without any give
+  bool give = false;       // some joints give
+  bool at_rest = false;    // a static stage: what is near rest moves by less than errors of rows that give
+  bool from_rest = false;  // a step of backward Euler
 };
 
 /// What the model asks for; for `auto`, what is faster for so many points, `hard_ties` of which tie faces
-/// without any give.
-SolverKind chosen_solver(const Model& model, size_t points, size_t hard_ties);
+/// without any give; what begins at rest and gives goes to Newton's method in velocities.
+SolverKind chosen_solver(const Model& model, size_t points, const RowKinds& kinds);
 
 /// Who worked at a step, in their order, and how many iterations or sweeps each.
 struct Attempts {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 
 #include "talus/base/clock.h"
@@ -27,14 +26,13 @@ bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
   return true;
 }
 
-// Nothing goes on from a step of backward Euler. Its forces act over all of the way, but that of implicit elasticity,
+// Nothing goes on from a step of backward Euler: its rates only tell the next how far to look. Its forces act over all of the way, but that of implicit elasticity,
 // which grows from nothing; what they give the blocks is lost (theory 4.23).
-void come_to_rest(const StepWork& work, const StepReport& report, State& state) {
+void settle_work(const StepWork& work, const StepReport& report, State& state) {
   WorkDone more = work.work.after;
   more[Cause::kImplicit] = 0;
   state.work += more;
   state.work[Cause::kDamping] -= 4 * report.energy.moving;
-  std::fill(state.rate.begin(), state.rate.end(), BlockRate{});
 }
 
 }  // namespace
@@ -67,7 +65,7 @@ void drift(const Scene& scene, double time_end, StepWork& work, State& state, St
     state.column_displacement[i] += dt * state.column_rate[i];
   state.work += work.work.before;
   state.work += work.work.after;
-  if (work.clock.from_rest) come_to_rest(work, report, state);
+  if (work.clock.from_rest) settle_work(work, report, state);
   report.broken_faces = update_bonds(blocks, scene.bonds, scene.laws, dt, work.workers, state);
   state.time = time_end;
   state.history_time = work.clock.history_end();

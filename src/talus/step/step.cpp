@@ -33,8 +33,9 @@ void check_travel(const BlockSet& blocks, const std::vector<BlockRate>& rate, co
 }
 
 void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport& report) {
-  check_travel(scene.blocks, work.rate_before, state, work.clock.dt);
-  const LookAhead ahead{work.clock, work.rate_before};
+  const std::vector<BlockRate>& expected = work.clock.from_rest ? work.rate_expected : work.rate_before;
+  check_travel(scene.blocks, expected, state, work.clock.dt);
+  const LookAhead ahead{work.clock, expected};
   renew_pairs(scene.blocks, scene.bonds, scene.laws, ahead, work.workers, state);
   const SearchReport sought =
       update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, work.workers, state);
@@ -73,8 +74,9 @@ Smoothing smoothing(const ContactInput& contact, const StepClock& clock) {
 void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
                 StepReport& report) {
   const StepProblem problem{
-      work.mobility, work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
-      work.rows,     state.rate,     work.profile,  scene.blocks.tile};
+      work.mobility,       work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
+      work.rows,           state.rate,     work.profile,  scene.blocks.tile,
+      work.clock.from_rest};
   const Solved solved = solve_step(scene.model, row_kinds(scene, work), settings.tolerance, settings.sharper,
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
@@ -126,6 +128,10 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   const Scheme scheme{scene.blocks, settings, work.clock, work.elastic};
   Profile& profile = work.profile;
   const InPart part(profile, Profile::kBlocks);
+  if (settings.from_rest) {
+    work.rate_expected = state.rate;
+    std::fill(state.rate.begin(), state.rate.end(), BlockRate{});
+  }
   add_forces(scene, settings, work, state);
   predict(scene, scheme, work, state);
   profile.go_on_with(Profile::kMargins);

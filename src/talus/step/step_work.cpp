@@ -12,7 +12,8 @@ BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
 }
 
 RowKinds row_kinds(const Scene& scene, const StepWork& work) {
-  return {hard_ties(work.rows, work.workers), joints_give(scene.laws), !work.clock.histories_run};
+  return {hard_ties(work.rows, work.workers), joints_give(scene.laws), !work.clock.histories_run,
+          work.clock.from_rest};
 }
 
 std::string row_name(const Scene& scene, const State& state, const StepWork& work, size_t row) {

@@ -64,7 +64,8 @@ struct StepWork {
   std::vector<ContactPlace> places;  // of state.contacts
   RowSet rows;                       // of all families
   std::vector<BlockRate> rate_before;
-  ColumnMotion columns;  // of the free field
+  std::vector<BlockRate> rate_expected;  // of a step from rest: those of the one before
+  ColumnMotion columns;                  // of the free field
   KickWork work;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted

@@ -78,6 +78,18 @@ TEST_CASE("command run --from: every saved state leads to the same bits") {
   goes_on_from_each_state(folder);
 }
 
+TEST_CASE("command run --from: the same bits from within static stages whose steps begin at rest") {
+  Folder folder;
+  std::string text = kModel;
+  const std::string found = "kind = \"static\"\n", more = "integration = \"implicit\"\n";
+  for (size_t at = 0; (at = text.find(found, at)) != std::string::npos; at += found.size() + more.size())
+    text.insert(at, more);
+  const std::string saving = "save_interval = \"20 ms\"";
+  text.replace(text.find(saving), saving.size(), "save_interval = \"1 us\"");
+  write_model(folder, text);
+  goes_on_from_each_state(folder);
+}
+
 TEST_CASE("command run --from: the same bits with bolts and joints that weaken" *
           doctest::test_suite("optimised")) {
   Folder folder;

@@ -69,7 +69,8 @@ struct Tunnel {
   }
 
   /// Displacements of the nodes of mesh() by finite elements.
-  std::vector<Vec2> finite_elements() const {
+  /// @param edge_moves  false: the outer edge stands still
+  std::vector<Vec2> finite_elements(bool edge_moves = true) const {
     const TriangleMesh grid = mesh();
     std::vector<Vec2> force(grid.node.size());
     for (int j = 0; j < sectors; ++j) {
@@ -83,7 +84,7 @@ struct Tunnel {
     std::map<int, double> held;
     for (int i = 0; i <= rings; ++i) held[2 * node(i, 0) + 1] = held[2 * node(i, sectors)] = 0;
     for (int j = 0; j <= sectors; ++j) {
-      const Vec2 u = exact(corner(rings, j));
+      const Vec2 u = edge_moves ? exact(corner(rings, j)) : Vec2{};
       held[2 * node(rings, j)] = u.x, held[2 * node(rings, j) + 1] = u.y;
     }
     return displacements(grid, rock(), force, held);

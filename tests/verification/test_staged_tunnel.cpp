@@ -54,7 +54,9 @@ Section section(const Instant& now) {
 
 }  // namespace
 
-TEST_CASE("example staged_tunnel: stress of the ground, weight and balance in every stage") {
+namespace {
+
+void check_example(const std::vector<std::string>& overrides) {
   const std::string file = std::string(TALUS_SOURCE_DIR) + "/examples/staged_tunnel/staged_tunnel.toml";
   std::string text = read_text_file(file);
   const char* sides[] = {"base", "left", "right"};
@@ -62,7 +64,7 @@ TEST_CASE("example staged_tunnel: stress of the ground, weight and balance in ev
     text += fmt::format("\n[[monitor]]\nname = \"{0}_force\"\nsupport = \"{0}\"\n", side);
   Section end[3];
   const auto watch = [&end](const Instant& now) { end[now.stage] = section(now); };
-  const CaseResult r = run_case(text, {}, watch, nullptr, file);
+  const CaseResult r = run_case(text, overrides, watch, nullptr, file);
 
   const auto force = [&r, &end](int stage, const char* column) {
     const auto& t = r.column("t [s]");
@@ -104,6 +106,19 @@ TEST_CASE("example staged_tunnel: stress of the ground, weight and balance in ev
   check_close("staged_tunnel floor [m]", r.column("floor.displacement_y").back(), 0.54e-3, 5e-2, 2e-2);
   check_close("staged_tunnel width [m]", r.column("width.convergence").back(), 0.47e-3, 5e-2, 2e-2);
   check_below("staged_tunnel energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
+}
+
+}  // namespace
+
+TEST_CASE("example staged_tunnel: stress of the ground, weight and balance in every stage") {
+  check_example({});
+}
+
+TEST_CASE("example staged_tunnel: the same with steps from rest") {
+  std::vector<std::string> all;
+  for (const char* stage : {"rest", "excavation", "relief"})
+    all.push_back(fmt::format("stage.{}.integration=implicit", stage));
+  check_example(all);
 }
 
 }  // namespace test_staged_tunnel

@@ -163,7 +163,7 @@ class Runner {
       go_on_or_fail(index, n, plan, report);
       ++out.steps;
       if (stage.from_rest)
-        lengthen(stage, report, plans_[k].dt);
+        lengthen(stage, plans_[k].dt);
       else
         state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
@@ -204,6 +204,7 @@ class Runner {
       const bool far = !(approach.of_size <= kMostApproach);
       if (!report.failed && !far && approach.of_margin <= 1) {
         state_.rest.length = length;
+        way_ = longest_way(length);
         state_.rest.whole = halved ? 0 : state_.rest.whole + 1;
         return report;
       }
@@ -225,12 +226,20 @@ class Runner {
     }
   }
 
-  // What breaks changes the balance: no longer step before it is found. Nor soon after one that had to be shortened.
-  void lengthen(const StageInput& stage, const StepReport& report, double first) {
+  // Of a block in a step of this length, as share of its size.
+  double longest_way(double length) const {
+    double most = 0;
+    for (size_t k = 0; k < state_.rate.size(); ++k)
+      most = std::max(most, length * norm(state_.rate[k].a) / scene_.blocks.size[k]);
+    return most;
+  }
+
+  // Not soon after a step that had to be shortened.
+  void lengthen(const StageInput& stage, double first) {
     RestWatch& rest = state_.rest;
     if (rest.whole < kWhole) return;
-    const bool longer = is_relaxed(stage, 0) && report.broken_faces == 0;
-    rest.length = std::max(rest.length, std::min(2 * rest.length, longer ? kMostLengthened * first : first));
+    rest.length = std::max(rest.length,
+                           std::min(2 * rest.length, is_relaxed(stage, 0) ? kMostLengthened * first : first));
   }
 
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
@@ -383,8 +392,10 @@ class Runner {
 
   // Forces in balance is not enough: a block that swings through its rest position is in balance there.
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    return n >= 1 && is_relaxed(stage, n) && (!stage.from_rest || report.broken_faces == 0) &&
-           report.unbalanced <= stage.unbalanced && report.speed_left <= stage.unbalanced;
+    // a stone that falls may be no force beside the others
+    if (stage.from_rest && (report.broken_faces > 0 || way_ > kFarToGo)) return false;
+    return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
+           report.speed_left <= stage.unbalanced;
   }
 
   bool is_relaxed(const StageInput& stage, int64_t n) const {
@@ -479,6 +490,7 @@ class Runner {
   std::vector<Vec2> displacement_;  // before the drift
   std::vector<Mat2> strain_part_;
   StepReport last_;
+  double way_ = 0;  // of a block in the last step from rest, as share of its size
   StepSettings settings_;
   StepWork work_;
   RunResult result_;

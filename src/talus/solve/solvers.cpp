@@ -117,7 +117,7 @@ SolverKind chosen_solver(const Model& model, size_t points, const RowKinds& kind
   if (model.solver.method != SolverKind::kAuto) return model.solver.method;
   if (model.contact.law == ContactLaw::kSmoothed || model.solver.jacobian == JacobianKind::kDifference)
     return SolverKind::kNewton;
-  if (kinds.from_rest && kinds.give) return SolverKind::kPrimalNewton;
+  if (kinds.from_rest) return SolverKind::kPrimalNewton;
   return points <= (2 * kinds.hard_ties > points ? kNewtonFasterTied : kNewtonFaster)
              ? SolverKind::kNewton
              : SolverKind::kGaussSeidel;
@@ -135,7 +135,8 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   const SolverKind first = chosen_solver(model, problem.rows.points.size(), kinds),
                    second = entry(first).mended;
   // a shorter step from rest costs less than thousands of sweeps
-  const bool shorter = kinds.from_rest && first == SolverKind::kPrimalNewton;
+  const bool shorter = kinds.from_rest && first == SolverKind::kPrimalNewton &&
+                       problem.rows.points.size() >= kFewestPrimal;
   const bool again = options.second_solver && !smoothed && !shorter &&
                      problem.rows.points.size() <= entry(second).most_points;
   TALUS_ASSERT(!smoothed || entry(first).smoothed);

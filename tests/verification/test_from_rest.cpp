@@ -1,0 +1,238 @@
+// Static stages whose steps begin at rest (theory 4.23): what they come to is the balance that formulas give.
+
+#include <cmath>
+#include <numbers>
+
+#include "support/run_case.h"
+#include "support/tolerance.h"
+#include "support/tunnel_model.h"
+
+namespace test_from_rest {
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+constexpr double kG = 9.81, kDensity = 2500;
+
+// Ten blocks of 1 m x 0.8 m on each other, one-dimensional as poisson = 0; joints of `joint`.
+std::string stack_text(const std::string& joint, const std::string& stages) {
+  return fmt::format(R"(
+talus = 1
+[model]
+gravity = [0, -{}]
+[material.m]
+density = {}
+young = "2 GPa"
+poisson = 0
+[joint.face]
+{}
+[contact]
+joint = "face"
+[[block]]
+name = "floor"
+polygon = [[-1, -1], [2, -1], [2, 0], [-1, 0]]
+material = "m"
+kind = "fixed"
+[[grid]]
+name = "stack"
+min = [0, 0]
+max = [1, 8]
+cells = [1, 10]
+material = "m"
+joint = "face"
+[[monitor]]
+name = "top"
+point = [0.5, 8]
+)",
+                     kG, kDensity, joint) +
+         stages;
+}
+
+const std::string kRest =
+    "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\n"
+    "integration = \"implicit\"\nunbalanced = 1e-9\n";
+
+// A block of 2 m x 1 m on a slope, both rigid; joints of 2 GPa/m.
+std::string slope_text(double degrees) {
+  const double a = degrees * std::numbers::pi / 180;
+  const auto turned = [a](double x, double y) {
+    return fmt::format("[{:.17g}, {:.17g}]", x * std::cos(a) + y * std::sin(a),
+                       -x * std::sin(a) + y * std::cos(a));
+  };
+  return fmt::format(R"(
+talus = 1
+[model]
+gravity = [0, -{}]
+[material.m]
+density = {}
+[joint.face]
+friction_angle = "35 deg"
+normal_stiffness = "2 GPa/m"
+shear_stiffness = "2 GPa/m"
+[contact]
+joint = "face"
+[[block]]
+name = "slope"
+polygon = [{}, {}, {}, {}]
+material = "m"
+kind = "fixed"
+[[block]]
+name = "slab"
+polygon = [{}, {}, {}, {}]
+material = "m"
+kind = "rigid"
+[[monitor]]
+name = "foot"
+point = {}
+)",
+                     kG, kDensity, turned(-5, -1), turned(15, -1), turned(15, 0), turned(-5, 0), turned(0, 0),
+                     turned(2, 0), turned(2, 1), turned(0, 1), turned(1, 1e-6)) +
+         kRest;
+}
+
+RunResult run_to_failure(const std::string& text) {
+  Findings findings("m", text);
+  PreparedRun p = prepare_run("m", text, {}, findings);
+  State state = start_state(p.scene);
+  MemoryObserver observer(p.scene, nullptr);
+  return run_stages(p.scene, p.plans, state, observer);
+}
+
+}  // namespace
+
+TEST_CASE("from rest: a stack on elastic joints settles by the sum of its weights over their stiffness") {
+  // blocks shorten by the mean of what they bear, joints by all that is above them
+  const double weight = kDensity * kG * 0.8, kn = 4e9, young = 2e9;
+  double blocks = 0, joints = 0;
+  for (int i = 0; i < 10; ++i) blocks += (i + 0.5) * weight * 0.8 / young, joints += (i + 1) * weight / kn;
+  const CaseResult elastic = run_case(stack_text(
+      "friction_angle = \"30 deg\"\nnormal_stiffness = \"4 GPa/m\"\nshear_stiffness = \"4 GPa/m\"", kRest));
+  CHECK(elastic.run.stages[0].at_rest);
+  CHECK(elastic.run.steps <= 6);
+  // strains are 1e-4, and the balance of forces is of second order in them
+  check_close("from rest, settlement on elastic joints", elastic.column("top.displacement_y").back(),
+              -blocks - joints, 2e-4, 1e-4);
+  check_below("from rest, elastic joints, energy left over", elastic.run.closure(), 1e-2, 1e-4);
+
+  const CaseResult bonded = run_case(stack_text("kind = \"bonded\"", kRest));
+  CHECK(bonded.run.stages[0].at_rest);
+  check_close("from rest, settlement of bonded blocks", bonded.column("top.displacement_y").back(), -blocks,
+              2e-4, 1e-4);
+  check_below("from rest, bonded blocks, energy left over", bonded.run.closure(), 1e-2, 1e-4);
+}
+
+TEST_CASE("from rest: a pebble that falls is no rest, however large the forces beside it") {
+  // 100 MPa on the stack: a weight of 0.2 N is 2e-9 of the mean force
+  const std::string text = stack_text(
+      "friction_angle = \"30 deg\"\nnormal_stiffness = \"40 GPa/m\"\nshear_stiffness = \"40 GPa/m\"",
+      "[[block]]\nname = \"pebble\"\npolygon = [[1.5, 0.5], [1.503, 0.5], [1.503, 0.503], [1.5, 0.503]]\n"
+      "material = \"m\"\n[[load]]\nname = \"top\"\nedge = [[0, 8], [1, 8]]\npressure = \"100 MPa\"\n"
+      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\nintegration = \"implicit\"\n");
+  const CaseResult r = run_case(text + "[[monitor]]\nname = \"pebble\"\npoint = [1.5015, 0.5015]\n");
+  CHECK(r.run.stages[0].at_rest);
+  check_close("from rest, fall of a pebble beside large forces [m]", r.column("pebble.displacement_y").back(),
+              -0.5, 1e-4, 1e-5);
+}
+
+TEST_CASE(
+    "from rest: a slab below its friction moves by its weight over the stiffness, one above it is told") {
+  for (const double degrees : {10.0, 25.0}) {
+    const CaseResult r = run_case(slope_text(degrees));
+    CHECK(r.run.stages[0].at_rest);
+    const double a = degrees * std::numbers::pi / 180, pressure = kDensity * kG;
+    const Vec2 moved{r.column("foot.displacement_x").back(), r.column("foot.displacement_y").back()};
+    const double along = moved.x * std::cos(a) - moved.y * std::sin(a);
+    const double across = moved.x * std::sin(a) + moved.y * std::cos(a);
+    // no end slides: the mean closure and shear of the interface are those of the mean stresses; turning is 1e-5
+    check_close(fmt::format("from rest, slab at {:g} deg, closing", degrees), across,
+                -pressure * std::cos(a) / 2e9, 1e-3, 1e-4);
+    check_close(fmt::format("from rest, slab at {:g} deg, shear", degrees), along,
+                pressure * std::sin(a) / 2e9, 1e-3, 1e-4);
+  }
+  const RunResult sliding = run_to_failure(slope_text(38));
+  CHECK(sliding.failure.find("did not come to rest") != std::string::npos);
+  CHECK(sliding.failure.find("Something slides or falls") != std::string::npos);
+}
+
+TEST_CASE("from rest: what slides on comes to rest where the force has gone") {
+  // a weight aslant beyond the friction of the floor; the wall takes the rest
+  const std::string text = fmt::format(R"(
+talus = 1
+[model]
+gravity = [{}, -{}]
+[material.m]
+density = {}
+[joint.face]
+friction_angle = "20 deg"
+normal_stiffness = "2 GPa/m"
+shear_stiffness = "2 GPa/m"
+[contact]
+joint = "face"
+[[block]]
+name = "floor"
+polygon = [[-1, -1], [6, -1], [6, 0], [-1, 0]]
+material = "m"
+kind = "fixed"
+[[block]]
+name = "wall"
+polygon = [[4.05, 0.1], [5, 0.1], [5, 1], [4.05, 1]]
+material = "m"
+kind = "fixed"
+[[block]]
+name = "slab"
+polygon = [[2, 0], [4, 0], [4, 1], [2, 1]]
+material = "m"
+kind = "rigid"
+[[monitor]]
+name = "wall"
+contact = ["slab", "wall"]
+[[monitor]]
+name = "slab"
+point = [2.1, 0.1]
+)",
+                                       0.5 * kG, kG, kDensity) +
+                           kRest;
+  const CaseResult r = run_case(text);
+  CHECK(r.run.stages[0].at_rest);
+  // the floor's friction is used up; the slab also rubs on the wall
+  const double weight = 2 * kDensity * kG, up = r.column("wall.force_y").back();
+  check_close("from rest, force of the wall behind a gap of 5 cm", r.column("wall.force_x").back(),
+              std::tan(20 * std::numbers::pi / 180) * (weight - up) - 0.5 * weight, 1e-4, 1e-5);
+  check_close("from rest, way to the wall [m]", r.column("slab.displacement_x").back(), 0.05, 1e-3, 1e-3);
+  check_below("from rest, slide to a wall, energy left over", r.run.closure(), 1e-2, 1e-4);
+}
+
+TEST_CASE("from rest: a tunnel dug into bonded triangles closes as finite elements do (A6j)") {
+  Tunnel t{8, 12};
+  t.vertical /= 100, t.horizontal /= 100;
+  std::string text = t.text();
+  const size_t begin = text.find("[[stage]]\nname = \"dig\""), end = text.find("[solver]");
+  text.replace(begin, end - begin,
+               "[[stage]]\nname = \"dig\"\nkind = \"static\"\nduration = 10\nintegration = \"implicit\"\n"
+               "unbalanced = 1e-6\nexcavate = [\"core\"]\n");
+  const CaseResult r = run_case(text);
+  CHECK(r.run.stages[1].at_rest);
+  CHECK(r.run.stages[1].steps < 20);
+  // supports stand still in static stages
+  const std::vector<Vec2> u = t.finite_elements(false);
+  check_close("from rest, A6j crown, blocks / finite elements",
+              r.column("crown.displacement_y").back() / u[static_cast<size_t>(t.node(0, t.sectors))].y, 1,
+              5e-3, 5e-4);
+  check_close("from rest, A6j side, blocks / finite elements",
+              r.column("side.displacement_x").back() / u[static_cast<size_t>(t.node(0, 0))].x, 1, 5e-3, 5e-4);
+  check_below("from rest, A6j energy left over", r.run.closure(), 1e-2, 1e-4);
+}
+
+TEST_CASE("from rest: the stage after it begins at rest and stays so") {
+  const CaseResult r = run_case(
+      stack_text("friction_angle = \"30 deg\"\nnormal_stiffness = \"4 GPa/m\"\nshear_stiffness = \"4 GPa/m\"",
+                 kRest + "[[stage]]\nname = \"wait\"\nkind = \"dynamic\"\nduration = 0.05\n"));
+  double fastest = 0;
+  for (const double v : r.column("top.velocity_y")) fastest = std::max(fastest, std::abs(v));
+  // what the balance asked for leaves, 1e-9 of the weight, over the time of the first step
+  check_below("from rest, velocity in the dynamic stage after it [m/s]", fastest, 1e-8, 1e-9);
+}
+
+}  // namespace test_from_rest

@@ -205,6 +205,7 @@ struct StageInput {
   double safety = 0.8;
   bool moment_clamp = false;
   bool from_rest = false;        // static: backward Euler, every step from rest (theory 4.23)
+  bool from_rest_auto = false;   // that where the model is large (set by build_scene)
   bool implicit = false;         // block-implicit elasticity
   bool elasticity_auto = false;  // implicit where theory 4.9 asks for it (set by build_scene)
   double damping_mass = 0;       // [1/s]
@@ -216,6 +217,10 @@ struct StageInput {
   std::vector<Vec2> relaxation;
   bool reset_displacements = false;
   Where where, where_step, where_clamp, where_excavate, where_relaxation;
+
+  /// Makes it one of steps from rest, with what these ask for: a first step, no damping, tractions of excavated rock
+  /// that go in shares.
+  void go_from_rest();
 
   /// Share of the tractions of excavated rock that is gone `t` after the start; `before` without a
   /// relaxation.

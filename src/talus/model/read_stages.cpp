@@ -13,9 +13,6 @@ namespace talus {
 
 namespace {
 
-// First step of stages from rest [s], and how many steps the tractions of excavated rock last there.
-constexpr double kFirstFromRest = 0.02, kShares = 8;
-
 class StageReader : private SectionReader {
  public:
   StageReader(const TomlSource& source, Model& model, Findings& findings)
@@ -57,8 +54,7 @@ class StageReader : private SectionReader {
     s.unbalanced = f.get("unbalanced", s.unbalanced);
     s.excavate = f.get<std::vector<std::string>>("excavate");
     s.relaxation = f.get<std::vector<Vec2>>("relaxation");
-    s.from_rest = f.get<std::string>("integration") == "implicit";
-    if (s.from_rest) go_from_rest(f, s);
+    read_integration(f, s);
     s.reset_displacements = f.get("reset_displacements", false);
     s.where = f.where();
     s.where_step = f.where("time_step");
@@ -72,23 +68,25 @@ class StageReader : private SectionReader {
     model_.stages.push_back(s);
   }
 
-  // Theory 4.23. Excavated rock lets go in shares where the model does not say how.
-  void go_from_rest(const Fields& f, StageInput& s) {
+  // Theory 4.23. What is said about how the blocks move asks for the dynamic way.
+  void read_integration(const Fields& f, StageInput& s) {
+    const std::initializer_list<const char*> of_motion = {"safety", "moment_clamp", "damping_mass",
+                                                          "damping_stiffness", "damping_local"};
+    const auto integration = f.get<std::string>("integration");
+    s.from_rest_auto = integration == "auto" && s.kind == StageKind::kStatic && !any_given(f, of_motion) &&
+                       !f.given("elasticity") && !f.given("time_step");
+    if (integration != "implicit") return;
     if (s.kind == StageKind::kDynamic)
       error(f, "integration", "is \"implicit\", which knows no inertia: it is for static stages",
             "leave it out, or say kind = \"static\"");
-    for (const char* key : {"safety", "moment_clamp", "damping_mass", "damping_stiffness", "damping_local"})
+    for (const char* key : of_motion)
       if (f.given(key))
         error(f, key, "has nothing to do where integration = \"implicit\": every step begins at rest",
               "leave one of the two out");
     if (f.get<std::string>("elasticity") == "explicit")
       error(f, "elasticity", "is \"explicit\", and integration = \"implicit\" has no stable limit to keep",
             "leave one of the two out");
-    s.implicit = true, s.elasticity_auto = false;
-    s.damping_local = 0;
-    if (std::isnan(s.time_step)) s.time_step = std::min(kFirstFromRest, s.duration);
-    if (!s.excavate.empty() && !f.has("relaxation"))
-      s.relaxation = {{0, 0}, {std::min(kShares * s.time_step, s.duration), 1}};
+    s.go_from_rest();
   }
 
   void check_step(const Fields& f, const StageInput& s) {

@@ -76,13 +76,14 @@ SectionSpec stage_section() {
                "lowest place of the model."},
        {.name = "integration",
         .type = K::kChoice,
-        .default_text = "\"dynamic\"",
-        .choices = {"dynamic", "implicit"},
+        .default_text = "\"auto\"",
+        .choices = {"auto", "dynamic", "implicit"},
         .doc =
             "Static stages. `dynamic`: they move, damped, until at rest. `implicit`: steps of backward Euler "
             "(theory 4.23), each from rest to what is nearly the balance of its loads, that grow from "
-            "`time_step` (\"auto\": 20 ms) to 16 times that while nothing breaks, and are halved where "
-            "one fails; `relaxation` is then, unless given, over the first eight."},
+            "`time_step` (\"auto\": 20 ms) to 16 times that, and are halved where one fails; `relaxation` is "
+            "then, unless given, over the first eight. `auto`: implicit with 1000 blocks or more and joints "
+            "that have stiffness, unless time step, elasticity or damping are given."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

@@ -1,6 +1,24 @@
 #include "talus/model/model.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace talus {
+
+namespace {
+
+// First step of stages from rest [s], and how many of them the tractions of excavated rock last.
+constexpr double kFirst = 0.02, kShares = 8;
+
+}  // namespace
+
+void StageInput::go_from_rest() {
+  from_rest = implicit = true, from_rest_auto = elasticity_auto = false;
+  damping_local = 0;
+  if (std::isnan(time_step)) time_step = std::min(kFirst, duration);
+  if (!excavate.empty() && relaxation.empty())
+    relaxation = {{0, 0}, {std::min(kShares * time_step, duration), 1}};
+}
 
 double StageInput::relaxed_at(double t, double before) const {
   if (relaxation.empty()) return before;

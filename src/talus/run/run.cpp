@@ -43,9 +43,9 @@ constexpr int kStalls = 2, kMostStuck = 4;
 // rest.
 constexpr double kSolverShare = 0.02;
 
-// Steps of a stage from rest: how far blocks of a pair may come together in one, as share of the smaller; how many in a
-// row have to go without halving before one is longer.
-constexpr double kMostApproach = 0.1;
+// Steps of a stage from rest: how far blocks of a pair may come together in one, as share of the smaller; how far a block
+// may go, as share of its size; how many in a row have to go without halving before one is longer.
+constexpr double kMostApproach = 0.03, kMostWay = 10;
 constexpr int kWhole = 2;
 
 // Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.
@@ -201,10 +201,11 @@ class Runner {
       const StepReport report = kick(scene_, settings_, length, work_, state_);
       const Approach approach =
           approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
-      const bool far = !(approach.of_size <= kMostApproach);
+      const double way = longest_way(length);
+      const bool far = !(approach.of_size <= kMostApproach) || !(way <= kMostWay);
       if (!report.failed && !far && approach.of_margin <= 1) {
         state_.rest.length = length;
-        way_ = longest_way(length);
+        way_ = way;
         state_.rest.whole = halved ? 0 : state_.rest.whole + 1;
         return report;
       }

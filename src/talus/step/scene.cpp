@@ -20,6 +20,9 @@ Scene::~Scene() = default;
 
 namespace {
 
+// From so many blocks on static stages go in steps from rest where joints give (docs/decisions/15).
+constexpr int kManyBlocks = 1000;
+
 // Whether a deformable block may meet another over a joint with friction and without give. With explicit
 // elasticity it would ring for ever, its normal force swing, and its friction be lost while that is small
 // (theory 4.9).
@@ -73,6 +76,9 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
+  for (StageInput& stage : scene.model.stages)
+    if (stage.from_rest_auto && scene.blocks.count >= kManyBlocks && joints_give(scene.laws))
+      stage.go_from_rest();
   for (StageInput& stage : scene.model.stages)
     if (stage.elasticity_auto)
       stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));

@@ -34,7 +34,8 @@ void check_travel(const BlockSet& blocks, const std::vector<BlockRate>& rate, co
 
 void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport& report) {
   const std::vector<BlockRate>& expected = work.clock.from_rest ? work.rate_expected : work.rate_before;
-  check_travel(scene.blocks, expected, state, work.clock.dt);
+  // a step from rest that goes far is taken again
+  if (!work.clock.from_rest) check_travel(scene.blocks, expected, state, work.clock.dt);
   const LookAhead ahead{work.clock, expected};
   renew_pairs(scene.blocks, scene.bonds, scene.laws, ahead, work.workers, state);
   const SearchReport sought =

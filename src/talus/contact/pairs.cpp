@@ -475,10 +475,13 @@ Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& 
         for (size_t i = begin; i < end; ++i) {
           const ContactPair& pair = state.pairs[i];
           if (held_by_faces(bonds, state, pair)) continue;
-          const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
-          const double together = dt * (norm(rate[a].a - rate[b].a) + turning_speed(blocks, rate, a) +
-                                        turning_speed(blocks, rate, b));
-          most += {together / pair.margin, together / std::min(blocks.size[a], blocks.size[b])};
+          const auto [small, large] = by_size(blocks, pair);
+          const Vec2 arm = (blocks.centroid[small] - blocks.centroid[large]) +
+                           (state.displacement[small] - state.displacement[large]);
+          const Mat2 turning = rate[small].G - rate[large].G;
+          const double together = dt * (norm(rate[small].a - rate[large].a - rate[large].G * arm) +
+                                        std::sqrt(contract(turning, turning)) * blocks.radius[small]);
+          most += {together / pair.margin, together / std::min(blocks.size[small], blocks.size[large])};
         }
       });
 }

@@ -23,7 +23,7 @@ struct LookAhead {
 bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
                  const LookAhead& ahead, const Workers& workers, State& state);
 
-/// How far the blocks of a pair come together in a step, at most.
+/// How far the blocks of a pair move against each other in a step, at most: the smaller one as seen by the larger.
 struct Approach {
   double of_margin = 0;  // as a multiple of how far ahead their contact points were sought
   double of_size = 0;    // as share of the smaller one

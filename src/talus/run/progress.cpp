@@ -23,10 +23,13 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
   finish();
   const StageInput& s = scene.model.stages[static_cast<size_t>(stage)];
   const bool at_rest = s.kind == StageKind::kStatic;
-  say(out_, fmt::format("stage {}/{} \"{}\" ({}{}): {:g} s in {}{} steps of {:.4g} s\n", stage + 1,
-                        scene.model.stages.size(), s.name, at_rest ? "static" : "dynamic",
-                        s.implicit ? ", implicit elasticity" : "", s.duration, at_rest ? "at most " : "",
-                        plan.steps, plan.dt));
+  const char* how = s.from_rest ? ", steps from rest" : s.implicit ? ", implicit elasticity" : "";
+  const std::string steps = s.from_rest
+                                ? fmt::format("at most {:g} s, the first step {:.4g} s", s.duration, plan.dt)
+                                : fmt::format("{:g} s in {}{} steps of {:.4g} s", s.duration,
+                                              at_rest ? "at most " : "", plan.steps, plan.dt);
+  say(out_, fmt::format("stage {}/{} \"{}\" ({}{}): {}\n", stage + 1, scene.model.stages.size(), s.name,
+                        at_rest ? "static" : "dynamic", how, steps));
   std::fflush(out_);
   stage_wall_ = last_shown_ = wall_now();
   stage_step_ = 0;
@@ -37,7 +40,9 @@ void Progress::at(const Instant& instant) {
   worst_error_ = std::max(worst_error_, instant.report.error.worst);
   if (instant.stage_start) stage_begin_ = instant.state.time;
   ++stage_step_;
-  if (instant.last || stage_step_ % 16 != 0) return;  // the clock is not asked at every step
+  // the clock is not asked at every short step
+  const StageInput& stage = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
+  if (instant.last || (!stage.from_rest && stage_step_ % 16 != 0)) return;
   const double now = wall_now();
   if (now - last_shown_ < (terminal_ ? kRewriteInterval : kLineInterval)) return;
   show(instant, now);
@@ -49,10 +54,13 @@ void Progress::show(const Instant& instant, double now) {
   const auto left = static_cast<double>(instant.plan.steps - stage_step_);
   const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
   const double share = 100 * static_cast<double>(stage_step_) / static_cast<double>(instant.plan.steps);
+  const std::string pace = s.from_rest ? fmt::format("step {} of {:.4g} s", stage_step_, instant.plan.dt)
+                                       : fmt::format("({:.0f} %), {:.0f} steps/s, {}{} to go", share, rate,
+                                                     s.kind == StageKind::kStatic ? "at most " : "",
+                                                     readable_seconds(left / rate));
   const std::string line =
-      fmt::format("  {}: t = {:.4g} s ({:.0f} %), {:.0f} steps/s, {}{} to go, worst contact error {:.1e} m{}",
-                  s.name, instant.state.time, share, rate, s.kind == StageKind::kStatic ? "at most " : "",
-                  readable_seconds(left / rate), worst_error_,
+      fmt::format("  {}: t = {:.4g} s{} {}, worst contact error {:.1e} m{}", s.name, instant.state.time,
+                  s.from_rest ? "," : "", pace, worst_error_,
                   s.kind == StageKind::kStatic
                       ? fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}",
                                     instant.report.unbalanced, instant.report.speed_left, s.unbalanced)

@@ -45,7 +45,7 @@ constexpr double kSolverShare = 0.02;
 
 // Steps of a stage from rest: how far blocks of a pair may come together in one, as share of the smaller; how far a block
 // may go, as share of its size; how many in a row have to go without halving before one is longer.
-constexpr double kMostApproach = 0.03, kMostWay = 10;
+constexpr double kMostApproach = 0.05, kMostWay = 10;
 constexpr int kWhole = 2;
 
 // Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.

@@ -27,6 +27,9 @@ constexpr size_t kDepth = 96;
 // Fronts with more strips are worked at by all threads.
 constexpr size_t kManyStrips = 32;
 
+// Strips of a front that a thread takes at a time when it is solved with.
+constexpr size_t kSolvedTogether = 8;
+
 // A subtree of less than this share of all operations is not parted further.
 constexpr double kSmallShare = 1.0 / 24;
 
@@ -283,6 +286,35 @@ void BlockFactor::share_out() {
     if (l < 0) l = static_cast<int>(subtrees_.size()), subtrees_.emplace_back();
     subtrees_[static_cast<size_t>(l)].push_back(static_cast<int>(f));
   }
+  place_boundaries();
+}
+
+// What the fronts of a subtree leave of blocks outside of it belongs to the boundary of its root.
+void BlockFactor::place_boundaries() {
+  outside_ = {6 * front_of_.size()};
+  for (const int f : rest_) {
+    Front& front = fronts_[static_cast<size_t>(f)];
+    front.at.clear();
+    for (const int b : front.boundary) front.at.push_back(6 * static_cast<size_t>(b));
+  }
+  for (const std::vector<int>& subtree : subtrees_) {
+    const int top = subtree.back();
+    const std::vector<int>& rim = fronts_[static_cast<size_t>(top)].boundary;
+    for (const int f : subtree) {
+      Front& front = fronts_[static_cast<size_t>(f)];
+      front.at.clear();
+      for (const int b : front.boundary) {
+        if (front_of_[static_cast<size_t>(b)] <= top) {
+          front.at.push_back(6 * static_cast<size_t>(b));
+          continue;
+        }
+        const auto place =
+            std::lower_bound(rim.begin(), rim.end(), b, [this](int x, int y) { return goes_before(x, y); });
+        front.at.push_back(outside_.back() + 6 * static_cast<size_t>(place - rim.begin()));
+      }
+    }
+    outside_.push_back(outside_.back() + 6 * rim.size());
+  }
 }
 
 namespace {
@@ -444,58 +476,90 @@ bool BlockFactor::factorize(const std::vector<Tile>& diagonal, const std::vector
   return good;
 }
 
-void BlockFactor::solve(std::vector<double>& x) const {
-  TALUS_ASSERT(x.size() == 6 * front_of_.size());
-  std::vector<double> y;
-  const auto each = [&](const Front& front, auto f) {
-    for (size_t i = 0; i < front.own.size(); ++i) f(6 * static_cast<size_t>(front.own[i]), 6 * i);
-    for (size_t i = 0; i < front.boundary.size(); ++i)
-      f(6 * static_cast<size_t>(front.boundary[i]), 6 * (i + 2 * front.own_strips()));
-  };
-  const auto fetch = [&](const Front& front) {
-    y.assign(kStrip * (front.own_strips() + front.boundary_strips()), 0);
-    each(front, [&](size_t from, size_t to) { std::copy_n(&x[from], 6, &y[to]); });
-  };
-  const auto put = [&](const Front& front) {
-    each(front, [&](size_t to, size_t from) { std::copy_n(&y[from], 6, &x[to]); });
-  };
-  for (const Front& front : fronts_) {
-    const size_t own = front.own_strips(), rim = front.boundary_strips();
-    fetch(front);
-    for (size_t s = 0; s < own; ++s) {
-      const double* a = front.columns.data() + own_strip(s);
-      double* here = &y[kStrip * s];
-      kernels_->subtract_columns(a, y.data(), kStrip * s, here);
-      const double* d = a + kStrip * kStrip * s;
-      for (size_t j = 0; j < kStrip; ++j) {
-        here[j] *= d[kStrip * j + j];
-        for (size_t i = j + 1; i < kStrip; ++i) here[i] -= d[kStrip * j + i] * here[j];
-      }
+// Numbers of own blocks and of the boundary lie side by side in y.
+void BlockFactor::forward(const Front& front, const Workers& workers, double* x,
+                          std::vector<double>& y) const {
+  const size_t own = front.own_strips(), rim = front.boundary_strips();
+  y.assign(kStrip * (own + rim), 0);
+  for (size_t i = 0; i < front.own.size(); ++i)
+    std::copy_n(x + 6 * static_cast<size_t>(front.own[i]), 6, &y[6 * i]);
+  for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(x + front.at[i], 6, &y[kStrip * own + 6 * i]);
+  for (size_t s = 0; s < own; ++s) {
+    const double* a = front.columns.data() + own_strip(s);
+    double* here = &y[kStrip * s];
+    kernels_->subtract_columns(a, y.data(), kStrip * s, here);
+    const double* d = a + kStrip * kStrip * s;
+    for (size_t j = 0; j < kStrip; ++j) {
+      here[j] *= d[kStrip * j + j];
+      for (size_t i = j + 1; i < kStrip; ++i) here[i] -= d[kStrip * j + i] * here[j];
     }
-    for (size_t s = 0; s < rim; ++s)
+  }
+  workers.for_chunks(rim, kSolvedTogether, [&](size_t begin, size_t end) {
+    for (size_t s = begin; s < end; ++s)
       kernels_->subtract_columns(front.columns.data() + boundary_strip(own, s), y.data(), kStrip * own,
                                  &y[kStrip * (own + s)]);
-    put(front);
-  }
-  for (auto it = fronts_.rbegin(); it != fronts_.rend(); ++it) {
-    const Front& front = *it;
-    const size_t own = front.own_strips(), rim = front.boundary_strips();
-    fetch(front);
+  });
+  for (size_t i = 0; i < front.own.size(); ++i)
+    std::copy_n(&y[6 * i], 6, x + 6 * static_cast<size_t>(front.own[i]));
+  for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(&y[kStrip * own + 6 * i], 6, x + front.at[i]);
+}
+
+void BlockFactor::backward(const Front& front, const Workers& workers, double* x,
+                           std::vector<double>& y) const {
+  const size_t own = front.own_strips(), rim = front.boundary_strips();
+  y.assign(kStrip * (own + rim), 0);
+  for (size_t i = 0; i < front.own.size(); ++i)
+    std::copy_n(x + 6 * static_cast<size_t>(front.own[i]), 6, &y[6 * i]);
+  for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(x + front.at[i], 6, &y[kStrip * own + 6 * i]);
+  workers.for_chunks(own, kSolvedTogether, [&](size_t begin, size_t end) {
     for (size_t s = 0; s < rim; ++s)
-      kernels_->subtract_rows(front.columns.data() + boundary_strip(own, s), &y[kStrip * (own + s)],
-                              kStrip * own, y.data());
-    for (size_t s = own; s-- > 0;) {
-      const double* a = front.columns.data() + own_strip(s);
-      double* here = &y[kStrip * s];
-      const double* d = a + kStrip * kStrip * s;
-      for (size_t j = kStrip; j-- > 0;) {
-        for (size_t i = j + 1; i < kStrip; ++i) here[j] -= d[kStrip * j + i] * here[i];
-        here[j] *= d[kStrip * j + j];
-      }
-      kernels_->subtract_rows(a, here, kStrip * s, y.data());
+      kernels_->subtract_rows(front.columns.data() + boundary_strip(own, s) + kStrip * kStrip * begin,
+                              &y[kStrip * (own + s)], kStrip * (end - begin), &y[kStrip * begin]);
+  });
+  for (size_t s = own; s-- > 0;) {
+    const double* a = front.columns.data() + own_strip(s);
+    double* here = &y[kStrip * s];
+    const double* d = a + kStrip * kStrip * s;
+    for (size_t j = kStrip; j-- > 0;) {
+      for (size_t i = j + 1; i < kStrip; ++i) here[j] -= d[kStrip * j + i] * here[i];
+      here[j] *= d[kStrip * j + j];
     }
-    put(front);
+    kernels_->subtract_rows(a, here, kStrip * s, y.data());
   }
+  for (size_t i = 0; i < front.own.size(); ++i)
+    std::copy_n(&y[6 * i], 6, x + 6 * static_cast<size_t>(front.own[i]));
+}
+
+void BlockFactor::solve(std::vector<double>& x, const Workers& workers) const {
+  const size_t size = 6 * front_of_.size();
+  TALUS_ASSERT(x.size() == size);
+  x.resize(outside_.back(), 0);
+  const Workers alone;
+  const auto root = [&](size_t t) -> const Front& {
+    return fronts_[static_cast<size_t>(subtrees_[t].back())];
+  };
+  workers.run(subtrees_.size(), [&](size_t t) {
+    std::vector<double> y;
+    for (const int f : subtrees_[t]) forward(fronts_[static_cast<size_t>(f)], alone, x.data(), y);
+  });
+  for (size_t t = 0; t < subtrees_.size(); ++t) {
+    const std::vector<int>& rim = root(t).boundary;
+    for (size_t i = 0; i < rim.size(); ++i)
+      for (size_t k = 0; k < 6; ++k) x[6 * static_cast<size_t>(rim[i]) + k] += x[outside_[t] + 6 * i + k];
+  }
+  std::vector<double> y;
+  for (const int f : rest_) forward(fronts_[static_cast<size_t>(f)], workers, x.data(), y);
+  for (auto f = rest_.rbegin(); f != rest_.rend(); ++f)
+    backward(fronts_[static_cast<size_t>(*f)], workers, x.data(), y);
+  workers.run(subtrees_.size(), [&](size_t t) {
+    const std::vector<int>& rim = root(t).boundary;
+    for (size_t i = 0; i < rim.size(); ++i)
+      std::copy_n(&x[6 * static_cast<size_t>(rim[i])], 6, &x[outside_[t] + 6 * i]);
+    std::vector<double> mine;
+    for (auto f = subtrees_[t].rbegin(); f != subtrees_[t].rend(); ++f)
+      backward(fronts_[static_cast<size_t>(*f)], alone, x.data(), mine);
+  });
+  x.resize(size);
 }
 
 }  // namespace talus

@@ -42,7 +42,7 @@ class BlockFactor {
 
   /// @param x  in: right-hand side, six numbers a block; out: the solution
   /// @pre  factorize() has succeeded
-  void solve(std::vector<double>& x) const;
+  void solve(std::vector<double>& x, const Workers& workers) const;
 
  private:
   // The blocks that a front eliminates, and those that they leave joined: all blocks of later fronts that one of
@@ -53,6 +53,7 @@ class BlockFactor {
     std::vector<int> own, boundary;  // blocks, in the order of elimination
     std::vector<int> in_parent;      // place of each boundary block among the parent's own and boundary
     std::vector<int> pairs;          // whose first eliminated block is one of its own
+    std::vector<size_t> at;          // where the numbers of each boundary block are while solving
     std::vector<double> columns;     // of own blocks, strip by strip
     std::vector<double> left;        // what elimination leaves of the boundary; given up to the parent
     size_t own_strips() const { return (own.size() + 1) / 2; }
@@ -65,8 +66,11 @@ class BlockFactor {
   bool goes_before(int a, int b) const;
   void join_fronts(const std::vector<std::array<int, 2>>& pairs);
   void share_out();
+  void place_boundaries();
   void gather(Front& front, const std::vector<Tile>& diagonal, const std::vector<Tile>& beside);
   bool eliminate(Front& front, const Workers& workers) const;
+  void forward(const Front& front, const Workers& workers, double* x, std::vector<double>& y) const;
+  void backward(const Front& front, const Workers& workers, double* x, std::vector<double>& y) const;
 
   const wide::Kernels* kernels_;
   std::vector<Front> fronts_;  // children before parents
@@ -74,6 +78,9 @@ class BlockFactor {
   std::vector<int> front_of_, place_in_front_;  // of each block
   std::vector<std::vector<int>> subtrees_;  // fronts that one thread works at, in order; the rest is rest_
   std::vector<int> rest_;
+  // Numbers that a subtree takes off those of blocks outside of it, kept apart until all subtrees are done: where
+  // each subtree's begin, after those of the blocks, and where all end.
+  std::vector<size_t> outside_;
   Cost cost_;
 };
 

@@ -657,7 +657,7 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
     std::vector<double> down(F), step;
     for (double& x : down) x = -x;
     const auto jacobian = [&](const std::vector<double>& x) { return equations.jacobian_times(tangent, x); };
-    const auto near = [&](std::vector<double>& x) { factor.solve(x); };
+    const auto near = [&](std::vector<double>& x) { factor.solve(x, workers); };
     if (!factored || differing(tangent, of_factor) > kMostChanged) {
       equations.tiles(tangent, diagonal, beside);
       factored = factor.factorize(diagonal, beside, workers);

@@ -90,9 +90,10 @@ std::vector<double> solved(const Matrix& a, int threads,
                            const wide::Kernels& kernels = wide::best_kernels()) {
   BlockFactor factor(kernels);
   factor.analyse(a.pairs, a.place);
-  REQUIRE(factor.factorize(a.diagonal, a.beside, Workers(threads)));
+  const Workers workers(threads);
+  REQUIRE(factor.factorize(a.diagonal, a.beside, workers));
   std::vector<double> x = numbers(6 * a.diagonal.size());
-  factor.solve(x);
+  factor.solve(x, workers);
   return x;
 }
 
@@ -131,7 +132,7 @@ TEST_CASE("block factor: the same bits for any number of threads, any kernels, a
   REQUIRE(factor.factorize(other, a.beside, Workers(2)));
   REQUIRE(factor.factorize(a.diagonal, a.beside, Workers(2)));
   std::vector<double> x = numbers(one.size());
-  factor.solve(x);
+  factor.solve(x, Workers(2));
   CHECK(x == one);
 }
 

@@ -84,8 +84,11 @@ TEST_CASE("command run --from: the same bits from within static stages whose ste
   const std::string found = "kind = \"static\"\n", more = "integration = \"implicit\"\n";
   for (size_t at = 0; (at = text.find(found, at)) != std::string::npos; at += found.size() + more.size())
     text.insert(at, more);
-  const std::string saving = "save_interval = \"20 ms\"";
-  text.replace(text.find(saving), saving.size(), "save_interval = \"1 us\"");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("save_interval = \"20 ms\"", "save_interval = \"1 us\"");
+  replace("duration = \"0.2 s\"", "duration = \"2 ms\"");
   write_model(folder, text);
   goes_on_from_each_state(folder);
 }

@@ -81,7 +81,7 @@ SectionSpec stage_section() {
         .doc =
             "Static stages. `dynamic`: they move, damped, until at rest. `implicit`: steps of backward Euler "
             "(theory 4.23), each from rest to what is nearly the balance of its loads, that grow from "
-            "`time_step` (\"auto\": 20 ms) to 16 times that, and are halved where one fails; `relaxation` is "
+            "`time_step` (\"auto\": 20 ms) to 64 times that, and are halved where one fails; `relaxation` is "
             "then, unless given, over the first eight. `auto`: implicit with 1000 blocks or more and joints "
             "that have stiffness, unless time step, elasticity or damping are given."},
        {.name = "safety",

@@ -112,7 +112,7 @@ void Auditor::watch(const Instant& i) {
   for (size_t k = 0; k < centroid_.size(); ++k)
     centroid_[k] = scene_.blocks.centroid[k] + state.displacement[k];
   watch_.look(
-      {state.time, i.plan.dt, points_, centroid_, blocks_, [&](int block) { return shape(i, block); }},
+      {state.time, i.work.clock.dt, points_, centroid_, blocks_, [&](int block) { return shape(i, block); }},
       report_);
 }
 
@@ -135,7 +135,7 @@ audit::Block Auditor::shape(const Instant& i, int block) const {
 
 audit::Frame Auditor::frame_of(const Instant& i) const {
   audit::Frame frame;
-  frame.time = i.state.time, frame.step = i.plan.dt;
+  frame.time = i.state.time, frame.step = i.work.clock.dt;
   for (int k = 0; k < scene_.blocks.count; ++k) frame.blocks.push_back(shape(i, k));
   const size_t bonds = i.work.rows.range(Family::kFace).end;
   for (size_t r = 0; r < bonds; ++r) {  // the first family

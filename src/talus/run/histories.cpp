@@ -55,7 +55,7 @@ std::vector<double> step_row(const Instant& i) {
   int broken = 0;
   for (const FaceState& f : i.state.face) broken += f.broken;
   std::vector<double> row{i.state.time,
-                          i.plan.dt,
+                          i.work.clock.dt,
                           static_cast<double>(r.contacts),
                           static_cast<double>(r.closed),
                           static_cast<double>(r.solve.islands),
@@ -148,11 +148,13 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
   // the impulse of a kick acts from half a step before to half a step after; the first one only after
   const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.clock.dt_kick;
   const bool first = c.knots.empty();
+  // the clock goes on by less than a long step from rest
+  const double share = instant.work.clock.from_rest ? dt / dt_kick : 1;
   if (first) c.knots.push_back({t, {0, 0, 0}});
   for (const double s : step) row.push_back(s / dt_kick);
   for (int k = 0; k < 3; ++k) {
-    row.push_back(first ? 0 : c.sum[k] + 0.5 * step[k]);
-    c.sum[k] += step[k];
+    row.push_back(first ? 0 : c.sum[k] + 0.5 * share * step[k]);
+    c.sum[k] += share * step[k];
   }
   c.knots.push_back({t + 0.5 * dt, {c.sum[0], c.sum[1], c.sum[2]}});
   if (c.window > 0) row.insert(row.end(), 3, 0.0);  // filled in when the window is known

@@ -11,7 +11,7 @@ namespace talus {
 
 /// Lengths of the steps of a stage from rest: the first is so many times the shortest, the longest so many times
 /// the first (theory 4.23).
-inline constexpr int kMostShortened = 64, kMostLengthened = 16;
+inline constexpr int kMostShortened = 64, kMostLengthened = 64;
 
 struct StagePlan {
   double dt = 0;           // [s]; the first of a stage from rest

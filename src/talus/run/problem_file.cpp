@@ -80,7 +80,7 @@ std::string problem_text(const Instant& i) {
                     {"title", i.scene.model.title},
                     {"t [s]", i.state.time},
                     {"step", i.state.step},
-                    {"dt [s]", i.plan.dt}};
+                    {"dt [s]", i.work.clock.dt}};
   j["blocks"] = ordered_json::array();
   for (size_t k = 0; k < static_cast<size_t>(b.count); ++k) {
     j["blocks"].push_back({{"name", b.name[k]},

@@ -54,10 +54,11 @@ void Progress::show(const Instant& instant, double now) {
   const auto left = static_cast<double>(instant.plan.steps - stage_step_);
   const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
   const double share = 100 * static_cast<double>(stage_step_) / static_cast<double>(instant.plan.steps);
-  const std::string pace = s.from_rest ? fmt::format("step {} of {:.4g} s", stage_step_, instant.plan.dt)
-                                       : fmt::format("({:.0f} %), {:.0f} steps/s, {}{} to go", share, rate,
-                                                     s.kind == StageKind::kStatic ? "at most " : "",
-                                                     readable_seconds(left / rate));
+  const std::string pace =
+      s.from_rest
+          ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt)
+          : fmt::format("({:.0f} %), {:.0f} steps/s, {}{} to go", share, rate,
+                        s.kind == StageKind::kStatic ? "at most " : "", readable_seconds(left / rate));
   const std::string line =
       fmt::format("  {}: t = {:.4g} s{} {}, worst contact error {:.1e} m{}", s.name, instant.state.time,
                   s.from_rest ? "," : "", pace, worst_error_,

@@ -187,16 +187,16 @@ class Runner {
 
   // A step of backward Euler. Where blocks come together by more than their contact points were sought ahead it is
   // taken again, looking as far as they went; where that does not help, it was not solved or they go too far it is
-  // taken with half the length (theory 4.23). `plan` gets the length it had.
+  // taken with half the length (theory 4.23). `plan` gets what the clock goes on by.
   StepReport kick_from_rest(const StageInput& stage, const StageResult& out, StagePlan& plan) {
-    const double shortest = plans_[result_.stages.size() - 1].dt / kMostShortened;
+    const double first = plans_[result_.stages.size() - 1].dt, shortest = first / kMostShortened;
     const State before = state_;
     double length = state_.rest.length;
     bool looked = false, halved = false;
     for (;;) {
-      plan.dt = length;
+      plan.dt = std::min(length, first);  // by which the clock goes on
       // what acts at the end of the step; sums of lengths are round-off short of the times meant
-      const double end = (state_.time - out.begin + length) * (1 + 1e-12);
+      const double end = (state_.time - out.begin + plan.dt) * (1 + 1e-12);
       state_.relaxed = stage.relaxed_at(end, state_.relaxed);
       const StepReport report = kick(scene_, settings_, length, work_, state_);
       const Approach approach =
@@ -354,7 +354,7 @@ class Runner {
     const bool at_sharpest = rest.sharper <= kSharpest;
     rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
     // one look is enough the second time: that the solver is what keeps it was found the first
-    const bool by_solver = solver_leaves(report, plan.dt) > kSolverShare * report.worst_force;
+    const bool by_solver = solver_leaves(report, work_.clock.dt) > kSolverShare * report.worst_force;
     if (!at_sharpest && by_solver && rest.stuck >= (rest.sharper < 1 ? 1 : kStalls)) {
       rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
       rest.stuck = 0;

@@ -198,12 +198,14 @@ class Equations {
     workers_.for_chunks(faces_.size(), kChunkOfFaces, [&](size_t begin, size_t end) {
       for (size_t f = begin; f < end; ++f) push_face(faces_[f], v, keep, tangent ? &(*tangent)[f] : nullptr);
     });
-    std::vector<double> change(v);
-    for (size_t i = 0; i < v.size(); ++i) change[i] -= free_[i];
-    std::vector<double> F = times(mass_, change);
+    // the rates of these impulses, by the mobilities that they are judged by: in a long step v* is a fall and a spin that
+    // impulses all but cancel, and the mass is known as their inverse only to some digits
+    std::vector<double> impulse(v.size(), 0.0);
     add_forces(
-        -1, [&](size_t i) { return problem_.rows.impulse[i]; }, F);
-    return F;
+        1, [&](size_t i) { return problem_.rows.impulse[i]; }, impulse);
+    std::vector<double> change = times(inverse_, impulse);
+    for (size_t i = 0; i < v.size(); ++i) change[i] = v[i] - (free_[i] + change[i]);
+    return times(mass_, change);
   }
 
   // How far velocities move in the step while the impulses stand [m].

@@ -188,7 +188,7 @@ TEST_CASE("wrong input: each kind has its message") {
       {"steps from rest in a dynamic stage",
        "kind = \"dynamic\"",
        "kind = \"dynamic\"\nintegration = \"implicit\"",
-       {"model.toml:24:1: error: stage.go.integration: is \"implicit\", which knows no inertia",
+       {"model.toml:25:1: error: stage.go.integration: is \"implicit\", which knows no inertia",
         "say kind = \"static\""}},
       {"damping of steps from rest",
        "kind = \"dynamic\"",

@@ -156,6 +156,17 @@ TEST_CASE(
   CHECK(sliding.failure.find("Something slides or falls") != std::string::npos);
 }
 
+TEST_CASE("from rest: what is flung out is told by its name") {
+  std::string text = slope_text(10);
+  const std::string weight = fmt::format("gravity = [0, -{}]", kG);
+  text.replace(text.find(weight), weight.size(), "gravity = [2e6, -9.81]");
+  const RunResult r = run_to_failure(text);
+  INFO(r.failure);
+  CHECK(r.failure.find("block \"slab\" at (") != std::string::npos);
+  CHECK(r.failure.find("moves against \"slope\" by ") != std::string::npos);
+  CHECK(r.failure.find("integration = \"dynamic\" follows it") != std::string::npos);
+}
+
 TEST_CASE("from rest: what slides on comes to rest where the force has gone") {
   // a weight aslant beyond the friction of the floor; the wall takes the rest
   const std::string text = fmt::format(R"(

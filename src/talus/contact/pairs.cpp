@@ -481,7 +481,8 @@ Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& 
           const Mat2 turning = rate[small].G - rate[large].G;
           const double together = dt * (norm(rate[small].a - rate[large].a - rate[large].G * arm) +
                                         std::sqrt(contract(turning, turning)) * blocks.radius[small]);
-          most += {together / pair.margin, together / std::min(blocks.size[small], blocks.size[large])};
+          most += {together / pair.margin, together / std::min(blocks.size[small], blocks.size[large]),
+                   static_cast<int>(small), static_cast<int>(large)};
         }
       });
 }

@@ -25,11 +25,13 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
 
 /// How far the blocks of a pair move against each other in a step, at most: the smaller one as seen by the larger.
 struct Approach {
-  double of_margin = 0;  // as a multiple of how far ahead their contact points were sought
-  double of_size = 0;    // as share of the smaller one
+  double of_margin = 0;           // as a multiple of how far ahead their contact points were sought
+  double of_size = 0;             // as share of the smaller one
+  int smaller = -1, larger = -1;  // of which pair that is
 
   Approach& operator+=(const Approach& o) {
-    of_margin = std::max(of_margin, o.of_margin), of_size = std::max(of_size, o.of_size);
+    of_margin = std::max(of_margin, o.of_margin);
+    if (o.of_size > of_size) of_size = o.of_size, smaller = o.smaller, larger = o.larger;
     return *this;
   }
 };

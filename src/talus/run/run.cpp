@@ -198,6 +198,7 @@ class Runner {
       // what acts at the end of the step; sums of lengths are round-off short of the times meant
       const double end = (state_.time - out.begin + plan.dt) * (1 + 1e-12);
       state_.relaxed = stage.relaxed_at(end, state_.relaxed);
+      settings_.by_all = length <= shortest;
       const StepReport report = kick(scene_, settings_, length, work_, state_);
       const Approach approach =
           approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
@@ -212,10 +213,7 @@ class Runner {
       const bool look = !report.failed && !far && !looked;
       if (!look && length <= shortest) {
         if (report.failed) return report;
-        throw NumericalError(fmt::format(
-            "step {} at t = {:.9g} s: blocks come together by {:.2g} of the smaller one, also in a step of {:.3g} s: "
-            "something falls or slides. integration = \"dynamic\" follows it",
-            state_.step, state_.time, approach.of_size, length));
+        throw NumericalError(too_far(approach, way, length));
       }
       std::vector<BlockRate> rate = std::move(state_.rate);
       state_ = before;
@@ -225,6 +223,20 @@ class Runner {
         length *= 0.5, halved = true;
       looked = look;
     }
+  }
+
+  std::string too_far(const Approach& approach, double way, double length) const {
+    std::string what = fmt::format("a block goes {:.2g} times its size", way);
+    if (approach.smaller >= 0 && approach.of_size > kMostApproach) {
+      const auto k = static_cast<size_t>(approach.smaller), b = static_cast<size_t>(approach.larger);
+      const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k];
+      what = fmt::format("block \"{}\" at ({:.4g}, {:.4g}) moves against \"{}\" by {:.2g} of its size",
+                         scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);
+    }
+    return fmt::format(
+        "step {} at t = {:.9g} s: {}, also in a step of {:.3g} s: something falls, slides or is squeezed out. "
+        "integration = \"dynamic\" follows it",
+        state_.step, state_.time, what, length);
   }
 
   // Of a block in a step of this length, as share of its size.

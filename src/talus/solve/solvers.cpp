@@ -135,7 +135,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   const SolverKind first = chosen_solver(model, problem.rows.points.size(), kinds),
                    second = entry(first).mended;
   // a shorter step from rest costs less than thousands of sweeps
-  const bool shorter = kinds.from_rest && first == SolverKind::kPrimalNewton &&
+  const bool shorter = kinds.from_rest && !kinds.by_all && first == SolverKind::kPrimalNewton &&
                        problem.rows.points.size() >= kFewestPrimal;
   const bool again = options.second_solver && !smoothed && !shorter &&
                      problem.rows.points.size() <= entry(second).most_points;

@@ -41,6 +41,7 @@ struct RowKinds {
   bool give = false;       // some joints give
   bool at_rest = false;    // a static stage: what is near rest moves by less than errors of rows that give
   bool from_rest = false;  // a step of backward Euler
+  bool by_all = false;     // which cannot be shortened any more
 };
 
 /// What the model asks for; for `auto`, what is faster for so many points, `hard_ties` of which tie faces

@@ -78,7 +78,9 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
       work.mobility,       work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
       work.rows,           state.rate,     work.profile,  scene.blocks.tile,
       work.clock.from_rest};
-  const Solved solved = solve_step(scene.model, row_kinds(scene, work), settings.tolerance, settings.sharper,
+  RowKinds kinds = row_kinds(scene, work);
+  kinds.by_all = settings.by_all;
+  const Solved solved = solve_step(scene.model, kinds, settings.tolerance, settings.sharper,
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
   report.error = solved.error, report.failed = solved.failed;

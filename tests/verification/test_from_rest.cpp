@@ -156,6 +156,17 @@ TEST_CASE(
   CHECK(sliding.failure.find("Something slides or falls") != std::string::npos);
 }
 
+TEST_CASE("from rest: what is excavated before anything has rested pushes nothing") {
+  std::string rest = kRest;
+  rest.insert(rest.find("unbalanced"), "excavate = [\"prop\"]\n");
+  const CaseResult r = run_case(stack_text(
+      "friction_angle = \"30 deg\"\nnormal_stiffness = \"4 GPa/m\"\nshear_stiffness = \"4 GPa/m\"",
+      "[[block]]\nname = \"prop\"\npolygon = [[1, 0], [2, 0], [2, 1], [1, 1]]\nmaterial = \"m\"\n" + rest));
+  CHECK(r.run.stages[0].at_rest);
+  check_close("from rest, settlement beside what was excavated", r.column("top.displacement_y").back(),
+              -0.000662175, 1e-5, 1e-6);
+}
+
 TEST_CASE("from rest: what is flung out is told by its name") {
   std::string text = slope_text(10);
   const std::string weight = fmt::format("gravity = [0, -{}]", kG);

@@ -4,6 +4,7 @@
 // Theory: docs/theory.md 3.7.
 
 #include <algorithm>
+
 #include "talus/base/parallel.h"
 #include "talus/contact/bonds.h"
 #include "talus/contact/find.h"

@@ -296,7 +296,8 @@ class Runner {
   // What the blocks to be taken out push on the others now, found on a copy of the state.
   void keep_forces(int index, const std::vector<char>& out) {
     state_.kept_force.clear();
-    if (scene_.model.stages[static_cast<size_t>(index)].relaxation.empty()) return;
+    // before the first stage nothing has pushed yet
+    if (index == 0 || scene_.model.stages[static_cast<size_t>(index)].relaxation.empty()) return;
     State copy = state_;
     kick(scene_, settings_, plans_[static_cast<size_t>(index) - 1].dt, work_, copy);
     state_.kept_force = forces_of_blocks(work_, out);

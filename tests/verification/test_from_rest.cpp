@@ -111,6 +111,7 @@ TEST_CASE("from rest: a stack on elastic joints settles by the sum of its weight
       "friction_angle = \"30 deg\"\nnormal_stiffness = \"4 GPa/m\"\nshear_stiffness = \"4 GPa/m\"", kRest));
   CHECK(elastic.run.stages[0].at_rest);
   CHECK(elastic.run.steps <= 8);
+  for (const BlockRate& v : elastic.state.rate) CHECK((v.a == Vec2{} && contract(v.G, v.G) == 0));
   // strains are 1e-4, and the balance of forces is of second order in them
   check_close("from rest, settlement on elastic joints", elastic.column("top.displacement_y").back(),
               -blocks - joints, 2e-4, 1e-4);

@@ -35,9 +35,9 @@ struct Result {
   double seconds = 0, error = 0;
 };
 
-// One kick from `start`, with the time of the solver alone.
+// One kick from `start`, and how long all of it took.
 Result solved(Scene& scene, const StagePlan& plan, const State& start, SolverKind kind, int count,
-           const Workers& workers) {
+              const Workers& workers) {
   SolverInput& solver = scene.model.solver;
   solver.method = kind, solver.second_solver = false;
   // no iterations: what sweeps leave that Newton's method begins from
@@ -105,7 +105,8 @@ int main(int argc, char** argv) {
     figure.x_label = "lg (time [s])", figure.y_label = "lg (error [m])";
     for (int i = 3; i < argc; ++i) {
       for (const Result& row : rows_of(argv[i], workers)) {
-        csv += fmt::format("{},{},{},{:.6g},{:.6g}\n", row.name, row.solver, row.count, row.seconds, row.error);
+        csv +=
+            fmt::format("{},{},{},{:.6g},{:.6g}\n", row.name, row.solver, row.count, row.seconds, row.error);
         const std::string label = row.name + ", " + row.solver;
         if (figure.curves.empty() || figure.curves.back().label != label) {
           plot::Curve curve;

@@ -62,7 +62,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   });
   const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
                                      {.hard_ties = 2 * static_cast<size_t>(hard)}) == SolverKind::kNewton;
-  // the factor of steps from rest: 7 kB a block at 5,000 of them, 13 at 50,000
+  // the factor of steps from rest: 10 kB a block at 5,000 of them, 13 at 50,000
   const bool from_rest = std::any_of(scene.model.stages.begin(), scene.model.stages.end(),
                                      [](const StageInput& s) { return s.from_rest; });
   p.memory = (from_rest ? 14600.0 : 1600.0) * p.blocks + 32 * corners +

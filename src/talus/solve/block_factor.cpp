@@ -476,14 +476,19 @@ bool BlockFactor::factorize(const std::vector<Tile>& diagonal, const std::vector
   return good;
 }
 
-// Numbers of own blocks and of the boundary lie side by side in y.
-void BlockFactor::forward(const Front& front, const Workers& workers, double* x,
-                          std::vector<double>& y) const {
-  const size_t own = front.own_strips(), rim = front.boundary_strips();
-  y.assign(kStrip * (own + rim), 0);
+// Numbers of own blocks and of the boundary, side by side.
+void BlockFactor::fetch(const Front& front, const double* x, std::vector<double>& y) {
+  const size_t own = front.own_strips();
+  y.assign(kStrip * (own + front.boundary_strips()), 0);
   for (size_t i = 0; i < front.own.size(); ++i)
     std::copy_n(x + 6 * static_cast<size_t>(front.own[i]), 6, &y[6 * i]);
   for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(x + front.at[i], 6, &y[kStrip * own + 6 * i]);
+}
+
+void BlockFactor::forward(const Front& front, const Workers& workers, double* x,
+                          std::vector<double>& y) const {
+  const size_t own = front.own_strips(), rim = front.boundary_strips();
+  fetch(front, x, y);
   for (size_t s = 0; s < own; ++s) {
     const double* a = front.columns.data() + own_strip(s);
     double* here = &y[kStrip * s];
@@ -507,10 +512,7 @@ void BlockFactor::forward(const Front& front, const Workers& workers, double* x,
 void BlockFactor::backward(const Front& front, const Workers& workers, double* x,
                            std::vector<double>& y) const {
   const size_t own = front.own_strips(), rim = front.boundary_strips();
-  y.assign(kStrip * (own + rim), 0);
-  for (size_t i = 0; i < front.own.size(); ++i)
-    std::copy_n(x + 6 * static_cast<size_t>(front.own[i]), 6, &y[6 * i]);
-  for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(x + front.at[i], 6, &y[kStrip * own + 6 * i]);
+  fetch(front, x, y);
   workers.for_chunks(own, kSolvedTogether, [&](size_t begin, size_t end) {
     for (size_t s = 0; s < rim; ++s)
       kernels_->subtract_rows(front.columns.data() + boundary_strip(own, s) + kStrip * kStrip * begin,

@@ -69,6 +69,7 @@ class BlockFactor {
   void place_boundaries();
   void gather(Front& front, const std::vector<Tile>& diagonal, const std::vector<Tile>& beside);
   bool eliminate(Front& front, const Workers& workers) const;
+  static void fetch(const Front& front, const double* x, std::vector<double>& y);
   void forward(const Front& front, const Workers& workers, double* x, std::vector<double>& y) const;
   void backward(const Front& front, const Workers& workers, double* x, std::vector<double>& y) const;
 

@@ -45,7 +45,7 @@ struct RowKinds {
 };
 
 /// What the model asks for; for `auto`, what is faster for so many points, `hard_ties` of which tie faces
-/// without any give; what begins at rest and gives goes to Newton's method in velocities.
+/// without any give; steps from rest go to Newton's method in velocities.
 SolverKind chosen_solver(const Model& model, size_t points, const RowKinds& kinds);
 
 /// Who worked at a step, in their order, and how many iterations or sweeps each.

@@ -26,8 +26,8 @@ bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
   return true;
 }
 
-// Nothing goes on from a step of backward Euler: its rates only tell the next how far to look. Its forces act over all of the way, but that of implicit elasticity,
-// which grows from nothing; what they give the blocks is lost (theory 4.23).
+// Nothing goes on from a step of backward Euler: its rates only tell the next how far to look. Its forces act
+// over all of the way, but that of implicit elasticity, which grows from nothing; v M v is lost (theory 4.23).
 void settle_work(const StepWork& work, const StepReport& report, State& state) {
   WorkDone more = work.work.after;
   more[Cause::kImplicit] = 0;

@@ -20,7 +20,7 @@ Scene::~Scene() = default;
 
 namespace {
 
-// From so many blocks on static stages go in steps from rest where joints give (docs/decisions/15).
+// From so many blocks on static stages go in steps from rest where joints give (docs/decisions/0015).
 constexpr int kManyBlocks = 1000;
 
 // Whether a deformable block may meet another over a joint with friction and without give. With explicit

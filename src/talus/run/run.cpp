@@ -15,6 +15,7 @@
 #include "talus/run/check_monitors.h"
 #include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
+#include "talus/run/steps_from_rest.h"
 #include "talus/step/change.h"
 
 namespace talus {
@@ -42,14 +43,6 @@ constexpr int kStalls = 2, kMostStuck = 4;
 // What the solver leaves, as share of the unbalanced force, below which it is not what keeps a stage from
 // rest.
 constexpr double kSolverShare = 0.02;
-
-// Steps of a stage from rest: how far blocks of a pair may come together in one, as share of the smaller; how far a block
-// may go, as share of its size; how many in a row have to go without halving before one is longer.
-constexpr double kMostApproach = 0.05, kMostWay = 10;
-constexpr int kWhole = 2;
-
-// Way that a block may still go in the rest of its stage, as share of its size, and yet count as standing.
-constexpr double kFarToGo = 1e-3;
 
 class Runner {
  public:
@@ -103,8 +96,7 @@ class Runner {
     enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
-    state_.rest = {};
-    state_.rest.length = plan.dt, state_.rest.whole = kWhole;
+    state_.rest = StepsFromRest::begin(plan.dt);
     if (stage.from_rest) stop_motion(scene_, state_);
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {
@@ -147,6 +139,7 @@ class Runner {
     StagePlan plan = plans_[k];
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
+    StepsFromRest from_rest(scene_, work_, state_);
 
     for (int64_t n = out.steps; n < plan.steps; ++n) {
       if (memory_is_short()) throw std::bad_alloc();  // while there is some left to end in order
@@ -156,20 +149,21 @@ class Runner {
       }
       if (stage.from_rest && state_.time >= out.begin + stage.duration) break;
       settings_.sharper = state_.rest.sharper;
-      StepReport report = stage.from_rest ? kick_from_rest(stage, out, plan)
+      StepReport report = stage.from_rest ? from_rest.kick(stage, out.begin, plans_[k].dt, settings_, plan.dt)
                                           : kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);
       show({scene_, state_, work_, report, plan, index, n == 0, false});
       go_on_or_fail(index, n, plan, report);
       ++out.steps;
       if (stage.from_rest)
-        lengthen(stage, plans_[k].dt);
+        from_rest.lengthen(plans_[k].dt, is_relaxed(stage, 0));
       else
         state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
       last_ = report;
       state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
-      if (stage.kind == StageKind::kStatic && is_at_rest(stage, report, n)) {
+      if (stage.kind == StageKind::kStatic && is_at_rest(stage, report, n) &&
+          (!stage.from_rest || from_rest.stands())) {
         out.at_rest = true;
         break;
       }
@@ -183,76 +177,6 @@ class Runner {
       throw NumericalError(no_rest(stage, out));
     }
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
-  }
-
-  // A step of backward Euler. Where blocks come together by more than their contact points were sought ahead it is
-  // taken again, looking as far as they went; where that does not help, it was not solved or they go too far it is
-  // taken with half the length (theory 4.23). `plan` gets what the clock goes on by.
-  StepReport kick_from_rest(const StageInput& stage, const StageResult& out, StagePlan& plan) {
-    const double first = plans_[result_.stages.size() - 1].dt, shortest = first / kMostShortened;
-    const State before = state_;
-    double length = state_.rest.length;
-    bool looked = false, halved = false;
-    for (;;) {
-      plan.dt = std::min(length, first);  // by which the clock goes on
-      // what acts at the end of the step; sums of lengths are round-off short of the times meant
-      const double end = (state_.time - out.begin + plan.dt) * (1 + 1e-12);
-      state_.relaxed = stage.relaxed_at(end, state_.relaxed);
-      settings_.by_all = length <= shortest;
-      const StepReport report = kick(scene_, settings_, length, work_, state_);
-      const Approach approach =
-          approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
-      const double way = longest_way(length);
-      const bool far = !(approach.of_size <= kMostApproach) || !(way <= kMostWay);
-      if (!report.failed && !far && approach.of_margin <= 1) {
-        state_.rest.length = length;
-        way_ = way;
-        state_.rest.whole = halved ? 0 : state_.rest.whole + 1;
-        return report;
-      }
-      const bool look = !report.failed && !far && !looked;
-      if (!look && length <= shortest) {
-        if (report.failed) return report;
-        throw NumericalError(too_far(approach, way, length));
-      }
-      std::vector<BlockRate> rate = std::move(state_.rate);
-      state_ = before;
-      if (look)
-        state_.rate = std::move(rate);
-      else
-        length *= 0.5, halved = true;
-      looked = look;
-    }
-  }
-
-  std::string too_far(const Approach& approach, double way, double length) const {
-    std::string what = fmt::format("a block goes {:.2g} times its size", way);
-    if (approach.smaller >= 0 && approach.of_size > kMostApproach) {
-      const auto k = static_cast<size_t>(approach.smaller), b = static_cast<size_t>(approach.larger);
-      const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k];
-      what = fmt::format("block \"{}\" at ({:.4g}, {:.4g}) moves against \"{}\" by {:.2g} of its size",
-                         scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);
-    }
-    return fmt::format(
-        "step {} at t = {:.9g} s: {}, also in a step of {:.3g} s: something falls, slides or is squeezed out. "
-        "integration = \"dynamic\" follows it",
-        state_.step, state_.time, what, length);
-  }
-
-  // Of a block in a step of this length, as share of its size.
-  double longest_way(double length) const {
-    double most = 0;
-    for (size_t k = 0; k < state_.rate.size(); ++k)
-      most = std::max(most, length * norm(state_.rate[k].a) / scene_.blocks.size[k]);
-    return most;
-  }
-
-  // Not soon after a step that had to be shortened.
-  void lengthen(const StageInput& stage, double first) {
-    RestWatch& rest = state_.rest;
-    if (rest.whole < kWhole) return;
-    rest.length = std::max(rest.length,
-                           std::min(2 * rest.length, is_relaxed(stage, 0) ? kMostLengthened * first : first));
   }
 
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
@@ -335,7 +259,7 @@ class Runner {
     for (size_t k = 0; k < state_.rate.size(); ++k)
       farthest =
           std::max(farthest, norm(state_.rate[k].a) * std::max(left, stage.duration) / scene_.blocks.size[k]);
-    if (farthest > kFarToGo)
+    if (farthest > StepsFromRest::kFarToGo)
       return fmt::format(
           "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
           "duration of the stage. Look at blocks_end.svg and slips.csv; if it is on its way to rest, give "
@@ -377,7 +301,7 @@ class Runner {
     if (!at_sharpest || rest.stuck < kMostStuck) return false;
     const double left = plan.dt * static_cast<double>(plan.steps - n);
     for (size_t k = 0; k < state_.rate.size(); ++k)
-      if (norm(state_.rate[k].a) * left > kFarToGo * scene_.blocks.size[k]) return false;
+      if (norm(state_.rate[k].a) * left > StepsFromRest::kFarToGo * scene_.blocks.size[k]) return false;
     return true;
   }
 
@@ -406,8 +330,7 @@ class Runner {
 
   // Forces in balance is not enough: a block that swings through its rest position is in balance there.
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    // a stone that falls may be no force beside the others
-    if (stage.from_rest && (report.broken_faces > 0 || way_ > kFarToGo)) return false;
+    if (stage.from_rest && report.broken_faces > 0) return false;
     return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
            report.speed_left <= stage.unbalanced;
   }
@@ -504,7 +427,6 @@ class Runner {
   std::vector<Vec2> displacement_;  // before the drift
   std::vector<Mat2> strain_part_;
   StepReport last_;
-  double way_ = 0;  // of a block in the last step from rest, as share of its size
   StepSettings settings_;
   StepWork work_;
   RunResult result_;

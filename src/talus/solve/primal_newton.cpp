@@ -180,14 +180,25 @@ class Equations {
     });
   }
 
-  // Velocities that the impulses of the rows give; none from rest.
-  std::vector<double> start(bool from_rest) const {
-    std::vector<double> v(6 * moving_.size());
-    if (from_rest) return v;
-    std::vector<BlockRate> rate = problem_.rate_free;
-    apply_impulses(problem_.mobility, problem_.rows, rate);
-    for (size_t k = 0; k < moving_.size(); ++k) put(v, k, to_unknowns(mobility(k), rate[moving_[k]]));
-    return v;
+  // Velocities that the impulses of the rows give; from rest none, or those that are told, whichever leaves less.
+  std::vector<double> start() {
+    if (!problem_.from_rest) {
+      std::vector<BlockRate> rate = problem_.rate_free;
+      apply_impulses(problem_.mobility, problem_.rows, rate);
+      return unknowns(rate);
+    }
+    std::vector<double> none(6 * moving_.size());
+    if (!problem_.near) return none;
+    const double still = square(residual(none, nullptr));
+    std::vector<double> told = unknowns(*problem_.near);
+    // rows that do not give know these velocities but to some digits: their impulses are those they come with
+    const std::vector<std::array<double, 2>> centre = centre_;
+    for (size_t i = 0; i < prox_.size(); ++i)
+      for (size_t k = 0; k < 2; ++k)
+        if (prox_[i][k] > 0) centre_[i][k] += (along(i, k, told) + bias_[i][k]) / prox_[i][k];
+    if (square(residual(told, nullptr)) < still) return told;
+    centre_ = centre;
+    return none;
   }
 
   // Impulses of these velocities into the rows, and F; with the derivative when it is asked for.
@@ -321,6 +332,11 @@ class Equations {
     int block[2];  // moving blocks by number, -1: none
   };
 
+  std::vector<double> unknowns(const std::vector<BlockRate>& rate) const {
+    std::vector<double> v(6 * moving_.size());
+    for (size_t k = 0; k < moving_.size(); ++k) put(v, k, to_unknowns(mobility(k), rate[moving_[k]]));
+    return v;
+  }
   const Mobility& mobility(size_t k) const { return problem_.mobility[moving_[k]]; }
   static size_t index(const Face& f, size_t end) { return static_cast<size_t>(f.point[end]); }
   static void put(std::vector<double>& v, size_t k, const Six& x) {
@@ -623,7 +639,7 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
   std::vector<Tile> diagonal, beside;
   bool factored = false;
 
-  std::vector<double> v = equations.start(problem.from_rest);
+  std::vector<double> v = equations.start();
   std::vector<FaceTangent> tangent, of_factor;
   ContactError best;
   best.worst = std::numeric_limits<double>::infinity();

@@ -25,6 +25,7 @@ struct StepProblem {
   Profile& profile;                         // where the time goes
   std::span<const int> tile = {};           // of each block (BlockSet::tile); empty: all in one
   bool from_rest = false;                   // of backward Euler: v* is far off, what does not move is near
+  const std::vector<BlockRate>* near = nullptr;  // of such a step: rates that may be nearer; null: none
 };
 
 /// Contact errors at which to stop [m]: `wanted`, which is given up, once `enough` is reached, after as many

@@ -22,6 +22,7 @@ struct StepSettings {
   bool histories_run = true;     // false: their clock stands still (static stages)
   bool implicit = false;         // block-implicit elasticity (theory 4.9)
   bool from_rest = false;        // backward Euler, and blocks stand after it (theory 4.23)
+  bool near_expected = false;    // such a step is likely to end near the rates that the state comes with
   bool by_all = false;           // every solver may try, though a shorter step from rest could be taken
   bool keep_guess = false;       // StepWork::guess is wanted, for a problem file
 };

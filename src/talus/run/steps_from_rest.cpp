@@ -1,0 +1,110 @@
+#include "talus/run/steps_from_rest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "talus/base/error.h"
+#include "talus/run/plan.h"
+
+namespace talus {
+
+namespace {
+
+// How far blocks of a pair may move against each other in a step, as share of the smaller; how far a block may go, as share
+// of its size.
+constexpr double kMostApproach = 0.05, kMostWay = 10;
+
+// Steps in a row that have to go without halving before one is longer, and what that count begins at after one beyond the
+// first length that was halved: what was too long is not asked for again at once.
+constexpr int kWhole = 2, kAfterHalving = -2;
+
+}  // namespace
+
+RestWatch StepsFromRest::begin(double length) {
+  RestWatch rest;
+  rest.length = length, rest.whole = kWhole;
+  return rest;
+}
+
+// Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
+// they went; where that does not help, it was not solved or they go too far it is taken with half the length (theory 4.23).
+StepReport StepsFromRest::kick(const StageInput& stage, double begin, double first, StepSettings& settings,
+                               double& advance) {
+  const double shortest = first / kMostShortened;
+  const State before = state_;
+  double length = state_.rest.length;
+  bool looked = false, halved = false;
+  settings.near_expected = false;
+  for (;;) {
+    advance = std::min(length, first);
+    // what acts at the end of the step; sums of lengths are round-off short of the times meant
+    const double end = (state_.time - begin + advance) * (1 + 1e-12);
+    state_.relaxed = stage.relaxed_at(end, state_.relaxed);
+    settings.by_all = length <= shortest;
+    StepReport report = talus::kick(scene_, settings, length, work_, state_);
+    const Approach approach =
+        approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
+    way_ = longest_way(length);
+    if (!report.failed && !is_far(approach) && approach.of_margin <= 1) {
+      state_.rest.length = length;
+      state_.rest.whole = !halved ? state_.rest.whole + 1 : length < first ? 0 : kAfterHalving;
+      return report;
+    }
+    looked = !report.failed && !is_far(approach) && !looked;
+    if (!looked && length <= shortest) {
+      if (report.failed) return report;
+      throw NumericalError(too_far(approach, length));
+    }
+    restore(before, looked);
+    settings.near_expected = looked;
+    if (!looked) length *= 0.5, halved = true;
+  }
+}
+
+// `expect`: what the try came to is what the next will: rates, by which it looks ahead, and forces of supports, of which
+// blocks that they hold fast say nothing.
+void StepsFromRest::restore(const State& before, bool expect) {
+  std::vector<BlockRate> rate = std::move(state_.rate);
+  const std::array found{std::move(state_.supports), std::move(state_.boundaries), std::move(state_.ties)};
+  state_ = before;
+  if (!expect) return;
+  state_.rate = std::move(rate);
+  const std::array held{&state_.supports, &state_.boundaries, &state_.ties};
+  for (size_t i = 0; i < held.size(); ++i)
+    for (size_t k = 0; k < held[i]->size(); ++k) (*held[i])[k].force = found[i][k].force;
+}
+
+void StepsFromRest::lengthen(double first, bool relaxed) {
+  RestWatch& rest = state_.rest;
+  if (rest.whole < kWhole) return;
+  rest.length = std::max(rest.length, std::min(2 * rest.length, relaxed ? kMostLengthened * first : first));
+}
+
+bool StepsFromRest::is_far(const Approach& approach) const {
+  return !(approach.of_size <= kMostApproach) || !(way_ <= kMostWay);
+}
+
+double StepsFromRest::longest_way(double length) const {
+  double most = 0;
+  for (size_t k = 0; k < state_.rate.size(); ++k)
+    most = std::max(most, length * norm(state_.rate[k].a) / scene_.blocks.size[k]);
+  return most;
+}
+
+std::string StepsFromRest::too_far(const Approach& approach, double length) const {
+  std::string what = fmt::format("a block goes {:.2g} times its size", way_);
+  if (approach.smaller >= 0 && approach.of_size > kMostApproach) {
+    const auto k = static_cast<size_t>(approach.smaller), b = static_cast<size_t>(approach.larger);
+    const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k];
+    what = fmt::format("block \"{}\" at ({:.4g}, {:.4g}) moves against \"{}\" by {:.2g} of its size",
+                       scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);
+  }
+  return fmt::format(
+      "step {} at t = {:.9g} s: {}, also in a step of {:.3g} s: something falls, slides or is squeezed out. "
+      "integration = \"dynamic\" follows it",
+      state_.step, state_.time, what, length);
+}
+
+}  // namespace talus

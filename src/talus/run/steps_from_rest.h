@@ -1,0 +1,50 @@
+#pragma once
+// How a static stage goes on in steps from rest. Theory: docs/theory.md 4.23.
+
+#include <string>
+
+#include "talus/contact/pairs.h"
+#include "talus/model/model.h"
+#include "talus/step/step.h"
+
+namespace talus {
+
+/// Takes the kicks of a stage from rest: chooses their lengths, and takes a step again where blocks went too far.
+class StepsFromRest {
+ public:
+  StepsFromRest(const Scene& scene, StepWork& work, State& state)
+      : scene_(scene), work_(work), state_(state) {}
+
+  /// What a stage begins with: steps of this length [s].
+  static RestWatch begin(double length);
+
+  /// A step of backward Euler, of state.rest.length or of as much of it as can be taken. Throws NumericalError where blocks
+  /// go too far in the shortest one.
+  /// @param begin, first  of the stage: its time, and the length of its first step [s]
+  /// @param advance       out: by how much its clock goes on [s]
+  StepReport kick(const StageInput& stage, double begin, double first, StepSettings& settings,
+                  double& advance);
+
+  /// Sets state.rest.length for the step after: longer, but not soon after one that had to be shortened.
+  /// @param relaxed  nothing is left to be let go of
+  void lengthen(double first, bool relaxed);
+
+  /// Whether no block went anywhere in the last kick.
+  bool stands() const { return way_ <= kFarToGo; }
+
+  /// Way that a block may still go, as share of its size, and yet count as standing.
+  static constexpr double kFarToGo = 1e-3;
+
+ private:
+  bool is_far(const Approach& approach) const;
+  double longest_way(double length) const;
+  void restore(const State& before, bool expect);
+  std::string too_far(const Approach& approach, double length) const;
+
+  const Scene& scene_;
+  StepWork& work_;
+  State& state_;
+  double way_ = 0;  // the longest of a block, as share of its size
+};
+
+}  // namespace talus

@@ -162,6 +162,8 @@ TEST_CASE(
   const RunResult sliding = run_to_failure(slope_text(38));
   CHECK(sliding.failure.find("did not come to rest") != std::string::npos);
   CHECK(sliding.failure.find("Something slides or falls") != std::string::npos);
+  CHECK(sliding.failure.find(" m in the last step.") != std::string::npos);
+  CHECK(sliding.failure.find("of the velocity is left") == std::string::npos);
 }
 
 TEST_CASE("from rest: what is excavated before anything has rested pushes nothing") {

@@ -63,8 +63,8 @@ void Auditor::at(const Instant& i, bool frame) {
   const double interval = scene_.model.output.audit_interval;
   bool due = frame;
   if (interval > 0) {
-    const bool reached = i.state.time >= next_ - 1e-6 * i.plan.dt;
-    if (reached) next_ = (std::floor((i.state.time + 1e-6 * i.plan.dt) / interval) + 1) * interval;
+    const bool reached = i.state.time >= next_ - 1e-6 * i.advance;
+    if (reached) next_ = (std::floor((i.state.time + 1e-6 * i.advance) / interval) + 1) * interval;
     due = reached || i.stage_start || i.last;
   }
   if (due) audit::add_frame(rules_, frame_of(i), i.work.workers, report_);

@@ -146,7 +146,7 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
     step[0] += f.x, step[1] += f.y, step[2] += rows.impulse[r][0];
   }
   // the impulse of a kick acts from half a step before to half a step after; the first one only after
-  const double dt = instant.plan.dt, t = instant.state.time, dt_kick = instant.work.clock.dt_kick;
+  const double dt = instant.advance, t = instant.state.time, dt_kick = instant.work.clock.dt_kick;
   const bool first = c.knots.empty();
   // the clock goes on by less than a long step from rest
   const double share = instant.work.clock.from_rest ? dt / dt_kick : 1;
@@ -211,7 +211,7 @@ void Histories::at(const Instant& instant, bool keep) {
         break;
     }
   }
-  known_until_ = s.time + 0.5 * instant.plan.dt;
+  known_until_ = s.time + 0.5 * instant.advance;
   if (keep) waiting_.push_back({std::move(row), s.time + 0.5 * widest_});
   release(known_until_, false);
 }

@@ -49,6 +49,19 @@ void Progress::at(const Instant& instant) {
   last_shown_ = now;
 }
 
+namespace {
+
+// Of a stage from rest, whose blocks stand after each step, velocity says nothing.
+std::string rest_left(const StageInput& stage, const StepReport& report) {
+  if (stage.kind != StageKind::kStatic) return "";
+  if (stage.from_rest)
+    return fmt::format(", unbalanced {:.1e}, to come below {:g}", report.unbalanced, stage.unbalanced);
+  return fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}", report.unbalanced,
+                     report.speed_left, stage.unbalanced);
+}
+
+}  // namespace
+
 void Progress::show(const Instant& instant, double now) {
   const double rate = static_cast<double>(stage_step_) / (now - stage_wall_);
   const auto left = static_cast<double>(instant.plan.steps - stage_step_);
@@ -61,11 +74,7 @@ void Progress::show(const Instant& instant, double now) {
                         s.kind == StageKind::kStatic ? "at most " : "", readable_seconds(left / rate));
   const std::string line =
       fmt::format("  {}: t = {:.4g} s{} {}, worst contact error {:.1e} m{}", s.name, instant.state.time,
-                  s.from_rest ? "," : "", pace, worst_error_,
-                  s.kind == StageKind::kStatic
-                      ? fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}",
-                                    instant.report.unbalanced, instant.report.speed_left, s.unbalanced)
-                      : "");
+                  s.from_rest ? "," : "", pace, worst_error_, rest_left(s, instant.report));
   say(out_, (terminal_ ? "\r" : "") + line + (terminal_ ? "\x1b[K" : "\n"));
   std::fflush(out_);
   line_open_ = terminal_;

@@ -346,7 +346,7 @@ void Recorder::at(const Instant& i) {
   const std::lock_guard lock(taking_);
   if (ended_) return;
   const OutputInput& out = scene_.model.output;
-  const double t = i.state.time, dt = i.plan.dt;
+  const double t = i.state.time, dt = i.advance;
   histories_.at(i, is_due(t, dt, out.history_interval, due_.history) || i.last);
   record_step(i);
   const bool failure = i.report.failed && !due_.dumped_failure;
@@ -407,7 +407,7 @@ void Recorder::record_step(const Instant& i) {
     for (size_t c = kFirstWorst; c <= kLastWorst; ++c) row[c] = std::max(row[c], due_.worst[c]);
     row[kFailed] += due_.worst[kFailed];
   }
-  if (is_due(i.state.time, i.plan.dt, scene_.model.output.steps_interval, due_.steps) || i.last ||
+  if (is_due(i.state.time, i.advance, scene_.model.output.steps_interval, due_.steps) || i.last ||
       i.report.failed) {
     steps_file_.append(row);
     due_.worst.clear();

@@ -136,7 +136,8 @@ class Runner {
   void take_steps(int index) {
     const auto k = static_cast<size_t>(index);
     const StageInput& stage = scene_.model.stages[k];
-    StagePlan plan = plans_[k];
+    const StagePlan& plan = plans_[k];
+    double advance = plan.dt;
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
     StepsFromRest from_rest(scene_, work_, state_);
@@ -149,14 +150,14 @@ class Runner {
       }
       if (stage.from_rest && state_.time >= out.begin + stage.duration) break;
       settings_.sharper = state_.rest.sharper;
-      StepReport report = stage.from_rest ? from_rest.kick(stage, out.begin, plans_[k].dt, settings_, plan.dt)
+      StepReport report = stage.from_rest ? from_rest.kick(stage, out.begin, plan.dt, settings_, advance)
                                           : kick(scene_, settings_, plan.dt, work_, state_);
-      if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, plan);
-      show({scene_, state_, work_, report, plan, index, n == 0, false});
-      go_on_or_fail(index, n, plan, report);
+      if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance / plan.dt_bound);
+      show({scene_, state_, work_, report, plan, advance, index, n == 0, false});
+      go_on_or_fail(index, n, advance, report);
       ++out.steps;
       if (stage.from_rest)
-        from_rest.lengthen(plans_[k].dt, is_relaxed(stage, 0));
+        from_rest.lengthen(plan.dt, is_relaxed(stage, 0));
       else
         state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
       out.unbalanced = report.unbalanced;
@@ -181,12 +182,13 @@ class Runner {
 
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
   // and shown once more with everything in its place.
-  void go_on_or_fail(int index, int64_t n, const StagePlan& plan, StepReport& report) {
+  void go_on_or_fail(int index, int64_t n, double advance, StepReport& report) {
+    const StagePlan& plan = plans_[static_cast<size_t>(index)];
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
     // from the start of the stage, not by adding: the last step ends exactly on the stage's end
     const double end = settings_.from_rest
-                           ? state_.time + plan.dt
+                           ? state_.time + advance
                            : result_.stages.back().begin + plan.dt * static_cast<double>(n + 1);
     try {
       note(report, state_);
@@ -194,7 +196,7 @@ class Runner {
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
-      observer_.fails({scene_, state_, work_, report, plan, index, n == 0, true});
+      observer_.fails({scene_, state_, work_, report, plan, advance, index, n == 0, true});
       throw;
     }
   }
@@ -233,14 +235,18 @@ class Runner {
     if (last_.worst_block >= 0) {
       const auto k = static_cast<size_t>(last_.worst_block);
       const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k], v = state_.rate[k].a;
-      where = fmt::format(
-          " The largest is on block \"{}\" at ({:.4g}, {:.4g}): {:.3g} N; it moves at ({:.3g}, {:.3g}) m/s.",
-          scene_.blocks.name[k], at.x, at.y, last_.worst_force, v.x, v.y);
+      where = fmt::format(" The largest is on block \"{}\" at ({:.4g}, {:.4g}): {:.3g} N; it {}.",
+                          scene_.blocks.name[k], at.x, at.y, last_.worst_force,
+                          stage.from_rest
+                              ? fmt::format("went {:.3g} m in the last step", work_.clock.dt * norm(v))
+                              : fmt::format("moves at ({:.3g}, {:.3g}) m/s", v.x, v.y));
     }
+    const std::string velocity =
+        stage.from_rest ? "" : fmt::format(", and {:.3g} of the velocity is left", last_.speed_left);
     return fmt::format(
         "static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced force is "
-        "{:.3g} of the mean, and {:.3g} of the velocity is left; asked for is {:g}.{} {}",
-        stage.name, out.end - out.begin, out.steps, out.unbalanced, last_.speed_left, stage.unbalanced, where,
+        "{:.3g} of the mean{}; asked for is {:g}.{} {}",
+        stage.name, out.end - out.begin, out.steps, out.unbalanced, velocity, stage.unbalanced, where,
         why_no_rest(stage, out));
   }
 
@@ -321,8 +327,8 @@ class Runner {
 
   // Velocity left, as share of its peak in the stage or, where nothing ever moved that fast, of what the
   // forces on blocks would give them in half a step that is stable without implicit elasticity.
-  double speed_left(const StepReport& report, const StagePlan& plan) const {
-    const double longer = std::max(1.0, plan.dt / plan.dt_bound);
+  double speed_left(const StepReport& report, double steps_of_bound) const {
+    const double longer = std::max(1.0, steps_of_bound);
     const double peak =
         std::max({state_.largest_kinetic, report.energy.moving, report.nudge / (longer * longer)});
     return peak > 0 ? std::sqrt(report.energy.moving / peak) : 0;
@@ -351,7 +357,7 @@ class Runner {
     note(report, copy);
     // a run that is stopped between two stages has not shown the begin of the second
     const bool at_start = result_.stages.back().steps == 0;
-    show({scene_, copy, work_, report, plan, index, at_start, true});
+    show({scene_, copy, work_, report, plan, plan.dt, index, at_start, true});
   }
 
   // @param state  that of the step: its contacts are those of the rows
@@ -395,7 +401,10 @@ class Runner {
     std::string text;
     for (size_t i = 0; i < attempts.count; ++i)
       text += fmt::format("{}{} {}of {}", i == 0 ? "" : ", ", attempts.list[i].iterations,
-                          i == 0 ? "iterations " : "", name_of(attempts.list[i].solver));
+                          i > 0                              ? ""
+                          : attempts.list[i].iterations == 1 ? "iteration "
+                                                             : "iterations ",
+                          name_of(attempts.list[i].solver));
     return text;
   }
 

@@ -226,7 +226,7 @@ TEST_CASE("a step that misses the tolerance ends the run or is counted, as the p
   MemoryObserver observer(p.scene, nullptr);
   const RunResult stopped = run_stages(p.scene, p.plans, state, observer);
   CHECK(stopped.failure.find("the contact equations were not solved") != std::string::npos);
-  CHECK(stopped.failure.find("1 iterations of newton, ") != std::string::npos);
+  CHECK(stopped.failure.find("1 iteration of newton, ") != std::string::npos);
   CHECK(stopped.failure.find(" of gauss_seidel, allowed") != std::string::npos);
   CHECK(stopped.failure.find("contact ") != std::string::npos);  // the row is named
 

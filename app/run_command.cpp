@@ -49,17 +49,27 @@ std::string left_text(const Recorder::Left& left, const std::string& model, cons
   return text;
 }
 
+// Whether a saved state is one of this folder's.
+bool lies_in(const std::string& state, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  return fs::equivalent(fs::absolute(state, ec).lexically_normal().parent_path().parent_path(), folder, ec);
+}
+
 struct Run {
   RunResult result;
   int signal = 0;  // that has interrupted it
 };
 
 Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const std::string& from,
-                 Recorder& recorder, StopSignals& signals, std::FILE* out, const Workers& workers) {
+                 Recorder& recorder, StopSignals& signals, std::FILE* out, const Workers& workers,
+                 bool branches) {
   StoppedBySignals progress(signals, recorder, out, isatty(fileno(out)) != 0);
   say(out, base_report(prepared.scene) + resolution_report(prepared.scene));
   State state = saved ? std::move(saved->state) : start_state(prepared.scene);
-  if (saved) say(out, fmt::format("goes on from {}: t = {:.6g} s, step {}\n", from, state.time, state.step));
+  if (saved)
+    say(out, fmt::format("{} from {}: t = {:.6g} s, step {}\n", branches ? "branches off" : "goes on", from,
+                         state.time, state.step));
   RunResult result =
       saved ? continue_stages(prepared.scene, prepared.plans, saved->standing, state, progress, workers)
             : run_stages(prepared.scene, prepared.plans, state, progress, workers);
@@ -73,8 +83,10 @@ Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const st
 
 void add_run_arguments(CLI::App& verb, RunArguments& args) {
   verb.add_option("-o,--output", args.folder, "folder for the results");
-  verb.add_option("--from", args.from,
-                  "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in");
+  verb.add_option(
+      "--from", args.from,
+      "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in; with -o, branch off into another, "
+      "where what begins later may differ");
   verb.add_flag("--force", args.force, "replace the results of an earlier run in that folder");
   verb.add_flag("-q,--quiet", args.quiet, "say nothing but errors");
   verb.add_option("--threads", args.threads,
@@ -91,15 +103,19 @@ void add_run_arguments(CLI::App& verb, RunArguments& args) {
 int run_command(const ModelArguments& model, const RunArguments& args) {
   if (args.folder.empty() && args.from.empty())
     throw Error(kExitUsage, "run needs -o FOLDER for the results, or --from STATE to go on");
-  if (args.force && !args.from.empty())
+  const bool branches = !args.from.empty() && !args.folder.empty() && !lies_in(args.from, args.folder);
+  if (args.force && !args.from.empty() && !branches)
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
-  if (args.from.empty()) check_result_folder(args.folder, args.force);
+  if (args.from.empty() || branches) check_result_folder(args.folder, args.force);
   auto [findings, prepared] = prepare_model(model);
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
   if (!out) throw FileError("/dev/null: cannot be opened");
   std::optional<ResultFolder> folder;
   std::optional<SavedRun> saved;
-  if (!args.from.empty()) {
+  std::optional<BranchOrigin> origin;
+  if (branches) {
+    saved.emplace(read_branch(args.from, prepared, origin.emplace()));
+  } else if (!args.from.empty()) {
     // taken before the state is read: who is about to write into the folder must not do so meanwhile
     folder.emplace(ResultFolder::go_on(folder_of_saved(args.from, args.folder)));
     saved.emplace(read_saved_run(args.from, prepared));
@@ -111,15 +127,18 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (!folder) folder.emplace(args.folder, args.force);
   if (const std::string stale = folder->stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
   const std::string name = folder->path().string();
-  const RunNotes notes = notes_of(model, findings);
-  if (saved) Recorder::check(*folder, prepared.scene, saved->archive);
-  std::optional<Recorder> recorder;
+  RunNotes notes = notes_of(model, findings);
+  notes.branch = origin;
+  if (saved && !branches) Recorder::check(*folder, prepared.scene, saved->archive);
+  std::unique_ptr<Recorder> recorder;
   signals.begin();
   try {
-    if (saved)
-      recorder.emplace(prepared.scene, std::move(*folder), saved->archive, notes);
+    if (branches)
+      recorder = Recorder::branch_off(prepared.scene, std::move(*folder), saved->archive, notes);
+    else if (saved)
+      recorder = std::make_unique<Recorder>(prepared.scene, std::move(*folder), saved->archive, notes);
     else
-      recorder.emplace(prepared.scene, std::move(*folder), notes);
+      recorder = std::make_unique<Recorder>(prepared.scene, std::move(*folder), notes);
   } catch (const std::exception& e) {
     Recorder::abandon_begun(name, e.what());
     throw;
@@ -127,7 +146,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   recorder->dump_step(args.dump_step);
   Run run;
   try {
-    run = run_recorded(prepared, saved, args.from, *recorder, signals, out, workers);
+    run = run_recorded(prepared, saved, args.from, *recorder, signals, out, workers, branches);
   } catch (const std::bad_alloc&) {
     recorder->abandon("not enough memory");
     throw;

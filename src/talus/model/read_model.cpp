@@ -41,7 +41,9 @@ class ModelReader : private SectionReader {
     read_histories();
     read_blocks();
     read_grids();
-    files_ += read_mesh_sections(source_, block_names_, model_, findings_);
+    const std::string shapes = read_mesh_sections(source_, block_names_, model_, findings_);
+    if (!shapes.empty()) model_.shapes_hash = text_hash(shapes);
+    files_ += shapes;
     if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_cut_sections(source_, block_names_, model_, findings_);
     read_contact();

@@ -198,6 +198,21 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved
   if (scene.model.output.audit) auditor_.emplace(scene);
   load(saved);
   find_saved();
+  begun_ = true;
+}
+
+std::unique_ptr<Recorder> Recorder::branch_off(const Scene& scene, ResultFolder folder, const Archive& parent,
+                                               RunNotes notes) {
+  const BranchOrigin origin = notes.branch.value();
+  auto recorder = std::make_unique<Recorder>(scene, std::move(folder), std::move(notes));
+  Loader from(parent);
+  recorder->joint_summary_.load(from, "recorder.joints", scene);
+  if (origin.same_monitors) recorder->histories_.load(from);
+  if (origin.same_output) {
+    Due::exchange(from, recorder->due_);
+    if (recorder->auditor_) recorder->auditor_->load(from);
+  }
+  return recorder;
 }
 
 // The sizes of the tables are read where these are opened.
@@ -347,6 +362,9 @@ void Recorder::at(const Instant& i) {
   if (ended_) return;
   const OutputInput& out = scene_.model.output;
   const double t = i.state.time, dt = i.advance;
+  // of these results, which may be those of a branch
+  const bool first = !begun_, start = first || i.stage_start;
+  begun_ = true;
   histories_.at(i, is_due(t, dt, out.history_interval, due_.history) || i.last);
   record_step(i);
   const bool failure = i.report.failed && !due_.dumped_failure;
@@ -356,12 +374,12 @@ void Recorder::at(const Instant& i) {
     due_.dumped_failure = due_.dumped_failure || failure;
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, due_.frame);
-  if (frame || i.stage_start || i.last) write_frame(i);
-  if (auditor_) auditor_->at(i, frame || i.stage_start || i.last);
+  if (frame || start || i.last) write_frame(i);
+  if (auditor_) auditor_->at(i, frame || start || i.last);
   // a stage ends at the instant at which the next one starts
   if (i.stage_start && i.stage > 0) write_joints(i, i.stage - 1);
   if (i.last) write_joints(i, i.stage);
-  if (i.stage_start && i.stage == 0) {
+  if (first) {
     folder_.write("blocks.csv", blocks_table(scene_));
     folder_.write("blocks_start.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
                                                  bolt_lines(scene_, i.state, i.stage)));
@@ -369,7 +387,7 @@ void Recorder::at(const Instant& i) {
   if (i.last)
     folder_.write("blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
                                                bolt_lines(scene_, i.state, i.stage), joint_lines(scene_, i)));
-  if (i.last || (i.stage_start && i.stage > 0)) write_bolts(i);
+  if (i.last || (start && i.stage > 0)) write_bolts(i);
   if (wall_now() - last_flush_ > 1) {
     flush_tables();
     last_flush_ = wall_now();
@@ -582,6 +600,12 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   j["model_file"] = std::filesystem::path(scene.model.file).filename().string();
   j["model_hash"] = scene.model.hash;
   j["overrides"] = notes.overrides;
+  if (notes.branch) {
+    const BranchOrigin& o = *notes.branch;
+    j["branch"] = {{"state", o.state},   {"digest", o.digest},       {"model_hash", o.model_hash},
+                   {"stage", o.stage},   {"stage_ended", o.between}, {"step", o.step},
+                   {"time [s]", o.time}, {"differs", o.differs}};
+  }
   j["status"] = !r.failure.empty() ? "failed" : r.interrupted ? "interrupted" : "finished";
   if (!r.failure.empty()) j["failure"] = r.failure;
   ordered_json warnings = notes.warnings;

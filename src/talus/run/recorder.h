@@ -1,12 +1,14 @@
 #pragma once
 // Writes the result folder while a run goes on, and the summary when it ends.
 
+#include <memory>
 #include <mutex>
 #include <optional>
 
 #include "talus/output/csv.h"
 #include "talus/output/frame_series.h"
 #include "talus/run/auditor.h"
+#include "talus/run/branch.h"
 #include "talus/run/histories.h"
 #include "talus/run/joint_report.h"
 #include "talus/run/saved_state.h"
@@ -17,6 +19,7 @@ namespace talus {
 struct RunNotes {
   std::vector<std::string> overrides;
   std::vector<std::string> warnings;  // "key: text"
+  std::optional<BranchOrigin> branch = {};
 };
 
 /// model.toml, histories.csv, steps.csv, joints.csv, slips.csv, fields/, saved/, with bolts also bolts.csv.
@@ -28,6 +31,10 @@ class Recorder : public Observer {
   /// Goes on in the folder of a saved run: what was written after the state was saved is cut off. Throws as
   /// check().
   Recorder(const Scene& scene, ResultFolder folder, const Archive& saved, RunNotes notes = {});
+  /// Begins the results of a branch, notes.branch, of the run that `parent` was saved of: monitors, output intervals and
+  /// audit go on where they stood as far as they are the same.
+  static std::unique_ptr<Recorder> branch_off(const Scene& scene, ResultFolder folder, const Archive& parent,
+                                              RunNotes notes);
   ~Recorder() override;
   /// Throws FileError when the results in the folder are not as they were when the state was saved, or the
   /// state is damaged. Changes nothing.
@@ -133,6 +140,7 @@ class Recorder : public Observer {
   int steps_since_look_ = 0, steps_since_held_ = 0;
   std::optional<Held> held_;  // in case the next steps fail
   Left left_;
+  bool begun_ = false;                     // an instant has been shown
   double held_at_ = 0, holding_took_ = 0;  // wall time [s]
   int64_t dump_step_ = -1;
 };

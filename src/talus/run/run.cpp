@@ -50,7 +50,8 @@ class Runner {
          const Workers& workers)
       : scene_(scene), plans_(plans), state_(state), observer_(observer), unclamped_(scene.blocks) {
     // stages of other steps must not find other contacts
-    scene_.give.shortest_step = std::numeric_limits<double>::infinity();
+    // stages of a branch keep that of the run that it comes from
+    if (!(scene_.give.shortest_step > 0)) scene_.give.shortest_step = std::numeric_limits<double>::infinity();
     for (const StagePlan& plan : plans)
       scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
     work_.workers = workers;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -9,6 +10,7 @@
 #include "talus/base/version.h"
 #include "talus/blocks/state_fields.h"
 #include "talus/blocks/validate.h"
+#include "talus/run/model_keys.h"
 #include "talus/run/validate_loaded.h"
 
 namespace talus {
@@ -98,11 +100,33 @@ void load_state(Loader& from, State& state) { exchange_value(from, "state", stat
 void save_standing(Saver& to, const Standing& standing) { exchange_standing(to, standing); }
 void load_standing(Loader& from, Standing& standing) { exchange_standing(from, standing); }
 
+SavedModel saved_model(const Archive& archive) {
+  SavedModel m;
+  const Loader from(archive);
+  std::vector<double> give;
+  from("model.give", give), from("model.history_start", m.history_start);
+  from("model.history_names", m.history_names);
+  if (give.size() != 2 || !(give[0] >= 0) || !(give[1] >= 0) ||
+      static_cast<size_t>(std::count(m.history_names.begin(), m.history_names.end(), '\n')) !=
+          m.history_start.size())
+    throw FileError("what it says of its model is damaged");
+  m.give_stress = give[0], m.give_shortest_step = give[1];
+  return m;
+}
+
 Archive run_archive(const Scene& scene, const Standing& standing, const State& state) {
   Archive archive;
   archive.texts["program"] = fmt::format("talus {}", kVersion);
   archive.texts["model.hash"] = scene.model.hash;
   archive.texts["model.text"] = scene.model.text;
+  archive.texts["model.shapes_hash"] = scene.model.shapes_hash;
+  std::string& names = archive.texts["model.history_names"];
+  std::vector<double>& starts = archive.numbers["model.history_start"];
+  for (const History& h : scene.model.histories) {
+    names += h.name + "\n";
+    starts.push_back(h.value_at(0));
+  }
+  archive.numbers["model.give"] = {scene.give.stress, scene.give.shortest_step};
   Saver saver(archive);
   save_state(saver, state);
   save_standing(saver, standing);
@@ -160,16 +184,22 @@ SavedRun read_saved_run(const std::filesystem::path& path, const PreparedRun& pr
 
 SavedRun saved_run_of(const std::string& name, Archive archive, const PreparedRun& prepared) {
   const Scene& scene = prepared.scene;
-  SavedRun saved;
-  saved.archive = std::move(archive);
-  Archive& a = saved.archive;
-  if (a.texts["model.hash"] != scene.model.hash) {
-    const std::string differ = model_difference(scene.model.text, a.texts["model.text"]);
+  if (archive.texts["model.hash"] != scene.model.hash) {
+    const std::string differ = model_difference(scene.model.text, archive.texts["model.text"]);
     throw InputError(fmt::format(
-        "{}: error: the state is of another model than {}:\n{}Run the model anew, or put it back as it was\n",
+        "{}: error: the state is of another model than {}:\n{}Run the model anew, or put it back as it was; with -o and a new folder "
+        "the run may branch off (docs/file_format.md)\n",
         name, scene.model.file,
         differ.empty() ? "  no key differs, but comments or a file that the model reads do\n" : differ));
   }
+  return take_state(name, std::move(archive), prepared);
+}
+
+SavedRun take_state(const std::string& name, Archive archive, const PreparedRun& prepared) {
+  const Scene& scene = prepared.scene;
+  SavedRun saved;
+  saved.archive = std::move(archive);
+  Archive& a = saved.archive;
   try {
     check_results_finite(a);
     Loader loader(a);

@@ -30,6 +30,15 @@ struct SavedRun {
   State state;
 };
 
+/// What of the model went into the state and is not in it: the give of hard contacts (theory 4.22), and where the
+/// histories begin, at which they stand in static stages.
+struct SavedModel {
+  double give_stress = 0, give_shortest_step = 0;
+  std::vector<double> history_start;  // of the histories, by name
+  std::string history_names;          // one a line
+};
+SavedModel saved_model(const Archive& archive);
+
 /// Reads a saved run of this model. Throws FileError when the file cannot be used, InputError when it is of
 /// another model (with the keys that differ) or of another format.
 SavedRun read_saved_run(const std::filesystem::path& path, const PreparedRun& prepared);
@@ -37,7 +46,7 @@ SavedRun read_saved_run(const std::filesystem::path& path, const PreparedRun& pr
 /// The same of an archive that was read; `name` is for messages.
 SavedRun saved_run_of(const std::string& name, Archive archive, const PreparedRun& prepared);
 
-/// Lines that say which keys of two model texts differ: "stage.rest.duration: 1 s, was 2 s"; "" when none.
-std::string model_difference(const std::string& now, const std::string& before);
+/// The same without asking whether the model is the one that it was saved of.
+SavedRun take_state(const std::string& name, Archive archive, const PreparedRun& prepared);
 
 }  // namespace talus

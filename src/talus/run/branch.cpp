@@ -17,13 +17,6 @@ namespace {
 struct Path {
   std::string section, name;
 };
-Path path_of(const std::string& key) {
-  const size_t dot = key.find('.');
-  if (dot == std::string::npos) return {key, ""};
-  // the key itself is what stands behind the last dot; names may hold dots
-  const size_t last = key.rfind('.');
-  return {key.substr(0, dot), last > dot ? key.substr(dot + 1, last - dot - 1) : ""};
-}
 
 // Names in the text of a value, "[ 'rest', 'shake' ]" or "'rest'".
 std::vector<std::string> names_in(const std::string& value) {
@@ -62,6 +55,19 @@ class Sorter {
   }
 
  private:
+  // Entries of lists know their names, which may hold dots; so may what stands behind them.
+  Path path_of(const std::string& key) const {
+    const size_t dot = key.find('.');
+    if (dot == std::string::npos) return {key, ""};
+    const std::string section = key.substr(0, dot);
+    for (size_t end = key.rfind('.'); end > dot; end = key.rfind('.', end - 1)) {
+      const std::string name = key.substr(dot + 1, end - dot - 1), own = section + "." + name + ".name";
+      if (now_.count(own) || before_.count(own)) return {section, name};
+    }
+    const size_t next = key.find('.', dot + 1);
+    return {section, next == std::string::npos ? "" : key.substr(dot + 1, next - dot - 1)};
+  }
+
   static bool in(const ModelKeys& keys, const std::string& section, const std::string& name) {
     const std::string prefix = section + "." + name + ".";
     const auto at = keys.lower_bound(prefix);

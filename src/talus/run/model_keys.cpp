@@ -14,6 +14,8 @@ constexpr size_t kMostLines = 20;
 const std::string kOverride = "# --set ";
 
 std::string value_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point())
+    return fmt::format("{}", number->get());  // 0.2, not 0.20000000000000001
   std::ostringstream out;
   node.visit([&out](const auto& n) { out << n; });
   return out.str();

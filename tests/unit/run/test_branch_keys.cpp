@@ -104,6 +104,9 @@ TEST_CASE("branch: overrides count as what they override") {
   CHECK(sorted(kModel + "\n# --set stage.shake.duration=3\n# --set title=c") ==
         "+stage.shake.duration +title ");
   CHECK(sorted(kModel + "\n# --set title=a") == "");
+  const ModelKeys now = keys_in_force(kModel + "\n# --set stage.shake.duration=0.2"),
+                  before = keys_in_force(kModel);
+  CHECK(differences(now, before)[0].text() == "stage.shake.duration: 0.2, was 1");
 }
 
 }  // namespace test_branch_keys

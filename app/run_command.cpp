@@ -49,13 +49,6 @@ std::string left_text(const Recorder::Left& left, const std::string& model, cons
   return text;
 }
 
-// Whether a saved state is one of this folder's.
-bool lies_in(const std::string& state, const std::string& folder) {
-  namespace fs = std::filesystem;
-  std::error_code ec;
-  return fs::equivalent(fs::absolute(state, ec).lexically_normal().parent_path().parent_path(), folder, ec);
-}
-
 struct Run {
   RunResult result;
   int signal = 0;  // that has interrupted it
@@ -117,7 +110,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     saved.emplace(read_branch(args.from, prepared, origin.emplace()));
   } else if (!args.from.empty()) {
     // taken before the state is read: who is about to write into the folder must not do so meanwhile
-    folder.emplace(ResultFolder::go_on(folder_of_saved(args.from, args.folder)));
+    folder.emplace(ResultFolder::go_on(folder_of_saved(args.from)));
     saved.emplace(read_saved_run(args.from, prepared));
   }
   // threads: after the state was read, by a copy of this process, which must have none; and before any result is

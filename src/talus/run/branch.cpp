@@ -1,6 +1,7 @@
 #include "talus/run/branch.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -99,7 +100,9 @@ class Sorter {
           at->first.substr(at->first.rfind('.') + 1) + "=" + at->second + ";";
     }
     for (const auto& [number, text] : entries) {
-      const std::vector<std::string> stage = names_in(keys.at(fmt::format("change.{}.stage", number)));
+      const auto at = keys.find(fmt::format("change.{}.stage", number));
+      const std::vector<std::string> stage =
+          at == keys.end() ? std::vector<std::string>() : names_in(at->second);
       if (stage.size() != 1 || begun_.count(stage[0])) all.push_back(text);
     }
     return all;
@@ -111,16 +114,13 @@ class Sorter {
 };
 
 // Histories that begin elsewhere than before.
-std::string moved_starts(const SavedModel& before, const std::vector<History>& now) {
-  std::string out, names = before.history_names;
-  size_t k = 0;
-  for (size_t at = 0, end; (end = names.find('\n', at)) != std::string::npos; at = end + 1, ++k) {
-    const std::string name = names.substr(at, end - at);
-    for (const History& h : now)
-      if (h.name == name && h.value_at(0) != before.history_start[k])
-        out += fmt::format(
-            "  history.{}: begins at {:g}, and at {:g} there; static stages have its first value\n", name,
-            h.value_at(0), before.history_start[k]);
+std::string moved_starts(const Archive& before, const std::vector<History>& now) {
+  std::string out;
+  for (const History& h : now) {
+    const auto then = before.numbers.find(kSavedStart + h.name);
+    if (then == before.numbers.end() || then->second == std::vector{h.value_at(0)}) continue;
+    out += fmt::format("  history.{}: begins at {:g}, and at {} there; static stages have its first value\n",
+                       h.name, h.value_at(0), fmt::join(then->second, " "));
   }
   return out;
 }
@@ -145,12 +145,14 @@ SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, B
 
   Standing standing;
   State state;
-  SavedModel model;
+  std::vector<double> give;
   try {
     Loader loader(archive);
     load_standing(loader, standing);
     load_state(loader, state);
-    model = saved_model(archive);
+    loader(kSavedGive, give);
+    if (give.size() != 2 || !(give[0] >= 0) || !(give[1] >= 0))
+      throw FileError("the give of its contacts is none");
   } catch (const FileError& e) {
     throw FileError(
         fmt::format("{}: the saved state is damaged: {}. Branch off from another one", name, e.what()));
@@ -170,7 +172,7 @@ SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, B
     }
   if (archive.texts["model.shapes_hash"] != scene.model.shapes_hash)
     refused += "  a mesh: what its file holds is not what it held\n";
-  if (state.history_time == 0) refused += moved_starts(model, scene.model.histories);
+  if (state.history_time == 0) refused += moved_starts(archive, scene.model.histories);
   if (!refused.empty())
     throw InputError(fmt::format(
         "{}: error: no branch of it can differ in these, which say how it came to stand at {:g} s, in stage \"{}\":\n{}"
@@ -182,7 +184,7 @@ SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, B
     origin.same_monitors = origin.same_monitors && d.key.rfind("monitor.", 0) != 0;
     origin.same_output = origin.same_output && d.key.rfind("output.", 0) != 0;
   }
-  scene.give.stress = model.give_stress, scene.give.shortest_step = model.give_shortest_step;
+  scene.give.stress = give[0], scene.give.shortest_step = give[1];
   SavedRun saved = take_state(name, std::move(archive), prepared);
   saved.standing.result.wall_seconds = saved.standing.result.cpu_seconds = 0;
   return saved;

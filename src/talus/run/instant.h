@@ -14,8 +14,7 @@ struct Instant {
   const StepWork& work;  // rows, impulses, velocities at this instant
   const StepReport& report;
   const StagePlan& plan;
-  double advance =
-      0;  // [s] by which time goes on; the step is work.clock.dt long, which is more in long ones from rest
+  double advance = 0;  // [s] by which time goes on; less than the step, work.clock.dt, in long ones from rest
   int stage = 0;
   bool stage_start = false;
   bool last = false;  // no step follows

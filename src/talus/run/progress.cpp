@@ -14,6 +14,15 @@ namespace {
 
 constexpr double kRewriteInterval = 0.5, kLineInterval = 10;  // [s] of wall time
 
+// Of a stage from rest, whose blocks stand after each step, velocity says nothing.
+std::string rest_left(const StageInput& stage, const StepReport& report) {
+  if (stage.kind != StageKind::kStatic) return "";
+  if (stage.from_rest)
+    return fmt::format(", unbalanced {:.1e}, to come below {:g}", report.unbalanced, stage.unbalanced);
+  return fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}", report.unbalanced,
+                     report.speed_left, stage.unbalanced);
+}
+
 }  // namespace
 
 void say(std::FILE* out, const std::string& text) { std::fwrite(text.data(), 1, text.size(), out); }
@@ -48,19 +57,6 @@ void Progress::at(const Instant& instant) {
   show(instant, now);
   last_shown_ = now;
 }
-
-namespace {
-
-// Of a stage from rest, whose blocks stand after each step, velocity says nothing.
-std::string rest_left(const StageInput& stage, const StepReport& report) {
-  if (stage.kind != StageKind::kStatic) return "";
-  if (stage.from_rest)
-    return fmt::format(", unbalanced {:.1e}, to come below {:g}", report.unbalanced, stage.unbalanced);
-  return fmt::format(", unbalanced {:.1e} and velocity {:.1e}, both to come below {:g}", report.unbalanced,
-                     report.speed_left, stage.unbalanced);
-}
-
-}  // namespace
 
 void Progress::show(const Instant& instant, double now) {
   const double rate = static_cast<double>(stage_step_) / (now - stage_wall_);

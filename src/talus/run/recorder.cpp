@@ -198,12 +198,12 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved
   if (scene.model.output.audit) auditor_.emplace(scene);
   load(saved);
   find_saved();
-  begun_ = true;
 }
 
 std::unique_ptr<Recorder> Recorder::branch_off(const Scene& scene, ResultFolder folder, const Archive& parent,
                                                RunNotes notes) {
   const BranchOrigin origin = notes.branch.value();
+  check_kept(scene, parent, origin.same_monitors, origin.same_output);
   auto recorder = std::make_unique<Recorder>(scene, std::move(folder), std::move(notes));
   Loader from(parent);
   recorder->joint_summary_.load(from, "recorder.joints", scene);
@@ -236,11 +236,13 @@ void Recorder::load(const Archive& saved) {
   if (!scene_.model.bolts.empty()) bolt_frames_.go_on(times);
 }
 
-void Recorder::check(const ResultFolder& folder, const Scene& scene, const Archive& saved) {
+// What of monitors and output is to go on can be read.
+void Recorder::check_kept(const Scene& scene, const Archive& saved, bool monitors, bool output) {
   try {
     Loader from(saved);
-    Histories(scene, nullptr).load(from);
     JointSummary().load(from, "recorder.joints", scene);
+    if (monitors) Histories(scene, nullptr).load(from);
+    if (!output) return;
     if (scene.model.output.audit) Auditor(scene).load(from);
     Due due;
     Due::exchange(from, due);
@@ -251,6 +253,10 @@ void Recorder::check(const ResultFolder& folder, const Scene& scene, const Archi
     throw FileError(fmt::format(
         "the saved state is damaged: {}. Go on from another one, or run the model anew", e.what()));
   }
+}
+
+void Recorder::check(const ResultFolder& folder, const Scene& scene, const Archive& saved) {
+  check_kept(scene, saved, true, true);
   check_tables(folder.path(), saved);
   check_frames(folder.path(), saved, !scene.model.bolts.empty());
 }
@@ -363,8 +369,7 @@ void Recorder::at(const Instant& i) {
   const OutputInput& out = scene_.model.output;
   const double t = i.state.time, dt = i.advance;
   // of these results, which may be those of a branch
-  const bool first = !begun_, start = first || i.stage_start;
-  begun_ = true;
+  const bool first = block_frames_.count() == 0, start = first || i.stage_start;
   histories_.at(i, is_due(t, dt, out.history_interval, due_.history) || i.last);
   record_step(i);
   const bool failure = i.report.failed && !due_.dumped_failure;

@@ -104,6 +104,7 @@ class Recorder : public Observer {
     static void exchange(X& x, Self& due);
   };
 
+  static void check_kept(const Scene& scene, const Archive& saved, bool monitors, bool output);
   static ResultFolder taken_up(ResultFolder folder, const Scene& scene, const Archive& saved);
   void write_last_word(const std::string& why) noexcept;
   void load(const Archive& saved);
@@ -140,7 +141,6 @@ class Recorder : public Observer {
   int steps_since_look_ = 0, steps_since_held_ = 0;
   std::optional<Held> held_;  // in case the next steps fail
   Left left_;
-  bool begun_ = false;                     // an instant has been shown
   double held_at_ = 0, holding_took_ = 0;  // wall time [s]
   int64_t dump_step_ = -1;
 };

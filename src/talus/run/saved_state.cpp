@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -100,54 +99,44 @@ void load_state(Loader& from, State& state) { exchange_value(from, "state", stat
 void save_standing(Saver& to, const Standing& standing) { exchange_standing(to, standing); }
 void load_standing(Loader& from, Standing& standing) { exchange_standing(from, standing); }
 
-SavedModel saved_model(const Archive& archive) {
-  SavedModel m;
-  const Loader from(archive);
-  std::vector<double> give;
-  from("model.give", give), from("model.history_start", m.history_start);
-  from("model.history_names", m.history_names);
-  if (give.size() != 2 || !(give[0] >= 0) || !(give[1] >= 0) ||
-      static_cast<size_t>(std::count(m.history_names.begin(), m.history_names.end(), '\n')) !=
-          m.history_start.size())
-    throw FileError("what it says of its model is damaged");
-  m.give_stress = give[0], m.give_shortest_step = give[1];
-  return m;
-}
-
 Archive run_archive(const Scene& scene, const Standing& standing, const State& state) {
   Archive archive;
   archive.texts["program"] = fmt::format("talus {}", kVersion);
   archive.texts["model.hash"] = scene.model.hash;
   archive.texts["model.text"] = scene.model.text;
   archive.texts["model.shapes_hash"] = scene.model.shapes_hash;
-  std::string& names = archive.texts["model.history_names"];
-  std::vector<double>& starts = archive.numbers["model.history_start"];
-  for (const History& h : scene.model.histories) {
-    names += h.name + "\n";
-    starts.push_back(h.value_at(0));
-  }
-  archive.numbers["model.give"] = {scene.give.stress, scene.give.shortest_step};
+  for (const History& h : scene.model.histories) archive.numbers[kSavedStart + h.name] = {h.value_at(0)};
+  archive.numbers[kSavedGive] = {scene.give.stress, scene.give.shortest_step};
   Saver saver(archive);
   save_state(saver, state);
   save_standing(saver, standing);
   return archive;
 }
 
-std::string folder_of_saved(const std::filesystem::path& saved, const std::string& expected) {
+namespace {
+
+std::filesystem::path folder_above(const std::filesystem::path& saved) {
+  std::error_code ec;
+  return std::filesystem::absolute(saved, ec).lexically_normal().parent_path().parent_path();
+}
+
+}  // namespace
+
+std::string folder_of_saved(const std::filesystem::path& saved) {
   namespace fs = std::filesystem;
   std::error_code ec;
-  const fs::path folder = fs::absolute(saved, ec).lexically_normal().parent_path().parent_path();
+  const fs::path folder = folder_above(saved);
   if (!fs::exists(saved, ec)) throw FileError(fmt::format("{}: there is no such file", saved.string()));
   if (!fs::exists(folder / "histories.csv", ec))
     throw FileError(fmt::format(
         "{}: does not lie in the folder saved/ of a run: its results would not be found to go on with",
         saved.string()));
-  if (!expected.empty() && !fs::equivalent(folder, expected, ec))
-    throw FileError(
-        fmt::format("{}: belongs to the results in {}, not in {}. Leave out -o; to keep the old results, "
-                    "copy the folder first",
-                    saved.string(), folder.string(), expected));
   return folder.string();
+}
+
+bool lies_in(const std::filesystem::path& saved, const std::filesystem::path& folder) {
+  std::error_code ec;
+  return std::filesystem::equivalent(folder_above(saved), folder, ec);
 }
 
 namespace {

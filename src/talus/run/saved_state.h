@@ -20,9 +20,11 @@ void load_standing(Loader& from, Standing& standing);
 /// Archive of a run: who wrote it, of which model, the state and where the run stands.
 Archive run_archive(const Scene& scene, const Standing& standing, const State& state);
 
-/// The result folder in which a saved state lies. Throws FileError when it is no result folder, or not
-/// `expected` ("": any).
-std::string folder_of_saved(const std::filesystem::path& saved, const std::string& expected);
+/// The result folder in which a saved state lies. Throws FileError when it is no result folder.
+std::string folder_of_saved(const std::filesystem::path& saved);
+
+/// Whether a saved state, or what is called so, lies in this result folder.
+bool lies_in(const std::filesystem::path& saved, const std::filesystem::path& folder);
 
 struct SavedRun {
   Archive archive;
@@ -30,14 +32,9 @@ struct SavedRun {
   State state;
 };
 
-/// What of the model went into the state and is not in it: the give of hard contacts (theory 4.22), and where the
-/// histories begin, at which they stand in static stages.
-struct SavedModel {
-  double give_stress = 0, give_shortest_step = 0;
-  std::vector<double> history_start;  // of the histories, by name
-  std::string history_names;          // one a line
-};
-SavedModel saved_model(const Archive& archive);
+/// What of its model a state came to be by and does not hold: the give of hard contacts (theory 4.22), and the values
+/// at which histories begin and stand in static stages.
+inline constexpr const char *kSavedGive = "model.give", *kSavedStart = "model.history_start.";
 
 /// Reads a saved run of this model. Throws FileError when the file cannot be used, InputError when it is of
 /// another model (with the keys that differ) or of another format.

@@ -74,10 +74,16 @@ Smoothing smoothing(const ContactInput& contact, const StepClock& clock) {
 
 void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
                 StepReport& report) {
-  const StepProblem problem{
-      work.mobility,       work.rate_free, work.clock.dt, smoothing(scene.model.contact, work.clock),
-      work.rows,           state.rate,     work.profile,  scene.blocks.tile,
-      work.clock.from_rest, settings.near_expected ? &work.rate_expected : nullptr};
+  const StepProblem problem{work.mobility,
+                            work.rate_free,
+                            work.clock.dt,
+                            smoothing(scene.model.contact, work.clock),
+                            work.rows,
+                            state.rate,
+                            work.profile,
+                            scene.blocks.tile,
+                            work.clock.from_rest,
+                            settings.near_expected ? &work.rate_expected : nullptr};
   RowKinds kinds = row_kinds(scene, work);
   kinds.by_all = settings.by_all;
   const Solved solved = solve_step(scene.model, kinds, settings.tolerance, settings.sharper,

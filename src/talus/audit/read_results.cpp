@@ -129,6 +129,16 @@ class Reader {
         law.cohesion = std::max(j.value("cohesion [Pa]", 0.0), j.value("cohesion_after [Pa]", 0.0));
         law.tension =
             std::max(j.value("tensile_strength [Pa]", 0.0), j.value("tensile_strength_after [Pa]", 0.0));
+        // where strength scatters from face to face: the largest there can be
+        const auto grow = [&j](const char* key, double& value, auto scale) {
+          if (const auto at = j.find(key); at != j.end())
+            value *= scale(at->at("largest").template get<double>()) /
+                     scale(at->at("mean").template get<double>());
+        };
+        const auto as_it_is = [](double x) { return x; };
+        grow("friction_angle_scatter [deg]", law.friction, [](double x) { return std::tan(kDegree * x); });
+        grow("cohesion_scatter [Pa]", law.cohesion, as_it_is);
+        grow("tensile_strength_scatter [Pa]", law.tension, as_it_is);
         law.normal_stiffness = j.value("normal_stiffness [Pa/m]", 0.0);
         dilation_.push_back(std::tan(kDegree * j.value("dilation_angle [deg]", 0.0)));
         lifting_ = lifting_ || dilation_.back() > 0;

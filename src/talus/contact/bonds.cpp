@@ -128,8 +128,9 @@ bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointLaw& l
   const double half_area = 0.5 * face.length * blocks.thickness;
   const double noticed =
       noticeable(blocks, static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
-  const JointStrength bears = law.peak().over(half_area);
-  const double most_pull = law.peak().over(kAtLimit).over(half_area).tension;
+  const JointStrength peak = law.between(face.block_a, face.block_b, law.peak());
+  const JointStrength bears = peak.over(half_area);
+  const double most_pull = peak.over(kAtLimit).over(half_area).tension;
   int pulled = 0;                               // ends at their tensile strength, or open
   double shear = 0, shear_limit = 0, slip = 0;  // of the other ends
   for (size_t end = 0; end < 2; ++end) {
@@ -251,7 +252,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       if (!face.unbreakable) {
         const JointLaw& law = laws[static_cast<size_t>(face.joint)];
         const double half_area = 0.5 * face.length * blocks.thickness;
-        bound(law.peak().over(half_area).over(clock.dt_kick), p);
+        bound(law.between(face.block_a, face.block_b, law.peak()).over(half_area).over(clock.dt_kick), p);
         if (stands_open(law, apart.opening[end], noticeable(blocks, a, b))) p.cohesion = 0;
         if (law.is_soft()) {
           u[end] = relative_velocity(p, before);

@@ -175,7 +175,7 @@ class ContactRows {
     p.block_a = c.key.block_a, p.block_b = c.key.block_b;
     p.arm_a = acting_arm(blocks_, state_, a, q.corner);
     p.arm_b = acting_arm(blocks_, state_, b, q.foot());
-    const JointStrength bears = law.worn(c.slip);
+    const JointStrength bears = law.between(c.key.block_a, c.key.block_b, law.worn(c.slip));
     p.friction = bears.friction;
     p.lower = 0, p.cohesion = 0;
     const bool soft = law.is_soft(0), springs = law.is_soft();

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "talus/model/read_maps.h"
-#include "talus/model/toml_source.h"
+#include "talus/model/variables.h"
 
 namespace talus::maps {
 
@@ -14,10 +14,10 @@ ExpandedModel expand_model(const std::string& file, const std::string& text,
   std::vector<std::string> of_maps;
   for (const std::string& item : overrides) {
     const bool is_map = item.rfind("map.", 0) == 0 || item.rfind("maps.", 0) == 0;
-    if (is_map || item.rfind("folder=", 0) == 0) of_maps.push_back(item);
+    if (is_map || item.rfind("folder=", 0) == 0 || item.rfind("variables.", 0) == 0) of_maps.push_back(item);
     if (!is_map) out.overrides.push_back(item);
   }
-  const TomlSource source = parse_toml(text, of_maps, findings);
+  const TomlSource source = read_toml(text, of_maps, findings);
   if (findings.has_errors()) return out;
   out.has_maps = has_maps(source);
   out.text = text;
@@ -29,7 +29,8 @@ ExpandedModel expand_model(const std::string& file, const std::string& text,
   MapSections made = make_sections(maps, folder, reader, findings);
   out.folder = folder;
   std::string head;
-  for (const std::string& item : of_maps) head += "# --set " + item + "\n";
+  for (const std::string& item : of_maps)
+    if (item.rfind("variables.", 0) != 0) head += "# --set " + item + "\n";  // that one stays an override
   out.text = replace_maps(text, head + made.text);
   if (!findings.has_errors() && has_maps(parse_toml(out.text, {}, findings)))
     findings.error({1, 1, ""}, "map", "is written in a way that cannot be replaced",

@@ -30,4 +30,20 @@ std::vector<double> evaluate_expression(const std::string& formula, const std::v
   return values;
 }
 
+double evaluate_with(const std::string& formula, const std::map<std::string, double>& values,
+                     std::string& trouble) {
+  double value = std::nan("");
+  try {
+    mu::Parser parser;
+    parser.DefineNameChars("0123456789_.abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    for (const auto& [name, number] : values) parser.DefineConst(name, number);
+    parser.SetExpr(formula);
+    value = parser.Eval();
+    if (!std::isfinite(value)) trouble = fmt::format("\"{}\" is not finite", formula);
+  } catch (const mu::Parser::exception_type& e) {
+    trouble = fmt::format("\"{}\" cannot be read: {} (at character {})", formula, e.GetMsg(), e.GetPos() + 1);
+  }
+  return trouble.empty() ? value : std::nan("");
+}
+
 }  // namespace talus

@@ -1,6 +1,7 @@
 #pragma once
-// Formulas of time in model files, evaluated by muParser.
+// Formulas of model files, evaluated by muParser.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,11 @@ namespace talus {
 ///                 its value is not finite; the result is then empty
 std::vector<double> evaluate_expression(const std::string& formula, const std::vector<double>& times,
                                         std::string& trouble);
+
+/// Value of a formula in named numbers. Names are letters, digits, _ and dots.
+/// @param trouble  set to what is wrong with the formula, with its position, or that its value is not finite;
+///                 the result is then NaN
+double evaluate_with(const std::string& formula, const std::map<std::string, double>& values,
+                     std::string& trouble);
 
 }  // namespace talus

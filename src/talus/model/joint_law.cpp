@@ -31,9 +31,26 @@ JointLaw::JointLaw(const JointProperty& joint)
       stiffness_{joint.normal_stiffness, joint.shear_stiffness},
       restitution_(joint.restitution),
       worn_(joint_kinds().at(static_cast<size_t>(joint.kind)).worn),
-      own_(joint.own) {
+      own_(joint.own),
+      scatters_(joint.friction_scatter.given() || joint.cohesion_scatter.given() ||
+                joint.tension_scatter.given()),
+      friction_scatter_(joint.friction_scatter),
+      cohesion_scatter_(joint.cohesion_scatter),
+      tension_scatter_(joint.tension_scatter) {
   can_break_ = !bonded_ &&
                (peak_.cohesion > 0 || peak_.tension > 0 || residual_.friction_angle < peak_.friction_angle);
+}
+
+// In proportion to the mean that the file gives: what changes and reductions leave scatters with it.
+JointStrength JointLaw::scattered(int a, int b, const JointStrength& mean) const {
+  JointStrength s = mean;
+  if (friction_scatter_.given()) {
+    s.friction *= std::tan(friction_scatter_.draw(a, b)) / std::tan(friction_scatter_.mean);
+    s.friction_angle = std::atan(s.friction);
+  }
+  if (cohesion_scatter_.given()) s.cohesion *= cohesion_scatter_.draw(a, b) / cohesion_scatter_.mean;
+  if (tension_scatter_.given()) s.tension *= tension_scatter_.draw(a, b) / tension_scatter_.mean;
+  return s;
 }
 
 std::vector<JointDefect> JointLaw::defects(const JointProperty& joint) {
@@ -45,6 +62,12 @@ std::vector<JointDefect> JointLaw::defects(const JointProperty& joint) {
                    .text = "is only for hard joints without strength, weakening and dilation",
                    .hint = "leave out the stiffness, the strengths and the dilation"});
   if (joint.bonded) return out;
+  if (joint.friction_scatter.given() && joint.dilation_angle > 0)
+    out.push_back(
+        {.key = "dilation_angle",
+         .bound = "",
+         .text = "does not go with a friction angle that scatters: where it is low, slip would give energy",
+         .hint = "leave out one of them"});
 
   const auto keeps = [&out](const char* key, const char* peak, double residual, double most) {
     if (residual > most)

@@ -50,6 +50,10 @@ class JointLaw {
   /// Of a place where two blocks touch that are no face held together, after a slip, both ways added up
   /// [m]; of most kinds the residual one.
   JointStrength worn(double slip) const { return worn_ ? worn_(*this, slip) : residual_; }
+  /// The same between blocks `a` and `b`, where strength scatters from face to face.
+  JointStrength between(int a, int b, const JointStrength& mean) const {
+    return scatters_ ? scattered(a, b, mean) : mean;
+  }
   /// Value of key `k` of those that its kind alone has [SI].
   double own(size_t k) const { return own_.at(k); }
   /// Whether a face that touches at the start has anything to lose.
@@ -89,6 +93,10 @@ class JointLaw {
   double restitution_ = -1;
   JointStrength (*worn_)(const JointLaw&, double) = nullptr;
   std::vector<double> own_;
+  bool scatters_ = false;
+  StrengthScatter friction_scatter_, cohesion_scatter_, tension_scatter_;
+
+  JointStrength scattered(int a, int b, const JointStrength& mean) const;
 };
 
 /// What a kind adds to the properties that all joints have.

@@ -16,6 +16,7 @@
 #include "talus/model/mesh_input.h"
 #include "talus/model/placement.h"
 #include "talus/model/solver_kind.h"
+#include "talus/model/strength_scatter.h"
 
 namespace talus {
 
@@ -43,7 +44,9 @@ struct JointProperty {
   double dilation_slip = std::numeric_limits<double>::infinity();             // [m] slip up to which it rises
   double residual_friction_angle = std::numeric_limits<double>::quiet_NaN();  // [rad], NaN = friction_angle
   double residual_cohesion = 0, residual_tensile_strength = 0;                // [Pa]
-  int kind = 0;                                                               // of joint_kinds()
+  // from face to face; residual strengths scatter with those
+  StrengthScatter friction_scatter = {}, cohesion_scatter = {}, tension_scatter = {};
+  int kind = 0;                  // of joint_kinds()
   std::vector<double> own = {};  // of the keys that its kind alone has [SI], NaN: not given
   Where where = {};
 };

@@ -18,6 +18,7 @@
 #include "talus/model/read_mesh.h"
 #include "talus/model/read_stages.h"
 #include "talus/model/section_reader.h"
+#include "talus/model/variables.h"
 
 namespace talus {
 
@@ -177,9 +178,14 @@ class ModelReader : private SectionReader {
       JointProperty j;
       j.name = name;
       read_kind(f, j);
-      j.friction_angle = f.get("friction_angle", 0.0);
-      j.cohesion = f.get("cohesion", 0.0);
-      j.tensile_strength = f.get("tensile_strength", 0.0);
+      const auto strength = [&](const char* key, double& mean, StrengthScatter& scatter) {
+        scatter = f.get<StrengthScatter>(key);
+        mean = scatter.mean;
+        scatter.seed = strength_seed(static_cast<int64_t>(scatter.seed), name, key);
+      };
+      strength("friction_angle", j.friction_angle, j.friction_scatter);
+      strength("cohesion", j.cohesion, j.cohesion_scatter);
+      strength("tensile_strength", j.tensile_strength, j.tension_scatter);
       j.where = f.where();
       j.normal_stiffness = f.get("normal_stiffness", 0.0);
       j.shear_stiffness = f.get("shear_stiffness", 0.0);
@@ -531,13 +537,15 @@ Model read_model(const std::string& file, const std::string& text, const std::ve
   model.text = text;
   for (const std::string& item : overrides) model.text += "\n# --set " + item;
   model.hash = text_hash(model.text);
-  const TomlSource source = parse_toml(text, overrides, findings);
+  const TomlSource source = read_toml(text, overrides, findings);
   if (findings.has_errors()) {  // after a syntax error every further message would mislead
     model.shapes_readable = false;
     return model;
   }
   ModelReader(source, model, findings).read();
-  if (!findings.has_errors()) check_names_used(source, model, findings);
+  if (findings.has_errors()) return model;
+  check_names_used(source, model, findings);
+  check_variables_used(source, findings);
   return model;
 }
 

@@ -76,6 +76,8 @@ class ValueReader {
         return curve(node);
       case KeyType::kScattered:
         return wrap(scattered(node));
+      case KeyType::kStrength:
+        return wrap(strength(node));
       case KeyType::kMotion:
         return motion(node);
     }
@@ -272,6 +274,41 @@ class ValueReader {
     return Scattered{normal ? Scattered::kNormal : Scattered::kUniform, *mean, *spread};
   }
 
+  // A quantity, or a table that says how it scatters from face to face.
+  std::optional<StrengthScatter> strength(const toml::node& node) const {
+    StrengthScatter s;
+    s.least = spec_.range.min, s.most = spec_.range.max;
+    const toml::table* t = node.as_table();
+    if (!t) {
+      const auto v = quantity(node);
+      if (!v) return {};
+      s.mean = *v;
+      return s;
+    }
+    const std::string expected =
+        "a quantity, { mean = ..., normal = standard deviation, seed = 1 } or { mean = ..., lognormal = standard "
+        "deviation, seed = 1 }";
+    const bool normal = t->contains("normal");
+    if (!t->contains("mean") || normal == t->contains("lognormal") ||
+        t->size() != (t->contains("seed") ? 3U : 2U))
+      return wrong(node, expected);
+    const toml::node& spread_node = *t->get(normal ? "normal" : "lognormal");
+    const auto mean = quantity(*t->get("mean"));
+    const auto spread = ValueReader(without_range(), path_, where_, findings_).quantity(spread_node);
+    if (!mean || !spread) return {};
+    if (*mean == 0) return tell(*t->get("mean"), "a mean of 0 cannot scatter");
+    if (*spread < 0) return tell(spread_node, "a scatter cannot be negative");
+    int64_t seed = 0;
+    if (const toml::node* given = t->get("seed")) {
+      const auto v = given->value_exact<int64_t>();
+      if (!v || *v < 0) return tell(*given, "a seed is a whole number, 0 or more");
+      seed = *v;
+    }
+    s.mean = *mean, s.deviation = *spread, s.seed = static_cast<uint64_t>(seed);
+    s.kind = normal ? StrengthScatter::kNormal : StrengthScatter::kLognormal;
+    return s;
+  }
+
   const KeySpec& without_range() const {
     unlimited_ = spec_;
     unlimited_.range = {};
@@ -308,10 +345,6 @@ class ValueReader {
 std::string default_toml(const KeySpec& key) { return "v = " + std::string(key.default_text) + "\n"; }
 
 }  // namespace
-
-Where where_of(const toml::source_region& region) {
-  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), ""};
-}
 
 Where Fields::where(std::string_view key) const {
   const auto it = places_.find(std::string(key));

@@ -11,6 +11,7 @@
 #include "talus/model/cut_input.h"
 #include "talus/model/findings.h"
 #include "talus/model/schema.h"
+#include "talus/model/strength_scatter.h"
 #include "talus/model/toml_source.h"
 
 namespace talus {
@@ -22,7 +23,7 @@ struct MotionText {
 
 using Value = std::variant<bool, int64_t, double, std::string, Vec2, std::array<int, 2>, std::vector<Vec2>,
                            std::vector<std::vector<Vec2>>, std::vector<double>, std::vector<std::string>,
-                           MotionText, Scattered>;
+                           MotionText, Scattered, StrengthScatter>;
 
 /// The values of one section, in SI, defaults filled in. A key that was wrong is absent, and a finding tells
 /// why.
@@ -61,8 +62,5 @@ class Fields {
 /// @param path  dotted name of this section in messages and overrides, "block.striker"
 Fields read_section(const SectionSpec& spec, const toml::table& table, const std::string& path,
                     const Where& place, const TomlSource& source, Findings& findings);
-
-/// Position of a node in the file.
-Where where_of(const toml::source_region& region);
 
 }  // namespace talus

@@ -49,6 +49,8 @@ std::string_view type_text(const KeySpec& k) {
       return "list of [time, number]";
     case K::kScattered:
       return "quantity or scatter";
+    case K::kStrength:
+      return "quantity or scatter";
     case K::kMotion:
       return "motion";
   }
@@ -68,6 +70,7 @@ std::string heading(const SectionSpec& s) {
   switch (s.shape) {
     case SectionShape::kTop:
       return "Top of the file";
+    case SectionShape::kFree:
     case SectionShape::kTable:
       return fmt::format("`[{}]`", s.name);
     case SectionShape::kNamed:
@@ -152,6 +155,16 @@ std::string json_type(const KeySpec& k) {
                          table(R"("mean": )" + number + R"(, "uniform": )" + number, R"("mean", "uniform")"),
                          table(R"("exponential": )" + number, R"("exponential")"));
     }
+    case K::kStrength: {
+      const std::string number = "{" + quantity + "}", seed = R"("seed": {"type": "integer", "minimum": 0})";
+      const auto table = [&](const char* kind) {
+        return fmt::format(
+            R"({{"type": "object", "additionalProperties": false, "properties": {{"mean": {}, "{}": {}, {}}}, "required": ["mean", "{}"]}})",
+            number, kind, number, seed, kind);
+      };
+      return fmt::format(R"("oneOf": [{{{}}}, {}, {}])", quantity + json_range(k.range), table("normal"),
+                         table("lognormal"));
+    }
     case K::kMotion:
       return R"("oneOf": [{"enum": ["fixed", "free"]}, {"type": "object", "additionalProperties": false, )"
              R"("properties": {"velocity": {"type": "string"}, "displacement": {"type": "string"}}, )"
@@ -160,13 +173,20 @@ std::string json_type(const KeySpec& k) {
   return "";
 }
 
+// A text with a variable stands for a value of any type.
+std::string json_type_or_variable(const KeySpec& k) {
+  const std::string type = json_type(k);
+  if (type.rfind(R"("type": ["number", "string"])", 0) == 0 || type == R"("type": "string")") return type;
+  return fmt::format(R"("anyOf": [{{{}}}, {{"type": "string", "pattern": "[$]"}}])", type);
+}
+
 std::string json_properties(const SectionSpec& s, const std::string& indent) {
   std::string out, required;
   for (const KeySpec& k : s.keys) {
     std::string doc(k.doc);
     if (k.dimension != D::kNone) doc += fmt::format(" Unit: {}.", si_symbol(k.dimension));
     out += fmt::format("{}{}{}: {{{}, \"description\": {}{}}}", out.empty() ? "" : ",\n", indent,
-                       json_text(k.name), json_type(k), json_text(doc),
+                       json_text(k.name), json_type_or_variable(k), json_text(doc),
                        k.default_text.empty() ? "" : fmt::format(", \"default\": {}", k.default_text));
     if (k.required) required += (required.empty() ? "" : ", ") + json_text(k.name);
   }
@@ -196,6 +216,10 @@ const SectionSpec& section_spec(std::string_view name) {
 std::string schema_markdown() {
   std::string out;
   for (const SectionSpec& s : model_schema()) {
+    if (s.shape == SectionShape::kFree) {
+      out += fmt::format("### {}\n\n{}\n\n", heading(s), s.doc);
+      continue;
+    }
     out += fmt::format(
         "### {}\n\n{}\n\n| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n",
         heading(s), s.doc);
@@ -225,6 +249,7 @@ std::string schema_json() {
     if (s.shape == SectionShape::kTop) continue;
     const std::string object = fmt::format("\"type\": \"object\", {}", json_properties(s, "      "));
     std::string body;
+    if (s.shape == SectionShape::kFree) body = R"("type": "object")";
     if (s.shape == SectionShape::kTable) body = object;
     if (s.shape == SectionShape::kNamed)
       body = fmt::format("\"type\": \"object\", \"additionalProperties\": {{{}}}", object);

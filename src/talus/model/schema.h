@@ -30,6 +30,7 @@ enum class KeyType {
   kTexts,      // list of texts, any number
   kCurve,      // list of [time, number]
   kScattered,  // quantity, { mean, normal }, { mean, uniform } or { exponential }
+  kStrength,   // quantity, or { mean, normal | lognormal, seed }
   kMotion,     // "fixed", "free", { velocity = "history" } or { displacement = "history" }
 };
 
@@ -59,6 +60,7 @@ struct KeySpec {
 
 enum class SectionShape {
   kTop,    // keys at the top of the file
+  kFree,   // [section] with keys of the user's own
   kTable,  // [section]
   kNamed,  // [section.NAME], any number
   kList,   // [[section]], any number

@@ -42,6 +42,14 @@ std::vector<SectionSpec> sections_of_model() {
          .doc = "Folder that relative paths in this file count from, itself relative to the file; \"\": "
                 "that of the file. `talus cut` gives it to the model that it makes of one with maps."}}},
 
+      {"variables",
+       SectionShape::kFree,
+       "Values under names of your own (letters, digits, _), of any type: `phi = \"35 deg\"`. A text `\"$phi\"` elsewhere stands for that "
+       "value, `\"$(height / 3)\"` for the value of an expression (muParser: + - * / ^, sqrt, sin, min, max, a ? b : c ...), `\"$(2 * phi) rad\"` and "
+       "`\"motions/$name.csv\"` for texts with the digits or the text in it, `$$` for a dollar sign. In expressions quantities count in SI, "
+       "angles in rad. Variables may stand on others, and are changed like keys: `--set variables.phi=\"30 deg\"`.",
+       {}},
+
       {"model",
        SectionShape::kTable,
        "What holds for the whole model.",
@@ -95,12 +103,18 @@ std::vector<SectionSpec> sections_of_model() {
          .choices = names_of_choices(joint_kinds()),
          .doc = joint_kind_doc()},
         {.name = "friction_angle",
+         .type = K::kStrength,
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532, .max_open = false},
          .usual = {.min = kDegree},
          .default_text = "\"0 deg\"",
-         .doc = "Friction angle (at most 89 deg)."},
+         .doc =
+             "Friction angle (at most 89 deg). This and the two strengths below may scatter from face to face: "
+             "`{ mean = \"35 deg\", normal = \"3 deg\", seed = 1 }`, or `lognormal`, both the standard deviation of the "
+             "strength itself. Drawn for each pair of blocks; draws beyond 4 standard deviations or the allowed range are drawn anew; residual "
+             "strengths scatter in proportion."},
         {.name = "cohesion",
+         .type = K::kStrength,
          .dimension = D::kStress,
          .range = kNonNegative,
          .usual = {.min = 100, .max = 1e9},
@@ -108,6 +122,7 @@ std::vector<SectionSpec> sections_of_model() {
          .doc = "Cohesion of faces that touch at the start; lost for good, with the tensile strength, when "
                 "the face breaks."},
         {.name = "tensile_strength",
+         .type = K::kStrength,
          .dimension = D::kStress,
          .range = kNonNegative,
          .usual = {.min = 100, .max = 1e9},

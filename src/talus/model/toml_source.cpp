@@ -198,6 +198,10 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
 
 }  // namespace
 
+Where where_of(const toml::source_region& region) {
+  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), ""};
+}
+
 TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides,
                       Findings& findings) {
   TomlSource source;

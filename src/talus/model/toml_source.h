@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,15 @@ inline constexpr size_t kMostModelText = size_t{64} << 20;
 struct TomlSource {
   toml::table root;
   std::map<std::string, std::string> overridden;  // dotted path -> "--set path=value"
+  std::set<std::string> variables_used;           // names of [variables] that texts hold
 };
 
-/// Parses `text`; syntax errors and broken encoding become findings.
+/// Parses `text`; syntax errors and broken encoding become findings. Variables stand as they are (variables.h).
 /// @param overrides  "a.b=c" each; c is TOML, or taken as text. Entries of lists are named by their `name`,
 ///                   or by their number from 0: "block.striker.kind=rigid", "contact_pair.0.joint=glue".
 TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings);
+
+/// Position of a node in the file.
+Where where_of(const toml::source_region& region);
 
 }  // namespace talus

@@ -15,10 +15,15 @@ namespace talus {
 namespace {
 
 // From the properties, not by JointLaw: what judges the rows shares no law with them. fmax: NaN is none.
+// Of strength that scatters the largest that a face can have.
 audit::Law law_of(const JointProperty& joint) {
-  return {.friction = std::tan(std::fmax(joint.friction_angle, joint.residual_friction_angle)),
-          .cohesion = std::max(joint.cohesion, joint.residual_cohesion),
-          .tension = std::max(joint.tensile_strength, joint.residual_tensile_strength),
+  const auto larger = [](const StrengthScatter& s) { return s.given() ? s.largest() / s.mean : 1; };
+  const StrengthScatter& angle = joint.friction_scatter;
+  const double rougher = angle.given() ? std::tan(angle.largest()) / std::tan(angle.mean) : 1;
+  return {.friction = rougher * std::tan(std::fmax(joint.friction_angle, joint.residual_friction_angle)),
+          .cohesion = larger(joint.cohesion_scatter) * std::max(joint.cohesion, joint.residual_cohesion),
+          .tension = larger(joint.tension_scatter) *
+                     std::max(joint.tensile_strength, joint.residual_tensile_strength),
           .normal_stiffness = joint.normal_stiffness,
           .bonded = joint.bonded};
 }

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "talus/model/toml_source.h"
+#include "talus/model/variables.h"
 
 namespace talus {
 
@@ -63,7 +63,9 @@ ModelKeys keys_as_written(const std::string& text) {
 ModelKeys keys_in_force(const std::string& text) {
   ModelKeys all;
   Findings findings("", text);
-  flatten(parse_toml(text, overrides_in(text), findings).root, "", all);
+  toml::table root = std::move(read_toml(text, overrides_in(text), findings).root);
+  root.erase("variables");  // they act by the keys that name them
+  flatten(root, "", all);
   return all;
 }
 

@@ -61,6 +61,15 @@ ordered_json joints(const Model& model) {
       j["tensile_strength [Pa]"] = law.peak().tension;
       j["tensile_strength_after [Pa]"] = law.residual().tension;
     }
+    const auto scatter = [&j](const char* key, const StrengthScatter& s, double unit) {
+      if (!s.given()) return;
+      j[key] = {{s.kind == StrengthScatter::kNormal ? "normal" : "lognormal", s.deviation / unit},
+                {"largest", s.largest() / unit},
+                {"mean", s.mean / unit}};
+    };
+    scatter("friction_angle_scatter [deg]", p.friction_scatter, kDegree);
+    scatter("cohesion_scatter [Pa]", p.cohesion_scatter, 1);
+    scatter("tensile_strength_scatter [Pa]", p.tension_scatter, 1);
     j["normal_stiffness [Pa/m]"] = p.normal_stiffness;  // 0: hard
     j["shear_stiffness [Pa/m]"] = p.shear_stiffness;
     if (p.dilation_angle > 0) j["dilation_angle [deg]"] = p.dilation_angle / kDegree;

@@ -156,6 +156,7 @@ void plot_all(const std::string& folder, const CsvTable& table, const PlotArgume
   if (table.rows() == 0) tell("talus: note: {}: the run has not written a row of histories yet\n", folder);
   for (size_t c = 1; c < table.columns.size() && table.rows() > 0; ++c) {
     const std::string& column = table.columns[c];
+    if (column.find('.') == std::string::npos) continue;  // a clock
     draw_columns(args, {table}, {column}, plots / file_name_of(column.substr(0, column.find(" ["))));
   }
   if (args.stage.empty()) plot_blocks_at_end(folder, plots);

@@ -243,7 +243,8 @@ TEST_CASE("command: plot draws a column, several runs, and names what is missing
   CHECK(fs::exists(out + "/plots/impact.normal_force.svg"));
   const Outcome wrong = shell(f, fmt::format("$talus plot {} -c impact.nothing -o {}/x", out, out));
   CHECK(wrong.code == 4);
-  has(wrong.text, "there is no column \"impact.nothing\"; there is t [s], impact.force_x [N]");
+  has(wrong.text,
+      "there is no column \"impact.nothing\"; there is t [s], dynamic_time [s], impact.force_x [N]");
   has(shell(f, "$talus plot nowhere").text, "nowhere: there is no such folder");
 }
 

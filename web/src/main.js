@@ -326,7 +326,7 @@ async function addMonitors() {
   tables.forEach((table, r) => {
     if (!table) return;
     table.columns.forEach((column, c) => {
-      if (c === 0) return;
+      if (c === 0 || column === "dynamic_time [s]") return;  // clocks
       const { monitor, quantity, unit } = splitColumn(column), key = `${quantity} [${unit}]`;
       if (!groups.has(key)) groups.set(key, { quantity, unit, series: [] });
       groups.get(key).series.push({ label: runs.length > 1 ? `${runs[r].name}: ${monitor}` : monitor, time: table.values[0], value: table.values[c] });

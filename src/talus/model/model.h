@@ -259,16 +259,17 @@ struct InSituInput {
   Where where, where_level;
 };
 
-enum class MonitorKind { kPoint, kBlock, kSupport, kContact, kBolt, kConvergence };
+enum class MonitorKind { kPoint, kBlock, kSupport, kContact, kBolt, kConvergence, kCentroid, kCrack };
 
 struct MonitorInput {
   std::string name;
   MonitorKind kind = MonitorKind::kPoint;
   Vec2 point;
-  std::string target_a, target_b;        // names of block, support, bolt, or the two contact partners
-  double window = 0;                     // [s]
-  Vec2 other;                            // convergence: the second point
-  std::string relative_to;               // support, free-field boundary, block or group; "": none
+  std::string target_a, target_b;  // names of block or group, support, bolt, or the two contact partners
+  double window = 0;               // [s]
+  Vec2 other;                      // convergence, crack: the second point
+  bool spectrum = false;           // of the acceleration of a point or centroid
+  std::string relative_to;         // support, free-field boundary, block or group; "": none
   std::vector<Vec2> relative_to_points;  // the mean of these; empty: none
   Where where, where_relative;
 };

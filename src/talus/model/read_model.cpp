@@ -402,25 +402,34 @@ class ModelReader : private SectionReader {
       m.window = f.get("window", 0.0);
       m.where = f.where();
       const int kinds = f.given("point") + f.given("block") + f.given("support") + f.given("contact") +
-                        f.given("bolt") + f.given("convergence");
+                        f.given("bolt") + f.given("convergence") + f.given("centroid") + f.given("crack");
       if (kinds != 1) {
         findings_.error(f.where(), f.path(),
                         kinds == 0 ? "does not say what to record" : "records more than one thing",
-                        "give one of point, block, support, contact, bolt, convergence");
+                        "give one of point, centroid, convergence, crack, block, support, contact, bolt");
         return;
       }
       if (f.given("window") && !f.given("contact"))
         findings_.error(f.where("window"), f.path_of("window"), "is only for contact monitors");
+      m.spectrum = f.get("spectrum", false);
+      if (m.spectrum && !f.given("point") && !f.given("centroid"))
+        findings_.error(f.where("spectrum"), f.path_of("spectrum"),
+                        "is only for point and centroid monitors");
       read_reference(f, m);
-      if (f.given("convergence")) {
-        m.kind = MonitorKind::kConvergence;
-        m.where = f.where("convergence");
-        const auto points = f.get<std::vector<Vec2>>("convergence");
-        if (f.has("convergence") && (points.size() != 2 || points[0] == points[1]))
-          findings_.error(m.where, f.path_of("convergence"), "must be two different points",
-                          "write convergence = [[x0, y0], [x1, y1]]");
-        else if (f.has("convergence"))
+      if (f.given("convergence") || f.given("crack")) {
+        const char* key = f.given("crack") ? "crack" : "convergence";
+        m.kind = f.given("crack") ? MonitorKind::kCrack : MonitorKind::kConvergence;
+        m.where = f.where(key);
+        const auto points = f.get<std::vector<Vec2>>(key);
+        if (f.has(key) && (points.size() != 2 || points[0] == points[1]))
+          findings_.error(m.where, f.path_of(key), "must be two different points",
+                          fmt::format("write {} = [[x0, y0], [x1, y1]]", key));
+        else if (f.has(key))
           m.point = points[0], m.other = points[1];
+      } else if (f.given("centroid")) {
+        m.kind = MonitorKind::kCentroid;
+        m.target_a = f.get<std::string>("centroid");
+        m.where = f.where("centroid");
       } else if (f.given("point")) {
         m.point = f.get<Vec2>("point");
         m.where = f.where("point");
@@ -471,9 +480,9 @@ class ModelReader : private SectionReader {
     if (f.given("relative_to_points") && m.relative_to_points.size() < 2)
       findings_.error(m.where_relative, f.path_of("relative_to_points"), "needs two points or more",
                       "write relative_to_points = [[x0, y0], [x1, y1]]; relative_to_point is for one");
-    if (given > 0 && !f.given("point"))
+    if (given > 0 && !f.given("point") && !f.given("centroid"))
       findings_.error(m.where_relative, f.path(), "is relative to something, but no point",
-                      "relative_to, relative_to_point and relative_to_points belong to point");
+                      "relative_to, relative_to_point and relative_to_points belong to point and centroid");
   }
 
   void read_output() {

@@ -53,7 +53,8 @@ std::vector<SectionSpec> run_sections() {
 
       {"monitor",
        SectionShape::kList,
-       "Columns of histories.csv. Give one of `point`, `block`, `support`, `contact`, `bolt`, `convergence`.",
+       "Columns of histories.csv. Give one of `point`, `centroid`, `convergence`, `crack`, `block`, `support`, `contact`, `bolt`. What each came to, stage by "
+       "stage, is in monitors.csv and summary.json.",
        {{.name = "name",
          .type = K::kText,
          .required = true,
@@ -61,26 +62,46 @@ std::vector<SectionSpec> run_sections() {
         {.name = "point",
          .type = K::kVector,
          .dimension = D::kLength,
-         .doc = "Displacement and velocity of the material point that is here at the start. summary.json "
-                "holds its peak velocity in dynamic stages (`monitors`)."},
+         .doc =
+             "Displacement, velocity and acceleration of the material point that is here at the start. summary.json "
+             "holds its peak velocity in dynamic stages (`monitors`). The acceleration is that of the point itself, also where "
+             "the rest is relative; steps from rest have none."},
+        {.name = "centroid",
+         .type = K::kText,
+         .refers_to = "block, grid or region",
+         .doc =
+             "The same of the centre of mass of a block or of all blocks of a group, and their rotation (mean by "
+             "mass, counter-clockwise, since the start)."},
         {.name = "relative_to",
          .type = K::kText,
          .refers_to = "support, free-field boundary, block, grid or region",
-         .doc = "With `point`: displacement and velocity less the mean ones of the points of a support or of "
-                "the blocks of that name, or less those of a free field at the height of the point."},
+         .doc =
+             "With `point` or `centroid`: displacement and velocity less the mean ones of the points of a support or of "
+             "the blocks of that name, or less those of a free field at the height of the point."},
         {.name = "relative_to_point",
          .type = K::kVector,
          .dimension = D::kLength,
-         .doc = "With `point`: less those of the material point that is here at the start."},
+         .doc = "With `point` or `centroid`: less those of the material point that is here at the start."},
         {.name = "relative_to_points",
          .type = K::kPoints,
          .dimension = D::kLength,
-         .doc = "With `point`: less the mean of those of these material points [[x, y], ...]."},
+         .doc = "With `point` or `centroid`: less the mean of those of these material points [[x, y], ...]."},
         {.name = "convergence",
          .type = K::kPoints,
          .dimension = D::kLength,
          .doc =
              "Two points [[x0, y0], [x1, y1]]: by how much they have come nearer to each other, > 0 nearer."},
+        {.name = "crack",
+         .type = K::kPoints,
+         .dimension = D::kLength,
+         .doc =
+             "Two points [[x0, y0], [x1, y1]] on either side of a crack: how far the second has moved from the first along the "
+             "line between them at the start (opening), and to the left of it (sliding)."},
+        {.name = "spectrum",
+         .type = K::kBool,
+         .default_text = "false",
+         .doc =
+             "With `point` or `centroid`: response spectra (damping 5 %, 0.02 to 5 s) of its acceleration in dynamic stages, in spectra.csv."},
         {.name = "block", .type = K::kText, .doc = "Cauchy stress of the block of this name."},
         {.name = "support",
          .type = K::kName,

@@ -49,9 +49,11 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
   if (!layout.sound || layout.blocks.empty()) return;
   for (const MonitorInput& m : model.monitors) {
     const std::string path = "monitor." + m.name;
-    if (m.kind == MonitorKind::kPoint || m.kind == MonitorKind::kConvergence)
-      check_point(layout, m.point, m.where, path, findings);
-    if (m.kind == MonitorKind::kConvergence) check_point(layout, m.other, m.where, path, findings);
+    const bool of_two = m.kind == MonitorKind::kConvergence || m.kind == MonitorKind::kCrack;
+    if (m.kind == MonitorKind::kPoint || of_two) check_point(layout, m.point, m.where, path, findings);
+    if (of_two) check_point(layout, m.other, m.where, path, findings);
+    if (m.kind == MonitorKind::kCentroid && layout.blocks_called(m.target_a).empty())
+      unknown_block(layout, m.target_a, m.where, path, findings);
     for (const Vec2 point : m.relative_to_points)
       check_point(layout, point, m.where_relative, path, findings);
     if (!m.relative_to.empty()) check_reference(model, layout, m, findings);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/record/response_spectrum.h"
 
 namespace talus {
 
@@ -23,6 +25,18 @@ void impulse_at(const auto& knots, double t, double (&out)[3]) {
   const auto& k0 = *(after - 1);
   const double s = (t - k0.time) / (k1.time - k0.time);
   for (int c = 0; c < 3; ++c) out[c] = k0.value[c] + s * (k1.value[c] - k0.value[c]);
+}
+
+const std::vector<std::string> kMotionColumns{"displacement_x [m]",    "displacement_y [m]",
+                                              "velocity_x [m/s]",      "velocity_y [m/s]",
+                                              "acceleration_x [m/s2]", "acceleration_y [m/s2]"};
+
+// Of response spectra [s].
+constexpr double kShortestPeriod = 0.02, kLongestPeriod = 5;
+constexpr int kPeriods = 100;
+
+bool is_dynamic(const Instant& i) {
+  return i.scene.model.stages[static_cast<size_t>(i.stage)].kind == StageKind::kDynamic;
 }
 
 }  // namespace
@@ -77,16 +91,42 @@ std::vector<double> step_row(const Instant& i) {
 Histories::~Histories() = default;
 
 Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::move(sink)) {
-  columns_.push_back("t [s]");
+  columns_ = {"t [s]", "dynamic_time [s]"};
+  std::vector<size_t> means;
   const BlockSet& blocks = scene.blocks;
   for (const MonitorInput& m : scene.model.monitors) {
     switch (m.kind) {
       case MonitorKind::kPoint: {
         const int block = block_of_point(scene.layout, m.point);
-        points_.push_back(
-            {block, m.point - blocks.centroid[static_cast<size_t>(block)], Reference(scene, m), 0});
-        add_columns(m.name,
-                    {"displacement_x [m]", "displacement_y [m]", "velocity_x [m/s]", "velocity_y [m/s]"});
+        points_.push_back({block, m.point - blocks.centroid[static_cast<size_t>(block)],
+                           Reference(scene, m, m.point.y), 0, nullptr});
+        if (m.spectrum) points_.back().spectrum = &spectra_.emplace_back(Spectrum{m.name, {}, {}, {}});
+        add_columns(m.name, kMotionColumns);
+        break;
+      }
+      case MonitorKind::kCentroid: {
+        Centroid c;
+        c.blocks = scene.layout.blocks_called(m.target_a);
+        double mass = 0;
+        Vec2 middle;
+        for (const int b : c.blocks) mass += blocks.mass[static_cast<size_t>(b)];
+        for (const int b : c.blocks) {
+          c.weight.push_back(blocks.mass[static_cast<size_t>(b)] / mass);
+          middle += c.weight.back() * blocks.centroid[static_cast<size_t>(b)];
+        }
+        c.reference = Reference(scene, m, middle.y);
+        if (m.spectrum) c.spectrum = &spectra_.emplace_back(Spectrum{m.name, {}, {}, {}});
+        centroids_.push_back(std::move(c));
+        add_columns(m.name, kMotionColumns);
+        add_columns(m.name, {"rotation [rad]"});
+        break;
+      }
+      case MonitorKind::kCrack: {
+        const int a = block_of_point(scene.layout, m.point), b = block_of_point(scene.layout, m.other);
+        cracks_.push_back({a, b, m.point - blocks.centroid[static_cast<size_t>(a)],
+                           m.other - blocks.centroid[static_cast<size_t>(b)],
+                           (m.other - m.point) / norm(m.other - m.point)});
+        add_columns(m.name, {"opening [m]", "sliding [m]"});
         break;
       }
       case MonitorKind::kConvergence: {
@@ -110,28 +150,88 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
       case MonitorKind::kBolt:
         add_columns(m.name, {"axial_force [N]", "shear_force [N]", "elongation [m]", "ruptured"});
         break;
-      case MonitorKind::kContact: {
-        Impulses c;
-        c.in_a.resize(static_cast<size_t>(blocks.count));
-        c.in_b.resize(static_cast<size_t>(blocks.count));
-        for (const int b : scene.layout.blocks_called(m.target_a)) c.in_a[static_cast<size_t>(b)] = 1;
-        for (const int b : scene.layout.blocks_called(m.target_b)) c.in_b[static_cast<size_t>(b)] = 1;
-        c.window = m.window;
-        add_columns(m.name, {"force_x [N]", "force_y [N]", "normal_force [N]", "impulse_x [N s]",
-                             "impulse_y [N s]", "normal_impulse [N s]"});
-        c.first_mean = columns_.size();
-        if (m.window > 0)
-          add_columns(m.name, {"mean_force_x [N]", "mean_force_y [N]", "mean_normal_force [N]"});
-        widest_ = std::max(widest_, m.window);
-        contacts_.push_back(std::move(c));
+      case MonitorKind::kContact:
+        set_up_contact(m);
+        for (size_t c = contacts_.back().first_mean; c < columns_.size(); ++c) means.push_back(c);
         break;
-      }
     }
   }
+  std::vector<size_t> asked;
+  for (size_t c = 2; c < columns_.size(); ++c)
+    if (std::find(means.begin(), means.end(), c) == means.end()) asked.push_back(c);
+  answers_ = std::make_unique<Answers>(scene, columns_, std::move(asked));
+}
+
+void Histories::set_up_contact(const MonitorInput& m) {
+  Impulses c;
+  c.in_a.resize(static_cast<size_t>(scene_.blocks.count));
+  c.in_b.resize(static_cast<size_t>(scene_.blocks.count));
+  for (const int b : scene_.layout.blocks_called(m.target_a)) c.in_a[static_cast<size_t>(b)] = 1;
+  for (const int b : scene_.layout.blocks_called(m.target_b)) c.in_b[static_cast<size_t>(b)] = 1;
+  c.window = m.window;
+  add_columns(m.name, {"force_x [N]", "force_y [N]", "normal_force [N]", "impulse_x [N s]", "impulse_y [N s]",
+                       "normal_impulse [N s]"});
+  c.first_mean = columns_.size();
+  if (m.window > 0) add_columns(m.name, {"mean_force_x [N]", "mean_force_y [N]", "mean_normal_force [N]"});
+  widest_ = std::max(widest_, m.window);
+  contacts_.push_back(std::move(c));
+}
+
+// Absolute, of the material point: what an instrument on it reads, gravity left out. A step from rest has none.
+Vec2 Histories::acceleration_of(const Instant& i, int block, Vec2 arm) {
+  const auto k = static_cast<size_t>(block);
+  const StepClock& clock = i.work.clock;
+  if (clock.from_rest || !(clock.dt_kick > 0)) return {};
+  const Vec2 acting = acting_arm(i.scene.blocks, i.state, k, arm);
+  const BlockRate& before = i.work.rate_before[k];
+  const BlockRate& after = i.state.rate[k];
+  const Mat2 G = rate_now(i.work, i.state, k).G;
+  // the arm of a block that does not deform turns with it
+  const bool turns = i.scene.blocks.kind[k] != BlockKind::kDeformable;
+  return (velocity_at(after, acting) - velocity_at(before, acting)) / clock.dt_kick +
+         (turns ? G * (G * acting) : Vec2{});
+}
+
+// Of blocks that deform that of the rotation in their deformation gradient; since the start [rad].
+double Histories::rotation_of(const State& s, int block) const {
+  const auto k = static_cast<size_t>(block);
+  if (scene_.blocks.kind[k] != BlockKind::kDeformable) return s.angle[k];
+  const Mat2& E = s.strain_part[k];
+  return std::atan2(E.yx - E.xy, 2 + E.xx + E.yy);
 }
 
 void Histories::add_columns(const std::string& name, const std::vector<std::string>& titles) {
   for (const std::string& t : titles) columns_.push_back(name + "." + t);
+}
+
+void Histories::sample_point(const Instant& instant, size_t index, std::vector<double>& row) {
+  Point& p = points_[index];
+  const PointMotion motion = motion_of(instant, p.block, p.arm), from = p.reference.at(instant);
+  const Vec2 u = motion.displacement - from.displacement, v = motion.velocity - from.velocity;
+  const Vec2 a = acceleration_of(instant, p.block, p.arm);
+  if (is_dynamic(instant)) {
+    p.peak = std::max(p.peak, norm(v));
+    if (p.spectrum) p.spectrum->add(instant.state.history_time, a);
+  }
+  row.insert(row.end(), {u.x, u.y, v.x, v.y, a.x, a.y});
+}
+
+void Histories::sample_centroid(const Instant& instant, size_t index, std::vector<double>& row) {
+  Centroid& c = centroids_[index];
+  const PointMotion from = c.reference.at(instant);
+  Vec2 u = -1 * from.displacement, v = -1 * from.velocity, a;
+  double rotation = 0;
+  for (size_t k = 0; k < c.blocks.size(); ++k) {
+    const PointMotion motion = motion_of(instant, c.blocks[k], {});
+    u += c.weight[k] * motion.displacement, v += c.weight[k] * motion.velocity;
+    a += c.weight[k] * acceleration_of(instant, c.blocks[k], {});
+    rotation += c.weight[k] * rotation_of(instant.state, c.blocks[k]);
+  }
+  if (is_dynamic(instant)) {
+    c.peak = std::max(c.peak, norm(v));
+    if (c.spectrum) c.spectrum->add(instant.state.history_time, a);
+  }
+  row.insert(row.end(), {u.x, u.y, v.x, v.y, a.x, a.y, rotation});
 }
 
 void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<double>& row) const {
@@ -152,6 +252,10 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
   const double share = instant.work.clock.from_rest ? dt / dt_kick : 1;
   if (first) c.knots.push_back({t, {0, 0, 0}});
   for (const double s : step) row.push_back(s / dt_kick);
+  if (step[2] > 0) {
+    if (c.first_touch < 0) c.first_touch = t;
+    c.last_touch = t;
+  }
   for (int k = 0; k < 3; ++k) {
     row.push_back(first ? 0 : c.sum[k] + 0.5 * share * step[k]);
     c.sum[k] += share * step[k];
@@ -174,17 +278,21 @@ void Histories::sample_bolt(const Instant& instant, const std::string& name, std
 
 void Histories::at(const Instant& instant, bool keep) {
   const State& s = instant.state;
-  std::vector<double> row{s.time};
-  size_t point = 0, pair = 0, block = 0, support = 0, contact = 0;
+  std::vector<double> row{s.time, s.history_time};
+  size_t point = 0, centroid = 0, crack = 0, pair = 0, block = 0, support = 0, contact = 0;
   for (const MonitorInput& m : scene_.model.monitors) {
     switch (m.kind) {
-      case MonitorKind::kPoint: {
-        Point& p = points_[point++];
-        const PointMotion motion = motion_of(instant, p.block, p.arm), from = p.reference.at(instant);
-        const Vec2 u = motion.displacement - from.displacement, v = motion.velocity - from.velocity;
-        if (scene_.model.stages[static_cast<size_t>(instant.stage)].kind == StageKind::kDynamic)
-          p.peak = std::max(p.peak, norm(v));
-        row.insert(row.end(), {u.x, u.y, v.x, v.y});
+      case MonitorKind::kPoint:
+        sample_point(instant, point++, row);
+        break;
+      case MonitorKind::kCentroid:
+        sample_centroid(instant, centroid++, row);
+        break;
+      case MonitorKind::kCrack: {
+        const Crack& c = cracks_[crack++];
+        const Vec2 apart = displacement_shown(s, static_cast<size_t>(c.block_b), c.arm_b) -
+                           displacement_shown(s, static_cast<size_t>(c.block_a), c.arm_a);
+        row.insert(row.end(), {dot(c.along, apart), dot(turn_left(c.along), apart)});
         break;
       }
       case MonitorKind::kConvergence:
@@ -211,6 +319,7 @@ void Histories::at(const Instant& instant, bool keep) {
         break;
     }
   }
+  answers_->at(instant, row);
   known_until_ = s.time + 0.5 * instant.advance;
   if (keep) waiting_.push_back({std::move(row), s.time + 0.5 * widest_});
   release(known_until_, false);
@@ -249,19 +358,69 @@ double Histories::nearer(const Pair& p, const State& s) {
 
 std::vector<Histories::Peak> Histories::peaks() const {
   std::vector<Peak> list;
-  for (const MonitorInput& m : scene_.model.monitors)
-    if (m.kind == MonitorKind::kPoint) list.push_back({m.name, points_[list.size()].peak});
+  size_t point = 0, centroid = 0;
+  for (const MonitorInput& m : scene_.model.monitors) {
+    if (m.kind == MonitorKind::kPoint) list.push_back({m.name, points_[point++].peak});
+    if (m.kind == MonitorKind::kCentroid) list.push_back({m.name, centroids_[centroid++].peak});
+  }
   return list;
+}
+
+std::vector<Histories::Touch> Histories::touches() const {
+  std::vector<Touch> list;
+  for (const MonitorInput& m : scene_.model.monitors) {
+    if (m.kind != MonitorKind::kContact) continue;
+    const Impulses& c = contacts_[list.size()];
+    list.push_back({m.name, c.first_touch, c.last_touch});
+  }
+  return list;
+}
+
+void Histories::Spectrum::add(double history_time, Vec2 a) {
+  time.push_back(history_time), x.push_back(a.x), y.push_back(a.y);
+}
+
+Histories::Spectra Histories::spectra() const {
+  Spectra out;
+  const std::vector<double> periods = record::spectrum_periods(kShortestPeriod, kLongestPeriod, kPeriods);
+  for (const Spectrum& s : spectra_) {
+    if (s.time.size() < 2) continue;
+    // even samples, as far apart as the closest of the run: stages may differ in their steps
+    double dt = s.time[1] - s.time[0];
+    for (size_t i = 1; i < s.time.size(); ++i) dt = std::min(dt, s.time[i] - s.time[i - 1]);
+    if (!(dt > 0)) continue;
+    if (out.columns.empty()) out.columns.push_back("period [s]"), out.values.push_back(periods);
+    const auto count = static_cast<size_t>(std::llround((s.time.back() - s.time[0]) / dt)) + 1;
+    for (const auto* a : {&s.x, &s.y}) {
+      std::vector<double> even(count);
+      size_t k = 0;
+      for (size_t i = 0; i < count; ++i) {
+        const double t = s.time[0] + static_cast<double>(i) * dt;
+        while (k + 2 < s.time.size() && s.time[k + 1] <= t) ++k;
+        const double share = std::clamp((t - s.time[k]) / (s.time[k + 1] - s.time[k]), 0.0, 1.0);
+        even[i] = (*a)[k] + share * ((*a)[k + 1] - (*a)[k]);
+      }
+      out.columns.push_back(fmt::format("{}.Sa_{} [m/s2]", s.name, a == &s.x ? "x" : "y"));
+      out.values.push_back(record::response_spectrum(even, dt, periods));
+    }
+  }
+  return out;
 }
 
 template <class X, class Self>
 void Histories::exchange(X& x, Self& self) {
   x("histories.known_until", self.known_until_);
+  for (size_t i = 0; i < self.spectra_.size(); ++i) {
+    const std::string name = fmt::format("histories.spectrum.{}.", i);
+    auto& s = self.spectra_[i];
+    x(name + "time", s.time), x(name + "x", s.x), x(name + "y", s.y);
+  }
   for (size_t i = 0; i < self.contacts_.size(); ++i) {
     const std::string name = fmt::format("histories.contact.{}", i);
     auto& c = self.contacts_[i];
     x.each(name, c.knots, [](auto& field, auto& k) { field("time", k.time), field("value", k.value); });
     x(name + ".sum", c.sum);
+    x(name + ".first_touch", c.first_touch), x(name + ".last_touch", c.last_touch);
   }
   x.each("histories.waiting", self.waiting_, [](auto& field, auto& w) { field("ready_at", w.ready_at); });
   for (size_t i = 0; i < self.waiting_.size(); ++i)
@@ -270,19 +429,28 @@ void Histories::exchange(X& x, Self& self) {
 
 void Histories::save(Saver& to) const {
   std::vector<double> peaks;
-  for (const Point& p : points_) peaks.push_back(p.peak);
+  for (const Peak& p : this->peaks()) peaks.push_back(p.velocity);
   to("histories.peaks", peaks);
   exchange(to, *this);
+  answers_->save(to);
 }
 
 void Histories::load(Loader& from) {
   std::vector<double> peaks;
   from("histories.peaks", peaks);
-  if (peaks.size() != points_.size())
-    throw FileError(
-        fmt::format("the saved state has {} peaks of monitors, not {}", peaks.size(), points_.size()));
-  for (size_t i = 0; i < peaks.size(); ++i) points_[i].peak = peaks[i];
+  const size_t moving = points_.size() + centroids_.size();
+  if (peaks.size() != moving)
+    throw FileError(fmt::format("the saved state has {} peaks of monitors, not {}", peaks.size(), moving));
+  size_t peak = 0, point = 0, centroid = 0;
+  for (const MonitorInput& m : scene_.model.monitors) {
+    if (m.kind == MonitorKind::kPoint) points_[point++].peak = peaks[peak++];
+    if (m.kind == MonitorKind::kCentroid) centroids_[centroid++].peak = peaks[peak++];
+  }
   exchange(from, *this);
+  answers_->load(from);
+  for (const Spectrum& s : spectra_)
+    if (s.x.size() != s.time.size() || s.y.size() != s.time.size())
+      throw FileError("accelerations of the saved state are not as many as their times");
   for (const Waiting& w : waiting_)
     if (w.row.size() != columns_.size())
       throw FileError(

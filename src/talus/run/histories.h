@@ -3,10 +3,12 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "talus/output/archive.h"
+#include "talus/run/answers.h"
 #include "talus/run/reference.h"
 
 namespace talus {
@@ -24,7 +26,7 @@ class Histories {
   Histories(const Scene& scene, Sink sink);
   ~Histories();
 
-  /// "t [s]", then the monitors in the order of the model.
+  /// "t [s]", "dynamic_time [s]" (spent in dynamic stages), then the monitors in the order of the model.
   const std::vector<std::string>& columns() const { return columns_; }
 
   /// To be called at every instant: impulses add up whether a row is kept or not.
@@ -36,6 +38,24 @@ class Histories {
     double velocity = 0;  // largest in dynamic stages, relative where the monitor is [m/s]
   };
   std::vector<Peak> peaks() const;
+
+  /// When the two partners of a contact monitor pressed each other first and last.
+  struct Touch {
+    std::string name;              // of the monitor
+    double first = -1, last = -1;  // [s]; -1: never
+  };
+  std::vector<Touch> touches() const;
+
+  /// Of every column but window means.
+  const Answers& answers() const { return *answers_; }
+
+  /// Response spectra (damping 5 %) of the monitors that ask for them, of their acceleration in dynamic stages:
+  /// "period [s]", then columns. Empty without such a monitor or before a dynamic stage.
+  struct Spectra {
+    std::vector<std::string> columns;
+    std::vector<std::vector<double>> values;  // [column][period]
+  };
+  Spectra spectra() const;
 
   /// Sums, impulses and rows that wait. Throws FileError when they are not those of these monitors.
   void save(Saver& to) const;
@@ -49,6 +69,7 @@ class Histories {
   struct Impulses {
     std::vector<char> in_a, in_b;  // [n_blocks] whether the block belongs to a partner
     double window = 0;
+    double first_touch = -1, last_touch = -1;  // [s]
     double sum[3] = {0, 0, 0};
     struct Knot {
       double time;
@@ -63,6 +84,11 @@ class Histories {
   };
 
   void add_columns(const std::string& name, const std::vector<std::string>& titles);
+  void set_up_contact(const MonitorInput& m);
+  static Vec2 acceleration_of(const Instant& instant, int block, Vec2 arm);
+  double rotation_of(const State& state, int block) const;
+  void sample_centroid(const Instant& instant, size_t index, std::vector<double>& row);
+  void sample_point(const Instant& instant, size_t index, std::vector<double>& row);
   void sample_contact(const Instant& instant, Impulses& impulses, std::vector<double>& row) const;
   void sample_bolt(const Instant& instant, const std::string& name, std::vector<double>& row) const;
   void release(double known_until, bool all);
@@ -70,11 +96,33 @@ class Histories {
   const Scene& scene_;
   Sink sink_;
   std::vector<std::string> columns_;
+  // accelerations of a monitor in dynamic stages, step by step
+  struct Spectrum {
+    std::string name;
+    std::vector<double> time, x, y;  // of the histories [s], [m/s2]
+
+    void add(double history_time, Vec2 acceleration);
+  };
   struct Point {
     int block;
     Vec2 arm;
     Reference reference;
     double peak = 0;  // largest velocity in dynamic stages [m/s]
+    Spectrum* spectrum = nullptr;
+  };
+  // a group of blocks, weighted by their mass
+  struct Centroid {
+    std::vector<int> blocks;
+    std::vector<double> weight;
+    Reference reference;
+    double peak = 0;
+    Spectrum* spectrum = nullptr;
+  };
+  // two points on either side of a crack
+  struct Crack {
+    int block_a, block_b;
+    Vec2 arm_a, arm_b;
+    Vec2 along;  // from the first to the second at the start, unit
   };
   // change of the distance of two points, written so that small changes keep their digits
   struct Pair {
@@ -86,12 +134,16 @@ class Histories {
   template <class X, class Self>
   static void exchange(X& x, Self& self);
 
-  std::vector<Point> points_;       // one per point monitor
-  std::vector<Pair> pairs_;         // one per convergence monitor
-  std::vector<int> blocks_;         // one per block monitor
-  std::vector<int> supports_;       // one per support monitor
-  std::vector<Impulses> contacts_;  // one per contact monitor
-  double widest_ = 0;               // largest window [s]
+  std::deque<Spectrum> spectra_;  // in the order of their monitors
+  std::unique_ptr<Answers> answers_;
+  std::vector<Centroid> centroids_;  // one per centroid monitor
+  std::vector<Crack> cracks_;        // one per crack monitor
+  std::vector<Point> points_;        // one per point monitor
+  std::vector<Pair> pairs_;          // one per convergence monitor
+  std::vector<int> blocks_;          // one per block monitor
+  std::vector<int> supports_;        // one per support monitor
+  std::vector<Impulses> contacts_;   // one per contact monitor
+  double widest_ = 0;                // largest window [s]
   double known_until_ = 0;
   std::deque<Waiting> waiting_;
 };

@@ -2,11 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
+#include "talus/base/error.h"
+
 #include "talus/contact/bonds.h"
 
 namespace talus {
 
 namespace {
+
+constexpr double kMoved = 0.1;  // of its size: a block that has gone so far is one that moved
 
 // What an edge of a block was cut along.
 std::string set_of(const Scene& scene, int block, int edge) {
@@ -107,8 +113,26 @@ std::vector<JointLine> joint_lines(const Scene& scene, const Instant& i) {
   return lines;
 }
 
+void JointSummary::look(const Scene& scene, const State& state) {
+  std::map<std::string, double> by_set;
+  for (size_t f = 0; f < state.face.size(); ++f) {
+    if (!state.face[f].broken) continue;
+    const BondFace& face = scene.bonds.faces[f];
+    broken += face.length;
+    by_set[set_of(scene, face.block_b, face.edge_b)] += face.length;
+  }
+  broken_by_set.assign(by_set.begin(), by_set.end());
+  for (int b = 0; b < scene.blocks.count; ++b) {
+    const auto k = static_cast<size_t>(b);
+    if (scene.blocks.removed(b) || norm(state.displacement[k]) < kMoved * scene.blocks.size[k]) continue;
+    moved_area += scene.blocks.size[k] * scene.blocks.size[k];
+    ++moved_blocks;
+  }
+}
+
 void JointSummary::add(const JointPoint& p) {
   ++points;
+  slip_area += p.slip * p.length;
   intact += p.state == JointState::kIntact;
   slipped += p.state == JointState::kSlipped;
   open += p.state == JointState::kOpen;
@@ -129,10 +153,28 @@ void exchange_point(auto& x, auto& p, const std::string& name) {
   x(name + ".opening", p.opening), x(name + ".rise", p.rise);
 }
 
+// More sets than this no model has: a count of a damaged state.
+constexpr size_t kMostSets = 100000;
+
+void resize_for_loading(const Loader&, auto& list, size_t count) {
+  if (count > kMostSets) throw FileError("the saved state has more joint sets than there can be");
+  list.resize(count);
+}
+void resize_for_loading(const Saver&, const auto&, size_t) {}
+
 void exchange_summary(auto& x, auto& s, const std::string& name) {
   x(name + ".time", s.time), x(name + ".points", s.points), x(name + ".intact", s.intact);
   x(name + ".slipped", s.slipped), x(name + ".open", s.open), x(name + ".widest", s.widest);
   x(name + ".slipped_joints", s.slipped_joints);
+  x(name + ".slip_area", s.slip_area), x(name + ".broken", s.broken);
+  x(name + ".moved_area", s.moved_area), x(name + ".moved_blocks", s.moved_blocks);
+  size_t sets = s.broken_by_set.size();
+  x(name + ".sets", sets);
+  resize_for_loading(x, s.broken_by_set, sets);
+  for (size_t i = 0; i < sets; ++i) {
+    x(fmt::format("{}.set.{}", name, i), s.broken_by_set[i].first);
+    x(fmt::format("{}.set.{}.length", name, i), s.broken_by_set[i].second);
+  }
   exchange_point(x, s.largest, name + ".largest");
   exchange_point(x, s.most_residual, name + ".most_residual");
 }

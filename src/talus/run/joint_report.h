@@ -50,7 +50,15 @@ struct JointSummary {
   double widest = 0;         // [m]
   int slipped_joints = 0;    // between two blocks each, as in slips.csv
   JointPoint most_residual;  // the point with the largest slip left
+  double slip_area = 0;      // sum of slip x length over points [m2]
+  double broken = 0;         // length of faces that have broken [m]
+  std::vector<std::pair<std::string, double>>
+      broken_by_set;      // by what they were cut along, "" where by nothing [m]
+  double moved_area = 0;  // of blocks that have moved by a tenth of their size or more since the start [m2]
+  int moved_blocks = 0;
 
+  /// What of the instant is no matter of points: broken faces, blocks that have moved.
+  void look(const Scene& scene, const State& state);
   void add(const JointPoint& p);
   /// Under names that begin with `name`.
   void save(Saver& to, const std::string& name) const;

@@ -311,8 +311,8 @@ Archive Recorder::archive_of(const Standing& standing, const State& state) const
 }
 
 std::string Recorder::summary_of(const RunResult& result) const {
-  return summary_text(scene_, result, notes_, block_frames_.count(), joint_summary_, histories_.peaks(),
-                      model_, audit());
+  return summary_text(scene_, result, notes_, block_frames_.count(), joint_summary_, &histories_, model_,
+                      audit());
 }
 
 void Recorder::flush_tables() {
@@ -473,6 +473,7 @@ void Recorder::write_joints(const Instant& i, int stage) {
     joints_ += joint_row(scene_, *point, name, i.state.time);
   }
   joint_summary_.time = i.state.time;
+  joint_summary_.look(scene_, i.state);
   folder_.write("joints.csv", joints_, Reach::kDisk);
 
   const std::vector<SlippedJoint> list = slipped.sorted();
@@ -487,12 +488,56 @@ std::optional<audit::Report> Recorder::audit() const {
   return auditor_ ? std::optional(auditor_->report()) : std::nullopt;
 }
 
+namespace {
+
+nlohmann::ordered_json monitor_numbers(const Scene& scene, const Histories& histories) {
+  nlohmann::ordered_json j = nlohmann::ordered_json::object();
+  for (const Histories::Peak& p : histories.peaks()) j[p.name]["peak_velocity [m/s]"] = p.velocity;
+  for (const Histories::Touch& t : histories.touches()) {
+    if (t.first < 0) continue;
+    j[t.name]["first_touch [s]"] = t.first, j[t.name]["last_touch [s]"] = t.last;
+  }
+  const Answers& answers = histories.answers();
+  for (const Answers::Stage& s : answers.stages()) {
+    const StageInput& stage = scene.model.stages[static_cast<size_t>(s.stage)];
+    for (size_t k = 0; k < answers.titles().size(); ++k) {
+      const ColumnTitle title = parts_of_title(answers.titles()[k]);
+      const Answer& a = s.asked[k];
+      j[title.monitor]["stages"][stage.name]
+       [title.quantity + (title.unit.empty() ? "" : " [" + title.unit + "]")] = {
+           {"at_start", a.at_start},
+           {"at_end", a.at_end},
+           {"least", a.least},
+           {"time_of_least [s]", a.time_of_least},
+           {"greatest", a.greatest},
+           {"time_of_greatest [s]", a.time_of_greatest},
+           {"residual", a.residual(stage.kind == StageKind::kDynamic)}};
+    }
+  }
+  return j;
+}
+
+std::string spectra_csv(const Histories::Spectra& spectra) {
+  std::string out = fmt::format("{}\n", fmt::join(spectra.columns, ","));
+  for (size_t row = 0; row < spectra.values[0].size(); ++row) {
+    for (size_t c = 0; c < spectra.values.size(); ++c)
+      out += fmt::format("{}{:.17g}", c == 0 ? "" : ",", spectra.values[c][row]);
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
 void Recorder::finish(const RunResult& result) {
   const std::lock_guard lock(taking_);
   if (ended_) return;
   histories_.finish();
   flush_tables();
   if (!result.failure.empty()) write_held();
+  folder_.write("monitors.csv", histories_.answers().csv(), Reach::kDisk);
+  if (const Histories::Spectra spectra = histories_.spectra(); !spectra.columns.empty())
+    folder_.write("spectra.csv", spectra_csv(spectra), Reach::kDisk);
   folder_.write("summary.json", summary_of(result), Reach::kDisk);
   ended_ = true;
 }
@@ -594,8 +639,8 @@ nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<aud
 }  // namespace
 
 std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes& notes, int frames,
-                         const JointSummary& joints, const std::vector<Histories::Peak>& peaks,
-                         const std::string& model, const std::optional<audit::Report>& audit) {
+                         const JointSummary& joints, const Histories* histories, const std::string& model,
+                         const std::optional<audit::Report>& audit) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -649,6 +694,11 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
         {"y [m]", p.point.y},
         {"blocks", {b.name[static_cast<size_t>(p.block_a)], b.name[static_cast<size_t>(p.block_b)]}}};
   };
+  j["joints"]["slip_times_length [m2]"] = joints.slip_area;
+  j["joints"]["broken_length [m]"] = joints.broken;
+  for (const auto& [set, length] : joints.broken_by_set)
+    j["joints"]["broken_length_by_set [m]"][set] = length;
+  j["moved"] = {{"blocks", joints.moved_blocks}, {"area [m2]", joints.moved_area}};
   if (joints.largest.slip > 0) j["joints"]["slip_largest_at"] = where(joints.largest);
   j["joints"]["slipped_joints"] = joints.slipped_joints;
   if (joints.slipped_joints > 0) {
@@ -705,7 +755,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   energy["left_over_largest"] = r.largest_left_over;
   energy["term_largest"] = r.largest_energy;
   j["energy_closure"] = r.closure();
-  for (const Histories::Peak& p : peaks) j["monitors"][p.name]["peak_velocity [m/s]"] = p.velocity;
+  if (histories) j["monitors"] = monitor_numbers(scene, *histories);
   j["frames"] = frames;
   j["wall_time [s]"] = r.wall_seconds;
   j["cpu_time [s]"] = r.cpu_seconds;

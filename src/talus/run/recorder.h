@@ -148,7 +148,7 @@ class Recorder : public Observer {
 /// Text of summary.json.
 /// @param model  model_in_numbers() of the scene as it began, as text
 std::string summary_text(const Scene& scene, const RunResult& result, const RunNotes& notes, int frames,
-                         const JointSummary& joints = {}, const std::vector<Histories::Peak>& peaks = {},
+                         const JointSummary& joints = {}, const Histories* histories = nullptr,
                          const std::string& model = "{}",
                          const std::optional<audit::Report>& audit = std::nullopt);
 

@@ -8,7 +8,7 @@ PointMotion motion_of(const Instant& i, int block, Vec2 arm) {
           velocity_at(rate_now(i.work, i.state, k), acting_arm(i.scene.blocks, i.state, k, arm))};
 }
 
-Reference::Reference(const Scene& scene, const MonitorInput& m) : height_(m.point.y) {
+Reference::Reference(const Scene& scene, const MonitorInput& m, double height) : height_(height) {
   const BlockSet& blocks = scene.blocks;
   for (const Vec2 point : m.relative_to_points) {
     const int block = block_of_point(scene.layout, point);

@@ -20,7 +20,8 @@ class Reference {
  public:
   Reference() = default;  // absolute
   /// @pre  the places that the monitor names have been checked
-  Reference(const Scene& scene, const MonitorInput& monitor);
+  /// @param height  at which a free field is looked at [m]
+  Reference(const Scene& scene, const MonitorInput& monitor, double height);
   /// Its motion now; zero where the monitor is absolute. The velocity of a free field is half a step late.
   PointMotion at(const Instant& instant) const;
 

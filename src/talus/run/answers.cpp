@@ -1,0 +1,103 @@
+#include "talus/run/answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/base/error.h"
+#include "talus/output/text_table.h"
+
+namespace talus {
+
+namespace {
+
+constexpr double kTail = 0.1;  // of a dynamic stage, over which what is left is the mean
+
+}  // namespace
+
+ColumnTitle parts_of_title(const std::string& title) {
+  const size_t dot = title.find('.'), bracket = title.find(" [");
+  ColumnTitle out;
+  out.monitor = dot == std::string::npos ? "" : title.substr(0, dot);
+  const size_t from = dot == std::string::npos ? 0 : dot + 1;
+  out.quantity = title.substr(from, bracket == std::string::npos ? bracket : bracket - from);
+  if (bracket != std::string::npos) out.unit = title.substr(bracket + 2, title.size() - bracket - 3);
+  return out;
+}
+
+Answers::Answers(const Scene& scene, std::vector<std::string> columns, std::vector<size_t> asked)
+    : scene_(scene), asked_(std::move(asked)) {
+  for (const size_t c : asked_) titles_.push_back(columns[c]);
+}
+
+void Answers::at(const Instant& i, const std::vector<double>& row) {
+  const double t = i.state.time;
+  const bool first = stages_.empty() || stages_.back().stage != i.stage;
+  if (first) {
+    const double length = i.plan.dt * static_cast<double>(i.plan.steps);
+    stages_.push_back({i.stage, t + (1 - kTail) * length, {}});
+  }
+  Stage& stage = stages_.back();
+  const bool tail = t >= stage.tail_begin - 1e-6 * i.plan.dt;
+  stage.asked.resize(asked_.size());
+  for (size_t k = 0; k < asked_.size(); ++k) {
+    const double value = row[asked_[k]];
+    Answer& a = stage.asked[k];
+    if (first) a.at_start = value;
+    if (first || value < a.least) a.least = value, a.time_of_least = t;
+    if (first || value > a.greatest) a.greatest = value, a.time_of_greatest = t;
+    if (tail) a.tail += value, a.tail_steps += 1;
+    a.at_end = value;
+  }
+}
+
+std::string Answers::csv() const {
+  std::string out =
+      "monitor,quantity,unit,stage,at_start,at_end,least,time_of_least [s],greatest,time_of_greatest [s],residual\n";
+  for (const Stage& s : stages_) {
+    const StageInput& stage = scene_.model.stages[static_cast<size_t>(s.stage)];
+    for (size_t k = 0; k < titles_.size(); ++k) {
+      const ColumnTitle title = parts_of_title(titles_[k]);
+      const Answer& a = s.asked[k];
+      const double left = a.residual(stage.kind == StageKind::kDynamic);
+      out += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n",
+                         table_cell(title.monitor), title.quantity, title.unit, table_cell(stage.name),
+                         a.at_start, a.at_end, a.least, a.time_of_least, a.greatest, a.time_of_greatest,
+                         std::isnan(left) ? "" : fmt::format("{:.17g}", left));
+    }
+  }
+  return out;
+}
+
+template <class X, class Self>
+void Answers::exchange(X& x, Self& self, size_t count) {
+  for (size_t i = 0; i < count; ++i) {
+    const std::string name = fmt::format("answers.{}.", i);
+    x(name + "stage", self.stages_[i].stage), x(name + "tail_begin", self.stages_[i].tail_begin);
+    x(name + "asked", self.stages_[i].asked);
+  }
+}
+
+void Answers::save(Saver& to) const {
+  to("answers.stages", stages_.size());
+  exchange(to, *this, stages_.size());
+}
+
+void Answers::load(Loader& from) {
+  size_t count = 0;
+  from("answers.stages", count);
+  if (count > scene_.model.stages.size())
+    throw FileError("the saved state has answers of more stages than there are");
+  stages_.assign(count, {});
+  exchange(from, *this, count);
+  int before = -1;
+  for (const Stage& s : stages_) {
+    if (s.stage <= before || s.stage >= static_cast<int>(scene_.model.stages.size()) ||
+        s.asked.size() != asked_.size())
+      throw FileError("the answers of the saved state are not those of these monitors and stages");
+    before = s.stage;
+  }
+}
+
+}  // namespace talus

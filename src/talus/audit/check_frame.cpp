@@ -29,6 +29,8 @@ constexpr double kLawSlack = 1e-3;
 // elastic normal force against stiffness x overlap: a closure that is linear along a face, one end of which
 // has opened, is off by up to 2
 constexpr double kNormalWarns = 2, kNormalInvalid = 4;
+constexpr double kBeside = 0.1;     // of the smaller block: where what a corner stands on ends near it
+constexpr double kOtherWay = 0.9;   // cosine of the angle between normals of two sides of a corner, at most
 constexpr double kAlongside = 0.1;  // sides that make an interface are antiparallel within [rad]
 
 struct Pair {
@@ -387,6 +389,7 @@ class Check {
           std::max(std::abs(o.gap), std::abs(s.gap)) < 0.1 * kFace * size)
         return;
     }
+    if (stands_before_step(p, s)) return;
     double overlap = std::max(s.depth, std::abs(s.gap)) + kPlace * size;
     for (const Neighbour& n : neighbours_[a])
       overlap = std::max(overlap, closure_near(n.pair, s.place, 0.02 * size));
@@ -424,6 +427,29 @@ class Check {
                             "covers (normal {:.2g}, {:.2g})",
                             rules_.names[a], p.normal_force, rules_.names[static_cast<size_t>(p.block_b)],
                             s.normal.x, s.normal.y)));
+  }
+
+  // Whether a corner stands before a side and not over its end: further from the ends than anything beside it that
+  // its block bears on the other way has closed, twice. What is level with the side under a closed joint presses back by
+  // that closure, so a corner deeper than that came from the front.
+  bool stands_before_step(const Point& p, const Seen& s) const {
+    const Polygon& b = polygon(p.block_b);
+    const auto e = static_cast<size_t>(p.edge), next = (e + 1) % b.size();
+    const double size = size_of(p.block_a, p.block_b);
+    const Vec2 side = turn_left(s.normal);
+    const double below =
+        std::min(std::abs(dot(side, s.place - b[e])), std::abs(dot(side, s.place - b[next])));
+    double floor = rules_.slop * size + rules_.tolerance;
+    for (const Neighbour& n : neighbours_[static_cast<size_t>(p.block_a)]) {
+      const Pair& q = pairs_[static_cast<size_t>(n.pair)];
+      for (int k = q.begin; k < q.end; ++k) {
+        const Seen& other = seen_[static_cast<size_t>(order_[static_cast<size_t>(k)])];
+        if (std::abs(dot(other.normal, s.normal)) > kOtherWay || norm(other.place - s.place) > kBeside * size)
+          continue;
+        floor = std::max(floor, other.depth);
+      }
+    }
+    return below > 2 * (floor + kPlace * size);
   }
 
   // Blocks near two others that are one body with the first, bond by bond, itself included.

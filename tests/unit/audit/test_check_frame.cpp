@@ -193,6 +193,8 @@ TEST_CASE("audit: a corner on a side that the next block covers is not valid") {
             box_polygon(-1, 1 - depth, d, 2)});
     c.add(2, 1, 1, 3, -d, 1e5);
     c.add(2, 0, 0, 2, -depth, 1e5);
+    c.add(0, 2, 2, 0, -depth, 1e5);  // the other end of what they share
+    c.pair_last_two();
     return c.look();
   };
   CHECK(has(stack(0, 0, 1e-5), Defect::kCoveredSide, true));
@@ -200,6 +202,21 @@ TEST_CASE("audit: a corner on a side that the next block covers is not valid") {
   // a real step of 1 mm, and a corner that has fallen 1 cm into a gap of 1 cm
   CHECK(!has(stack(0, 1e-3, 0), Defect::kCoveredSide, true));
   CHECK(!has(stack(0.01, 0, 0.01), Defect::kCoveredSide, true));
+
+  // level blocks, and a closure that is deeper than a hair gap: still no way out
+  CHECK(has(stack(0, 0, 1e-3), Defect::kCoveredSide, true));
+  // a step of 3 mm beside a slot of 11 mm, and a corner on a soft joint that has gone into its side by 6 mm: it stands
+  // before the step, though that is lower than the corner is deep, since the floor has closed by 30 um only
+  const auto before_step = [](double step) {
+    Case c(
+        {box_polygon(-1, 0, -0.011, 1), box_polygon(0, 0, 1, 1 + step), box_polygon(-1, 1 - 3e-5, 6e-3, 2)});
+    c.add(2, 1, 1, 3, -6e-3, 1e5);
+    c.add(2, 0, 0, 2, -3e-5, 1e5);
+    c.add(0, 2, 2, 0, -3e-5, 1e5);
+    c.pair_last_two();
+    return c.look();
+  };
+  CHECK(!has(before_step(3e-3), Defect::kCoveredSide, true));
 
   // the top of 1, on the other hand, is its way out
   Case c({box_polygon(-1, 0, 0, 1), box_polygon(0, 0, 1, 1), box_polygon(-1, 1 - d, d, 2)});

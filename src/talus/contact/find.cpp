@@ -33,6 +33,12 @@ constexpr double kLongStretch = 5000, kLongerThanDeep = 20;
 // degrees.
 constexpr double kWedge = 0.25;
 
+// A short stretch keeps this share of its length, so that it has a stiffness.
+constexpr double kLeastStretch = 1e-3;
+
+// An edge that goes down from a side by less than this (sine) does not end it.
+constexpr double kSteep = 0.1;
+
 // Sides within this angle (sine) all but lie along each other.
 constexpr double kNearly = 0.3;
 
@@ -113,6 +119,20 @@ void ContactSearch::Outline::take(const BlockSet& blocks, const State& state, in
 int ContactSearch::Outline::side_of(int e) const {
   for (int steps = 0; steps < count && flat[static_cast<size_t>(e)]; ++steps) e = before(e);
   return e;
+}
+
+// How much further than its corner `v` a straight side reaches at this depth below it: by how the other edge of the corner
+// leans.
+double ContactSearch::Outline::leans(int v, int side, double depth) const {
+  const bool after_it = side_of(v) == side, before_it = side_of(before(v)) == side;
+  if (after_it == before_it) return 0;  // a flat corner, or none of this side
+  const auto own = static_cast<size_t>(after_it ? v : before(v)),
+             other = static_cast<size_t>(after_it ? before(v) : v);
+  const Vec2 outwards = (after_it ? -edge[own] : edge[own]) / length[own];
+  const Vec2 away = (after_it ? -edge[other] : edge[other]) / length[other],
+             down = turn_left(edge[own]) / length[own];
+  const double sinks = dot(away, down);
+  return sinks < kSteep ? 0 : depth * dot(away, outwards) / sinks;
 }
 
 // The last edge of the straight side that an edge belongs to.
@@ -542,7 +562,17 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         ContactPoint &x = hits_[i].point, &y = hits_[j].point;
         const Vec2 px = place(hits_[i]), py = place(hits_[j]), middle = 0.5 * (px + py);
         const auto side = static_cast<size_t>(span.side_lo);
-        const double length = std::abs(dot(px - py, lo.edge[side])) / lo.length[side];
+        double length = std::abs(dot(px - py, lo.edge[side])) / lo.length[side];
+        // two corners that have gone into each other: what they share ends where their other edges cross it
+        if (const double deep = -0.5 * (x.gap + y.gap); length < kLongerThanDeep * deep) {
+          double rest = length;
+          for (const ContactPoint* end : {&x, &y}) {
+            const bool of_lo = end->key.block_a == lo.block;
+            rest += (of_lo ? lo : hi).leans(end->key.vertex, of_lo ? span.side_lo : span.side_hi, 0.5 * deep);
+          }
+          length = std::max(rest, kLeastStretch * length);
+          found_.this_step_only = true;
+        }
         // one partner each; what is left of a face whose other end has one goes to the free end
         const bool both = x.partner < 0 && y.partner < 0;
         if (both) {

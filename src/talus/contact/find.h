@@ -96,6 +96,7 @@ class ContactSearch {
     void take(const BlockSet& blocks, const State& state, int i);
     int before(int k) const { return k == 0 ? count - 1 : k - 1; }
     int after(int k) const { return k + 1 == count ? 0 : k + 1; }
+    double leans(int v, int side, double depth) const;
     int side_of(int edge) const;
     int last_of(int edge) const;
     int edge_beside(int first, Vec2 place) const;

@@ -12,6 +12,7 @@
 
 #include "support/block_scene.h"
 #include "talus/contact/contact_rows.h"
+#include "talus/geometry/polygon_check.h"
 #include "talus/step/scene.h"
 
 namespace test_find {
@@ -465,6 +466,36 @@ TEST_CASE("two blocks that a gap keeps apart at a crossing of joints do not touc
   }
   CHECK(apart > 1000);
   CHECK(inside > 100);
+}
+
+TEST_CASE(
+    "two corners that have gone deep into each other share the length that their polygons overlap along") {
+  // blocks of steep joints that lean by 5 degrees against the normal of the bedding; the right one has come 8 mm to the
+  // left and stands so high that their corners share a stretch of `high` at the common side
+  const double lean = std::tan(5 * std::acos(-1) / 180), deep = 8e-3;
+  for (const double high : {0.9e-3, 1.5e-3, 4e-3, 20e-3}) {
+    const Polygon left{{-1, -1}, {0, -1 - lean}, {0, 0}, {-1, lean}};
+    // its lower left corner at (-deep, -high): the bottom falls to the right as the top of the left block does
+    const Polygon right{{-deep, -high}, {1 - deep, -high - lean}, {1 - deep, 1}, {-deep, 1}};
+    const Overlap common = polygon_overlap(left, right);
+    REQUIRE(common.area > 0);
+    double length = 0;
+    // they have met at their steep sides, and stay there
+    std::vector<Contact> known(2);
+    known[0].key = {0, 2, 1, 3}, known[1].key = {1, 0, 0, 1};
+    for (Contact& c : known) c.force[0] = 1, c.memory = Contact::kWhole;
+    const Scene scene = scene_of({left, right});
+    SearchRange range;
+    range.margin = range.depth = kMargin, range.known = known;
+    ContactSearch search;
+    for (const ContactPoint& c : search.touch(scene.blocks, start_state(scene), 0, 1, range).points) {
+      if (std::abs(c.normal.x) < 0.9) continue;
+      CHECK(c.gap == doctest::Approx(-deep).epsilon(1e-12));
+      length += c.length;
+    }
+    // the mean length over the depth: exact for a parallelogram
+    CHECK(length * deep == doctest::Approx(common.area).epsilon(1e-9));
+  }
 }
 
 }  // namespace test_find

@@ -18,6 +18,7 @@ struct Instant {
   int stage = 0;
   bool stage_start = false;
   bool last = false;  // no step follows
+  int64_t steps_before = 0;  // of this stage, also before a run went on from a saved state
 };
 
 /// Receives the instants of a run in order.

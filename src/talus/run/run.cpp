@@ -154,7 +154,7 @@ class Runner {
       StepReport report = stage.from_rest ? from_rest.kick(stage, out.begin, plan.dt, settings_, advance)
                                           : kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance / plan.dt_bound);
-      show({scene_, state_, work_, report, plan, advance, index, n == 0, false});
+      show({scene_, state_, work_, report, plan, advance, index, n == 0, false, n});
       go_on_or_fail(index, n, advance, report);
       ++out.steps;
       if (stage.from_rest)
@@ -197,7 +197,7 @@ class Runner {
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
-      observer_.fails({scene_, state_, work_, report, plan, advance, index, n == 0, true});
+      observer_.fails({scene_, state_, work_, report, plan, advance, index, n == 0, true, n});
       throw;
     }
   }

@@ -29,9 +29,11 @@
 #include "run_command.h"
 #include "safety_command.h"
 #include "signals.h"
+#include "study_command.h"
 #include "talus/base/memory_reserve.h"
 #include "talus/base/text.h"
 #include "talus/model/schema.h"
+#include "talus/study/study.h"
 #include "talus/talus.h"
 #include "tell.h"
 #include "verify_command.h"
@@ -115,6 +117,11 @@ int verb_of_line(int argc, char** argv) {
       ->capture_default_str();
   safety_verb->footer("Example: talus safety examples/toppling/toppling.toml -o out/toppling");
 
+  talus::app::StudyArguments study;
+  CLI::App* study_verb =
+      app.add_subcommand("study", "run a model many times, with keys that vary: tables, fragility, one page");
+  talus::app::add_study_arguments(*study_verb, study);
+
   talus::app::NewArguments start;
   CLI::App* new_verb = app.add_subcommand("new", "write a small commented model that runs as it is");
   talus::app::add_new_arguments(*new_verb, start);
@@ -149,7 +156,9 @@ int verb_of_line(int argc, char** argv) {
   talus::app::add_replay_arguments(*replay_verb, problem);
 
   CLI::App* schema_verb = app.add_subcommand("schema", "print every section and key of the model file");
+  bool of_studies = false;
   schema_verb->add_flag("--json", json, "as JSON Schema, for editors");
+  schema_verb->add_flag("--study", of_studies, "of the study file");
 
   schema_verb->footer("Example: talus schema | less");
 
@@ -192,6 +201,7 @@ int verb_of_line(int argc, char** argv) {
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
   if (*safety_verb) return talus::app::safety_command(model, folder, force, how.threads);
+  if (*study_verb) return talus::app::study_command(study);
   if (*replay_verb) return talus::app::replay_command(problem);
   if (*record_verb) return talus::app::record_command(record);
   if (*report_verb) return talus::app::report_command(report);
@@ -202,7 +212,9 @@ int verb_of_line(int argc, char** argv) {
     fmt::print("{}", *man_verb ? talus::app::manual_page(app) : talus::app::completion_script(app, shell));
     return talus::kExitOk;
   }
-  fmt::print("{}", json ? talus::schema_json() : talus::schema_markdown());
+  fmt::print("{}", of_studies ? talus::study::study_markdown()
+                   : json     ? talus::schema_json()
+                              : talus::schema_markdown());
   return talus::kExitOk;
 }
 

@@ -8,6 +8,7 @@
 
 #include "signals.h"
 #include "talus/base/name.h"
+#include "talus/base/text.h"
 #include "talus/run/base_report.h"
 #include "talus/run/progress.h"
 #include "talus/run/resolution.h"
@@ -72,6 +73,17 @@ Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const st
   return {std::move(result), signals.asked()};
 }
 
+// Number of stages up to the one of this name.
+size_t stages_until(const Model& model, const std::string& name) {
+  std::vector<std::string> names;
+  for (const StageInput& stage : model.stages) {
+    names.push_back(stage.name);
+    if (stage.name == name) return names.size();
+  }
+  throw Error(kExitUsage,
+              fmt::format("--until: there is no stage \"{}\"; there is {}", name, join_or(names)));
+}
+
 }  // namespace
 
 void add_run_arguments(CLI::App& verb, RunArguments& args) {
@@ -80,6 +92,8 @@ void add_run_arguments(CLI::App& verb, RunArguments& args) {
       "--from", args.from,
       "go on from a saved state, FOLDER/saved/*.h5, in the folder it lies in; with -o, branch off into another, "
       "where what begins later may differ");
+  verb.add_option("--until", args.until,
+                  "end after this stage; its saved state is for branches and for going on");
   verb.add_flag("--force", args.force, "replace the results of an earlier run in that folder");
   verb.add_flag("-q,--quiet", args.quiet, "say nothing but errors");
   verb.add_option("--threads", args.threads,
@@ -101,6 +115,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
   if (args.from.empty() || branches) check_result_folder(args.folder, args.force);
   auto [findings, prepared] = prepare_model(model);
+  if (!args.until.empty()) prepared.plans.resize(stages_until(prepared.scene.model, args.until));
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
   if (!out) throw FileError("/dev/null: cannot be opened");
   std::optional<ResultFolder> folder;
@@ -115,6 +130,9 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   }
   // threads: after the state was read, by a copy of this process, which must have none; and before any result is
   // touched, since the system may refuse them
+  if (saved && saved->standing.result.stages.size() > prepared.plans.size())
+    throw Error(kExitUsage,
+                fmt::format("--until: stage \"{}\" had ended when that state was saved", args.until));
   const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
   StopSignals signals;
   if (!folder) folder.emplace(args.folder, args.force);

@@ -28,6 +28,7 @@ ALLOWED = {
     "run": "base geometry record model cut blocks rows contact supports solve step output audit",
     "plot": "base geometry record model maps cut output",
     "report": "base geometry output",
+    "study": "base geometry model record output plot",
 }
 
 

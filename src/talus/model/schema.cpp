@@ -213,9 +213,9 @@ const SectionSpec& section_spec(std::string_view name) {
   fail_assertion("the section is in the schema", __FILE__, __LINE__);
 }
 
-std::string schema_markdown() {
+std::string sections_markdown(const std::vector<SectionSpec>& sections) {
   std::string out;
-  for (const SectionSpec& s : model_schema()) {
+  for (const SectionSpec& s : sections) {
     if (s.shape == SectionShape::kFree) {
       out += fmt::format("### {}\n\n{}\n\n", heading(s), s.doc);
       continue;
@@ -232,6 +232,11 @@ std::string schema_markdown() {
     }
     out += "\n";
   }
+  return out;
+}
+
+std::string schema_markdown() {
+  std::string out = sections_markdown(model_schema());
   out += "### Units\n\n| quantity | units (SI first) |\n|---|---|\n";
   for (int d = static_cast<int>(D::kLength); d <= static_cast<int>(D::kLineForce); ++d) {
     const std::string text = describe(static_cast<D>(d));

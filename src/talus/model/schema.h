@@ -79,6 +79,9 @@ const std::vector<SectionSpec>& model_schema();
 /// @pre the section exists
 const SectionSpec& section_spec(std::string_view name);
 
+/// Markdown tables of sections and their keys.
+std::string sections_markdown(const std::vector<SectionSpec>& sections);
+
 /// Markdown tables of all sections, keys and units (a generated part of docs/file_format.md).
 std::string schema_markdown();
 

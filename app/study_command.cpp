@@ -1,0 +1,276 @@
+#include "study_command.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "talus/base/parallel.h"
+#include "talus/base/text.h"
+#include "talus/base/text_file.h"
+#include "talus/base/version.h"
+#include "talus/model/variables.h"
+#include "talus/output/files.h"
+#include "talus/run/branch.h"
+#include "talus/run/histories.h"
+#include "talus/study/answers.h"
+#include "talus/study/figures.h"
+#include "talus/study/runner.h"
+#include "talus/talus.h"
+#include "tell.h"
+
+namespace talus::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+volatile std::sig_atomic_t asked_to_stop = 0;
+
+// Ctrl-C and kill: runs on the way are given up, and made anew when the study is started again.
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int signal) { asked_to_stop = signal; };  // no SA_RESTART: waiting is to end
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+}
+
+std::string own_path() {
+  std::error_code ec;
+  const fs::path self = fs::read_symlink("/proc/self/exe", ec);
+  if (ec) throw FileError(fmt::format("/proc/self/exe: cannot be read: {}", ec.message()));
+  return self.string();
+}
+
+study::Study read(const std::string& file, const std::string& text) {
+  Findings findings(file, text);
+  study::Study found = study::read_study(file, text, findings);
+  findings.throw_if_errors();
+  if (findings.warning_count() > 0) tell(findings.render());
+  return found;
+}
+
+// The study of a folder: its text, with paths from where it came from.
+study::Study read(const study::StudyFolder& folder) {
+  return read(folder.study_origin(), read_text_file(folder.study_file()));
+}
+
+// Text of the model with overrides, as run folders keep it.
+std::string with_overrides(std::string text, const std::vector<std::string>& overrides) {
+  for (const std::string& item : overrides) text += "\n# --set " + item;
+  return text;
+}
+
+// Which runs have static stages in common, that come first.
+study::StudyFolder::Sharing sharing_of(const study::Study& s, const std::vector<study::PlannedRun>& plan,
+                                       const Model& model) {
+  study::StudyFolder::Sharing sharing;
+  std::vector<std::string> begun;
+  for (const StageInput& stage : model.stages) {
+    if (stage.kind != StageKind::kStatic) break;
+    begun.push_back(stage.name);
+  }
+  if (!s.share || begun.empty() || begun.size() == model.stages.size()) return sharing;
+  const std::string text = read_text_file(s.model);
+  // an axis is of the later part when another value of it changes nothing that came before
+  std::vector<bool> later(s.axes.size());
+  for (size_t a = 0; a < s.axes.size(); ++a) {
+    std::vector<std::string> one = plan[0].overrides, other = one;
+    const size_t at = s.set.size() + a;
+    const auto different = std::find_if(
+        plan.begin(), plan.end(), [&](const study::PlannedRun& r) { return r.overrides[at] != one[at]; });
+    if (different == plan.end()) continue;
+    other[at] = different->overrides[at];
+    const ModelKeys now = keys_in_force(with_overrides(text, one)),
+                    before = keys_in_force(with_overrides(text, other));
+    const BranchKeys keys = branch_keys(now, before, begun, false, !model.bolts.empty());
+    // what solves the steps tells in the stages before
+    later[a] = keys.earlier.empty() &&
+               std::none_of(keys.later.begin(), keys.later.end(),
+                            [](const KeyDifference& d) { return d.key.rfind("solver.", 0) == 0; });
+  }
+  if (std::none_of(later.begin(), later.end(), [](bool l) { return l; })) return sharing;
+  sharing.until = begun.back();
+  for (const study::PlannedRun& run : plan) {
+    std::vector<std::string> of_parent = plan[0].overrides;
+    std::string name;
+    for (size_t a = 0; a < s.axes.size(); ++a) {
+      const size_t at = s.set.size() + a;
+      if (later[a]) continue;
+      of_parent[at] = run.overrides[at];
+      name += run.overrides[at] + "\n";
+    }
+    sharing.group.push_back(text_hash(name));
+    sharing.group_overrides.push_back(std::move(of_parent));
+  }
+  if (std::set<std::string>(sharing.group.begin(), sharing.group.end()).size() == plan.size()) return {};
+  return sharing;
+}
+
+void show_progress(const study::Progress& p, bool terminal, bool quiet) {
+  static double last = -1e9;
+  const double now = wall_now();
+  if (quiet || (p.done < p.all && now - last < (terminal ? 0.2 : 10))) return;
+  last = now;
+  const std::string to_go = p.to_go > 0 ? fmt::format(", {} to go", readable_seconds(p.to_go)) : "";
+  fmt::print("{}  {} of {} done, {} running, {} failed{}{}", terminal ? "\r\x1b[K" : "", p.done, p.all,
+             p.running, p.failed, to_go, terminal ? "" : "\n");
+  if (terminal && p.done == p.all) fmt::print("\n");
+  std::fflush(stdout);
+}
+
+int run_here(const study::StudyFolder& folder, const study::Study& s, const std::vector<int>& numbers,
+             int jobs, bool quiet) {
+  folder.clean();
+  stop_on_signals();
+  study::Runner runner(folder, {own_path(), jobs, s.keep_all, s.report});
+  const bool terminal = isatty(fileno(stdout)) != 0;
+  runner.run(
+      numbers, [&](const study::Progress& p) { show_progress(p, terminal, quiet); },
+      [] { return asked_to_stop != 0; });
+  return asked_to_stop != 0 ? kExitSignal + asked_to_stop : kExitOk;
+}
+
+int gather(const study::StudyFolder& folder, const study::Study& s,
+           const std::vector<study::PlannedRun>& plan, bool quiet) {
+  const study::Gathered found = study::gather(s, plan, folder);
+  study::write_results(s, found, folder);
+  if (!quiet)
+    show("{}written to {}: results.csv, study.html, figures/\n", study::gathered_text(s, found),
+         folder.path().string());
+  return kExitOk;
+}
+
+// What a program prints; "" when it cannot be run.
+std::string output_of(const std::string& command) {
+  std::FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return "";
+  std::string out;
+  char part[4096];
+  for (size_t n; (n = std::fread(part, 1, sizeof(part), pipe)) > 0;) out.append(part, n);
+  const int status = pclose(pipe);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? out : "";
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+int submit_to_slurm(const study::StudyFolder& folder, const StudyArguments& args) {
+  constexpr int kDefaultArray = 1001;  // of Slurm
+  int most = kDefaultArray;
+  const std::string config = output_of("scontrol show config 2>/dev/null");
+  if (const size_t at = config.find("MaxArraySize"); at != std::string::npos)
+    most = std::max(2, std::atoi(config.c_str() + config.find('=', at) + 1));
+  const int all = folder.planned(), elements = std::min(all, most - 1),
+            pack = (all + elements - 1) / elements;
+  const int used = (all + pack - 1) / pack;
+  const fs::path root = fs::absolute(folder.path()).lexically_normal();
+  std::string script = "#!/bin/sh\n# runs of a study, " +
+                       fmt::format("{} to an element; those that are done are passed over\n", pack);
+  script += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n#SBATCH --output={}/work/slurm-%A_%a.txt\n",
+                        used - 1, root.string());
+  script += fmt::format("exec {} study task {} $((SLURM_ARRAY_TASK_ID * {})) --count {}\n",
+                        quoted(own_path()), quoted(root.string()), pack, pack);
+  write_file(root / "slurm.sh", script);
+  const std::string said =
+      output_of(fmt::format("sbatch --parsable {} {}", args.sbatch, quoted((root / "slurm.sh").string())));
+  if (said.empty())
+    throw FileError(
+        fmt::format("sbatch could not be run, or refused {}/slurm.sh; its message is above", root.string()));
+  show("job {}: {} runs in {} array elements of {}\nwhen they have ended, or before: talus study gather {}\n",
+       said.substr(0, said.find_first_of("\r\n;")), all, used, pack, folder.path().string());
+  return kExitOk;
+}
+
+int begin_study(const StudyArguments& args) {
+  if (args.file.empty() || args.folder.empty())
+    throw Error(
+        kExitUsage,
+        "study needs STUDY.toml and -o FOLDER; talus study task and talus study gather need the folder");
+  const study::Study s = read(args.file, read_text_file(args.file));
+  const std::vector<study::PlannedRun> plan = study::plan_runs(s);
+  // the first run as it will be: what is wrong with the model, or with names in formulas, is told before anything runs
+  const std::string text = read_text_file(s.model), model_file = s.model.string();
+  Findings of_model(model_file, text);
+  const PreparedRun first = prepare_run(model_file, text, plan[0].overrides, of_model);
+  if (of_model.warning_count() > 0 && !args.quiet) tell(of_model.render());
+  Findings of_study(args.file, s.text);
+  std::vector<std::string> stages;
+  for (const StageInput& stage : first.scene.model.stages) stages.push_back(stage.name);
+  study::check_formulas(
+      s, study::possible_numbers(Histories(first.scene, nullptr).answers().titles(), stages), of_study);
+  of_study.throw_if_errors();
+
+  study::StudyFolder folder(args.folder);
+  folder.set_sharing(sharing_of(s, plan, first.scene.model));
+  if (args.dry) {
+    show("{} runs of {}, {} blocks each; the first:\n", plan.size(), model_file, first.scene.blocks.count);
+    for (const std::string& item : plan[0].overrides) show("  --set {}\n", item);
+    return kExitOk;
+  }
+  folder.begin(s, plan, fmt::format("talus {}", kVersion));
+  if (args.plan) {
+    show("{}: {} runs are planned; talus study task {} K makes one\n", args.folder, plan.size(), args.folder);
+    return kExitOk;
+  }
+  if (args.on == "slurm") return submit_to_slurm(folder, args);
+  std::vector<int> numbers;
+  for (const study::PlannedRun& run : plan) numbers.push_back(run.number);
+  const int code = run_here(folder, s, numbers, args.jobs > 0 ? args.jobs : processors(), args.quiet);
+  if (code == kExitOk) return gather(folder, s, plan, args.quiet);
+  tell("talus: stopped; the same command goes on with what is missing\n");
+  return code;
+}
+
+}  // namespace
+
+void add_study_arguments(CLI::App& verb, StudyArguments& args) {
+  verb.add_option("STUDY", args.file, "study file (TOML)");
+  verb.add_option("-o,--output", args.folder, "folder of the study; one that was begun goes on");
+  verb.add_option("--jobs", args.jobs, "runs side by side, 0: one for each processor")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  verb.add_option("--on", args.on, "batch system that the runs are handed to")
+      ->check(CLI::IsMember({"slurm"}));
+  verb.add_option("--sbatch", args.sbatch,
+                  "with --on slurm: options for sbatch, \"--partition=long --time=2:00:00\"");
+  verb.add_flag("--dry-run", args.dry, "check study and model, say how many runs, and write nothing");
+  verb.add_flag("--plan", args.plan, "begin the folder and run nothing, for talus study task");
+  verb.add_flag("-q,--quiet", args.quiet, "say nothing but errors");
+  args.task = verb.add_subcommand("task", "run planned runs of a study that was begun, for batch systems");
+  args.task->add_option("DIR", args.folder, "folder of the study")->required();
+  args.task->add_option("K", args.first, "number of the run, from 0")
+      ->required()
+      ->check(CLI::Range(0, 100000000));
+  args.task->add_option("--count", args.count, "so many from there on; those that are done are passed over")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  args.task->footer("Example: seq 0 899 | parallel talus study task out/walls {}");
+  args.gather = verb.add_subcommand("gather", "collect what is done: results.csv, figures, study.html");
+  args.gather->add_option("DIR", args.folder, "folder of the study")->required();
+  args.gather->footer("Example: talus study gather out/walls");
+  verb.footer("Example: talus study examples/many_runs/friction.toml -o out/friction");
+}
+
+int study_command(const StudyArguments& args) {
+  if (!*args.task && !*args.gather) return begin_study(args);
+  const study::StudyFolder folder(args.folder);
+  folder.check();
+  const study::Study s = read(folder);
+  if (*args.gather) return gather(folder, s, study::plan_runs(s), args.quiet);
+  std::vector<int> numbers;
+  for (int k = args.first; k < args.first + args.count && k < folder.planned(); ++k) numbers.push_back(k);
+  if (numbers.empty())
+    throw Error(kExitUsage,
+                fmt::format("there is no run {}; runs are 0 to {}", args.first, folder.planned() - 1));
+  return run_here(folder, s, numbers, 1, true);
+}
+
+}  // namespace talus::app

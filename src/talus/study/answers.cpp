@@ -1,0 +1,169 @@
+#include "talus/study/answers.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "talus/base/text.h"
+#include "talus/model/expression.h"
+
+namespace talus::study {
+
+namespace {
+
+using nlohmann::json;
+
+std::string as_name(const std::string& text) {
+  std::string out = text.substr(0, text.find(" ["));
+  for (char& c : out)
+    if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '_' && c != '.')
+      c = '_';
+  return out;
+}
+
+// Names in a formula: letters, digits, _ and dots, a letter first.
+std::set<std::string> names_in(const std::string& formula) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::set<std::string> names;
+  for (size_t at = 0; at < formula.size();) {
+    size_t end = at;
+    if (letter(formula[at])) {
+      while (end < formula.size() && (letter(formula[end]) || digit(formula[end]) || formula[end] == '.'))
+        ++end;
+      names.insert(formula.substr(at, end - at));
+    } else {
+      // 2e3 holds no name
+      while (end < formula.size() &&
+             (digit(formula[end]) || (end > at && (letter(formula[end]) || formula[end] == '.'))))
+        ++end;
+    }
+    at = std::max(end, at + 1);
+  }
+  return names;
+}
+
+double evaluate(const std::string& formula, const Numbers& numbers, std::string& trouble) {
+  Numbers used;
+  for (const std::string& name : names_in(formula)) {
+    const auto at = numbers.find(name);
+    if (at == numbers.end()) continue;
+    if (std::isnan(at->second)) return std::nan("");
+    used.insert(*at);
+  }
+  return evaluate_with(formula, used, trouble);
+}
+
+void add_leaves(const std::string& prefix, const json& j, Numbers& out) {
+  for (const auto& [key, value] : j.items()) {
+    const std::string name = prefix + as_name(key);
+    if (value.is_number()) out[name] = value.get<double>();
+    if (value.is_object()) add_leaves(name + ".", value, out);
+  }
+}
+
+void add_column(const std::string& name, const json& column, Numbers& out) {
+  for (const auto& [key, value] : column.items())
+    out[name + "." + as_name(key)] = value.is_number() ? value.get<double>() : std::nan("");
+  if (column.contains("least") && column["least"].is_number() && column["greatest"].is_number())
+    out[name + ".largest"] =
+        std::max(std::abs(column["least"].get<double>()), std::abs(column["greatest"].get<double>()));
+}
+
+constexpr const char* kOfColumn[] = {"at_start", "at_end",   "least",         "greatest",
+                                     "largest",  "residual", "time_of_least", "time_of_greatest"};
+
+}  // namespace
+
+Numbers numbers_of(const json& summary) {
+  Numbers out;
+  for (const char* section : {"joints", "moved", "blocks", "contacts", "solver"})
+    if (const auto at = summary.find(section); at != summary.end() && at->is_object())
+      add_leaves(std::string(section) + ".", *at, out);
+  if (const auto at = summary.find("energy_closure"); at != summary.end() && at->is_number())
+    out["energy_closure"] = at->get<double>();
+  const auto monitors = summary.find("monitors"), stages = summary.find("stages");
+  if (monitors == summary.end() || !monitors->is_object()) return out;
+  std::string last;
+  if (stages != summary.end() && stages->is_array() && !stages->empty())
+    last = stages->back().value("name", "");
+  for (const auto& [monitor, all] : monitors->items()) {
+    for (const auto& [key, value] : all.items())
+      if (value.is_number()) out[as_name(monitor) + "." + as_name(key)] = value.get<double>();
+    if (!all.contains("stages")) continue;
+    for (const auto& [stage, columns] : all["stages"].items())
+      for (const auto& [title, column] : columns.items()) {
+        const std::string name = as_name(monitor) + "." + as_name(title);
+        add_column(as_name(stage) + "." + name, column, out);
+        if (stage == last) add_column(name, column, out);
+      }
+  }
+  return out;
+}
+
+Numbers possible_numbers(const std::vector<std::string>& columns, const std::vector<std::string>& stages) {
+  Numbers out;
+  for (const char* name :
+       {"joints.time", "joints.points", "joints.intact", "joints.slipped", "joints.open",
+        "joints.slip_largest", "joints.opening_largest", "joints.slip_times_length", "joints.broken_length",
+        "joints.slipped_joints", "joints.residual_slip_largest", "moved.blocks", "moved.area", "blocks.all",
+        "contacts.bond_faces", "contacts.bond_faces_broken", "energy_closure", "solver.failed_steps",
+        "solver.contact_error_worst"})
+    out[name] = 1;
+  for (const std::string& column : columns) {
+    const std::string name = as_name(column), monitor = name.substr(0, name.find('.'));
+    for (const char* what : kOfColumn) {
+      out[name + "." + what] = 1;
+      for (const std::string& stage : stages) out[as_name(stage) + "." + name + "." + what] = 1;
+    }
+    for (const char* what : {".peak_velocity", ".first_touch", ".last_touch"}) out[monitor + what] = 1;
+  }
+  return out;
+}
+
+std::vector<double> evaluate_answers(const Study& study, Numbers& numbers, std::string& trouble) {
+  std::vector<double> out;
+  for (const NamedFormula& answer : study.answers) {
+    std::string why;
+    out.push_back(evaluate(answer.formula, numbers, why));
+    if (!why.empty()) trouble = fmt::format("answer \"{}\": {}", answer.name, why);
+    numbers[answer.name] = out.back();
+  }
+  return out;
+}
+
+bool is_damaged(const DamageState& state, const Numbers& numbers, std::string& trouble) {
+  std::string why;
+  const double value = evaluate(state.when, numbers, why);
+  if (!why.empty()) trouble = fmt::format("failure \"{}\": {}", state.name, why);
+  return !std::isnan(value) && value != 0;
+}
+
+void check_formulas(const Study& study, Numbers numbers, Findings& findings) {
+  std::vector<std::string> known;
+  const auto check = [&](const std::string& formula, const Where& where, const std::string& path) {
+    std::string trouble;
+    evaluate(formula, numbers, trouble);
+    if (trouble.empty() || trouble.find("is not finite") != std::string::npos) return;
+    known.clear();
+    for (const auto& [name, value] : numbers) known.push_back(name);
+    std::string near;
+    for (const std::string& name : names_in(formula))
+      if (!numbers.count(name) && name.find('.') != std::string::npos) near = closest_name(name, known);
+    findings.error(
+        where, path, trouble,
+        near.empty()
+            ? "names are those of monitors.csv, as MONITOR.QUANTITY.largest (at_start, at_end, least, greatest, residual), and of summary.json"
+            : fmt::format("did you mean \"{}\"?", near));
+  };
+  for (const NamedFormula& answer : study.answers) {
+    check(answer.formula, answer.where, "answers." + answer.name);
+    numbers[answer.name] = 1;
+  }
+  for (const DamageState& state : study.states)
+    check(state.when, state.where, "failure." + state.name + ".when");
+}
+
+}  // namespace talus::study

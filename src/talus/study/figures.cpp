@@ -1,0 +1,318 @@
+#include "talus/study/figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "talus/base/name.h"
+#include "talus/output/files.h"
+#include "talus/output/text_table.h"
+#include "talus/plot/figure.h"
+
+namespace talus::study {
+
+namespace {
+
+constexpr double kBand = 1.6448536269514722;  // standard errors of a band of 90 %
+constexpr double kMark = 0.006;               // half size of a mark, as share of the axis
+
+// Points as small crosses: one curve with gaps.
+plot::Curve crosses(const std::string& label, const std::vector<double>& x, const std::vector<double>& y,
+                    double width, double height, int color) {
+  plot::Curve curve;
+  curve.label = label, curve.color = color;
+  const double nan = std::nan(""), dx = kMark * width, dy = kMark * height * 1.6;
+  for (size_t i = 0; i < x.size(); ++i) {
+    for (const double v : {x[i] - dx, x[i] + dx, nan, x[i], x[i], nan}) curve.x.push_back(v);
+    for (const double v : {y[i], y[i], nan, y[i] - dy, y[i] + dy, nan}) curve.y.push_back(v);
+  }
+  return curve;
+}
+
+struct Span {
+  double least = 0, most = 0;
+  double width() const { return most > least ? most - least : std::max(std::abs(most), 1.0); }
+};
+Span span_of(const std::vector<double>& v) {
+  const auto [low, high] = std::minmax_element(v.begin(), v.end());
+  return {*low, *high};
+}
+
+double median_of(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  const size_t n = v.size();
+  return n % 2 == 1 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
+}
+
+class Figures {
+ public:
+  Figures(const Study& study, const Gathered& found, const std::filesystem::path& folder)
+      : study_(study), found_(found), folder_(folder) {}
+
+  std::vector<std::string> write() {
+    std::filesystem::create_directories(folder_);
+    while (over_ < study_.axes.size() && study_.axes[over_].name != study_.over) ++over_;
+    if (over_ < study_.axes.size()) {
+      fragility();
+      for (size_t k = 0; k < study_.answers.size(); ++k) incremental(k);
+    }
+    for (size_t k = 0; k < study_.answers.size(); ++k)
+      for (size_t a = 0; a < study_.axes.size(); ++a) scatter(k, a);
+    return names_;
+  }
+
+ private:
+  void keep(const plot::Figure& figure, const std::string& name) {
+    plot::write_figure(figure, folder_ / file_name_of(name));
+    names_.push_back(file_name_of(name));
+  }
+
+  // Probability of each state over the intensity: curve, band, and the share at each level.
+  void fragility() {
+    if (found_.fragility.empty()) return;
+    plot::Figure figure;
+    figure.title = "Fragility: probability of damage, with bands of 90 %";
+    figure.x_label = study_.axes[over_].title(), figure.y_label = "probability";
+    figure.y_min = 0, figure.y_max = 1, figure.x_min = 0;
+    double most = 0;
+    for (const auto& points : found_.points)
+      for (const FragilityPoint& p : points) most = std::max(most, p.intensity);
+    if (most == 0) return;
+    most *= 1.1;
+    figure.x_max = most;
+    for (size_t s = 0; s < found_.fragility.size(); ++s) {
+      const Fragility& f = found_.fragility[s];
+      const int color = static_cast<int>(s);
+      std::vector<double> x, y, low, high, px, py;
+      for (int i = 1; i <= 200 && f.found(); ++i) {
+        x.push_back(most * i / 200);
+        y.push_back(f.probability(x.back()));
+        low.push_back(f.band(x.back(), -kBand)), high.push_back(f.band(x.back(), kBand));
+      }
+      for (const FragilityPoint& p : found_.points[s])
+        px.push_back(p.intensity), py.push_back(static_cast<double>(p.damaged) / p.runs);
+      if (f.found()) {
+        figure.curves.push_back({"", x, low, color, plot::Style::kThin, false});
+        figure.curves.push_back({"", x, high, color, plot::Style::kThin, false});
+        figure.curves.push_back(
+            {fmt::format("{}: median {:.3g}, beta {:.2f}", study_.states[s].name, f.median, f.beta), x, y,
+             color, plot::Style::kSolid, true});
+      }
+      plot::Curve marks =
+          crosses(f.found() ? "" : study_.states[s].name + ": no curve", px, py, most, 1, color);
+      marks.in_legend = !f.found();
+      figure.curves.push_back(std::move(marks));
+    }
+    keep(figure, "fragility");
+  }
+
+  // Incremental curves: the answer of each set of other keys as the intensity grows, and the median.
+  void incremental(size_t k) {
+    std::map<std::string, std::vector<std::pair<double, double>>> lines;
+    std::map<double, std::vector<double>> levels;
+    for (const ResultRow& row : found_.rows) {
+      if (!row.counts || !std::isfinite(row.answers[k]) || !std::isfinite(row.values[over_].number)) continue;
+      std::string others;
+      for (size_t a = 0; a < row.values.size(); ++a)
+        if (a != over_) others += row.values[a].shown + "|";
+      lines[others].emplace_back(row.answers[k], row.values[over_].number);
+      levels[row.values[over_].number].push_back(row.answers[k]);
+    }
+    if (levels.size() < 2) return;
+    plot::Figure figure;
+    figure.title = fmt::format("{} as the intensity grows: each run, and the median", study_.answers[k].name);
+    figure.x_label = study_.answers[k].name, figure.y_label = study_.axes[over_].title();
+    for (auto& [others, points] : lines) {
+      std::sort(points.begin(), points.end(),
+                [](const auto& a, const auto& b) { return a.second < b.second; });
+      plot::Curve curve;
+      curve.style = plot::Style::kThin, curve.in_legend = false;
+      for (const auto& [answer, level] : points) curve.x.push_back(answer), curve.y.push_back(level);
+      figure.curves.push_back(std::move(curve));
+    }
+    plot::Curve median{"median", {}, {}, 0, plot::Style::kSolid, true};
+    for (const auto& [level, answers] : levels)
+      median.x.push_back(median_of(answers)), median.y.push_back(level);
+    figure.curves.push_back(std::move(median));
+    figure.y_min = 0;
+    keep(figure, "incremental_" + study_.answers[k].name);
+  }
+
+  // The answer over one key: all runs, and their median at each value.
+  void scatter(size_t k, size_t a) {
+    const Axis& axis = study_.axes[a];
+    std::vector<double> x, y;
+    std::map<double, std::vector<double>> levels;
+    std::map<std::string, double> place;  // of values that are no numbers, in their order
+    const bool numbers = std::all_of(axis.values.begin(), axis.values.end(),
+                                     [](const AxisValue& v) { return std::isfinite(v.number); });
+    for (const AxisValue& v : axis.values) place.emplace(v.shown, 0);
+    double next = 0;
+    for (const AxisValue& v : axis.values)
+      if (place[v.shown] == 0) place[v.shown] = ++next;
+    for (const ResultRow& row : found_.rows) {
+      if (!row.counts || !std::isfinite(row.answers[k])) continue;
+      x.push_back(numbers ? row.values[a].number : place[row.values[a].shown]), y.push_back(row.answers[k]);
+      levels[x.back()].push_back(y.back());
+    }
+    if (x.empty()) return;
+    plot::Figure figure;
+    figure.title = fmt::format("{} over {}", study_.answers[k].name, axis.name);
+    figure.x_label =
+        numbers ? axis.title() : fmt::format("{} (by number, in the order of the table)", axis.name);
+    figure.y_label = study_.answers[k].name;
+    const Span sx = span_of(x), sy = span_of(y);
+    figure.x_min = sx.least - 0.05 * sx.width(), figure.x_max = sx.most + 0.05 * sx.width();
+    figure.curves.push_back(crosses("runs", x, y, sx.width(), sy.width(), 0));
+    if (!axis.sampled && levels.size() > 1) {
+      plot::Curve median{"median", {}, {}, 1, plot::Style::kDashed, true};
+      for (const auto& [level, answers] : levels)
+        median.x.push_back(level), median.y.push_back(median_of(answers));
+      figure.curves.push_back(std::move(median));
+    }
+    keep(figure, study_.answers[k].name + "_over_" + axis.name);
+  }
+
+  const Study& study_;
+  const Gathered& found_;
+  std::filesystem::path folder_;
+  size_t over_ = 0;
+  std::vector<std::string> names_;
+};
+
+std::string html(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+constexpr const char* kStyle = R"(
+body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 1100px; padding: 0 1rem; color: #222; background: #fff; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .2rem .6rem; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
+th { cursor: pointer; position: sticky; top: 0; background: #f5f5f5; }
+td.text, th.text { text-align: left; }
+tr.bad td { color: #a33; }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(480px, 1fr)); gap: 1rem; }
+.figures img { width: 100%; }
+.scroll { overflow: auto; max-height: 75vh; }
+input { font: inherit; padding: .2rem .5rem; margin: .5rem 0; }
+)";
+
+constexpr const char* kScript = R"(
+const table = document.querySelector("#runs"), body = table.tBodies[0];
+document.querySelector("#seek").addEventListener("input", (e) => {
+  const words = e.target.value.toLowerCase().split(/\s+/).filter(Boolean);
+  for (const row of body.rows) row.hidden = !words.every((w) => row.textContent.toLowerCase().includes(w));
+});
+[...table.tHead.rows[0].cells].forEach((cell, c) => cell.addEventListener("click", () => {
+  const up = cell.dataset.up !== "yes";
+  for (const other of table.tHead.rows[0].cells) delete other.dataset.up;
+  if (up) cell.dataset.up = "yes";
+  const key = (row) => { const t = row.cells[c].textContent, v = parseFloat(t); return Number.isNaN(v) ? t : v; };
+  const rows = [...body.rows].sort((a, b) => { const x = key(a), y = key(b);
+    return typeof x === typeof y ? (x < y ? -1 : x > y ? 1 : 0) : typeof x === "number" ? -1 : 1; });
+  body.append(...(up ? rows : rows.reverse()));
+}));
+)";
+
+}  // namespace
+
+std::vector<std::string> write_figures(const Study& study, const Gathered& found,
+                                       const std::filesystem::path& folder) {
+  return Figures(study, found, folder).write();
+}
+
+std::string study_page(const Study& study, const Gathered& found, const std::vector<std::string>& figures) {
+  const std::string title = study.title.empty() ? "Study" : study.title;
+  std::string out = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
+      "content=\"width=device-width\"><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
+      "<p>{2} runs of <code>{3}</code>: {4} finished, {5} failed, {6} not valid, {7} missing.</p>\n",
+      html(title), kStyle, found.rows.size(), html(study.model.filename().string()), found.finished,
+      found.failed, found.not_valid, found.missing);
+  for (const std::string& trouble : found.troubles) out += "<p><b>" + html(trouble) + "</b></p>\n";
+  if (!found.fragility.empty()) {
+    out += fmt::format(
+        "<h2>Fragility over {}</h2>\n<table><tr><th class=\"text\">state</th><th class=\"text\">when</th><th>median</th><th>beta</th><th>runs</th><th>damaged</th></tr>\n",
+        html(study.over));
+    for (size_t s = 0; s < found.fragility.size(); ++s) {
+      const Fragility& f = found.fragility[s];
+      int runs = 0, damaged = 0;
+      for (const FragilityPoint& p : found.points[s]) runs += p.runs, damaged += p.damaged;
+      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\"><code>{}</code></td>",
+                         html(study.states[s].name), html(study.states[s].when));
+      out += f.found() ? fmt::format("<td>{:.4g}</td><td>{:.3f}</td>", f.median, f.beta)
+                       : fmt::format("<td colspan=\"2\" class=\"text\">{}</td>", html(f.trouble));
+      out += fmt::format("<td>{}</td><td>{}</td></tr>\n", runs, damaged);
+    }
+    out += "</table>\n";
+  }
+  if (const std::vector<Sensitivity> list = sensitivities(study, found); !list.empty()) {
+    out +=
+        "<h2>Sensitivity</h2>\n<p>Rank correlation (Spearman) of answers with keys: 1 grows together, -1 against each other, 0 neither.</p>\n<table><tr><th class=\"text\">answer</th><th class=\"text\">key</th><th>correlation</th></tr>\n";
+    for (const Sensitivity& s : list)
+      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{:+.2f}</td></tr>\n",
+                         html(s.answer), html(s.axis), s.correlation);
+    out += "</table>\n";
+  }
+  if (!figures.empty()) {
+    out += "<h2>Figures</h2>\n<div class=\"figures\">\n";
+    for (const std::string& name : figures)
+      out += fmt::format("<a href=\"figures/{0}.svg\"><img src=\"figures/{0}.svg\" alt=\"{0}\"></a>\n",
+                         html(name));
+    out += "</div>\n";
+  }
+  out +=
+      "<h2>Runs</h2>\n<input id=\"seek\" placeholder=\"seek in the table\">\n<div class=\"scroll\"><table id=\"runs\"><thead><tr><th>run</th>";
+  for (const Axis& a : study.axes) out += "<th>" + html(a.title()) + "</th>";
+  out += "<th class=\"text\">status</th>";
+  for (const DamageState& s : study.states) out += "<th>" + html(s.name) + "</th>";
+  for (const NamedFormula& a : study.answers) out += "<th>" + html(a.name) + "</th>";
+  out += "<th>time [s]</th></tr></thead><tbody>\n";
+  for (const ResultRow& row : found.rows) {
+    const std::string link = fmt::format("runs/{:06}/{}", row.number,
+                                         row.has_report   ? "report.html"
+                                         : study.keep_all ? ""
+                                                          : "summary.json");
+    out += row.counts ? "<tr>" : "<tr class=\"bad\">";
+    out += row.status == "missing" ? fmt::format("<td>{}</td>", row.number)
+                                   : fmt::format("<td><a href=\"{}\">{}</a></td>", link, row.number);
+    for (const AxisValue& v : row.values) out += "<td>" + html(v.shown) + "</td>";
+    out += fmt::format("<td class=\"text\" title=\"{}\">{}</td>", html(row.record.message), row.status);
+    for (const int damaged : row.damaged)
+      out += damaged < 0 ? "<td></td>" : fmt::format("<td>{}</td>", damaged);
+    for (const double answer : row.answers)
+      out += std::isnan(answer) ? "<td></td>" : fmt::format("<td>{:.5g}</td>", answer);
+    out += row.status == "missing" ? "<td></td></tr>\n"
+                                   : fmt::format("<td>{:.2f}</td></tr>\n", row.record.wall_seconds);
+  }
+  return out + fmt::format("</tbody></table></div>\n<script>{}</script>\n</body></html>\n", kScript);
+}
+
+void write_results(const Study& study, const Gathered& found, const StudyFolder& folder) {
+  write_file(folder.path() / "results.csv", results_csv(study, found));
+  if (!found.fragility.empty()) write_file(folder.path() / "fragility.csv", fragility_csv(study, found));
+  std::string table = "answer,key,rank_correlation\n";
+  for (const Sensitivity& s : sensitivities(study, found))
+    table += fmt::format("{},{},{:.6f}\n", s.answer, table_cell(s.axis), s.correlation);
+  if (!study.answers.empty()) write_file(folder.path() / "sensitivity.csv", table);
+  const std::vector<std::string> figures = write_figures(study, found, folder.path() / "figures");
+  write_file(folder.path() / "study.html", study_page(study, found, figures));
+}
+
+}  // namespace talus::study

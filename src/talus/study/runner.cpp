@@ -1,0 +1,212 @@
+#include "talus/study/runner.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/clock.h"
+#include "talus/base/error.h"
+#include "talus/base/text_file.h"
+#include "talus/output/files.h"
+
+extern char** environ;
+
+namespace talus::study {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLog = "log.txt";
+constexpr size_t kMostMessage = 2000;
+
+// A process whose output goes into a file.
+pid_t spawn(const std::vector<std::string>& words, const fs::path& log) {
+  std::vector<char*> argv;
+  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  pid_t process = -1;
+  const int error = posix_spawn(&process, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) fail_file(words[0], "started", error);
+  return process;
+}
+
+// The end of what a process has said.
+std::string said(const fs::path& log) {
+  std::error_code ec;
+  if (!fs::exists(log, ec)) return "";
+  std::string text = read_text_file(log);
+  if (text.size() > kMostMessage) text = "... " + text.substr(text.size() - kMostMessage);
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return text;
+}
+
+std::string status_of(int exit_code) {
+  if (exit_code == kExitOk || exit_code == kExitNotValid) return "finished";
+  if (exit_code == kExitInput || exit_code == kExitUsage) return "refused";
+  if (exit_code > kExitSignal) return "killed";
+  return "failed";
+}
+
+// The answers of a run, without the rest of its results.
+void keep_answers(const fs::path& attempt) {
+  std::error_code ec;
+  std::vector<fs::path> gone;
+  for (const auto& entry : fs::directory_iterator(attempt, ec)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "summary.json" && name != "monitors.csv") gone.push_back(entry.path());
+  }
+  for (const fs::path& path : gone) fs::remove_all(path, ec);
+}
+
+}  // namespace
+
+// The last state of a parent, "" when there is none.
+std::string Runner::state_of(const std::string& group) const {
+  std::error_code ec;
+  std::string newest;
+  for (const auto& entry : fs::directory_iterator(folder_.parent_folder(group) / "saved", ec))
+    if (const std::string name = entry.path().filename().string();
+        name.rfind("stage_", 0) == 0 && name.size() == 11)
+      newest = std::max(newest, entry.path().string());
+  return newest;
+}
+
+void Runner::start(Job job) {
+  const std::string model =
+      nlohmann::json::parse(read_text_file(folder_.path() / "study.json")).at("model").get<std::string>();
+  const bool parent = job.number < 0;
+  job.attempt = folder_.attempt(parent ? "parent_" + job.group : fmt::format("{:06}", job.number));
+  std::vector<std::string> words{settings_.program, "run", model, "-q",
+                                 "--threads",       "1",   "-o",  job.attempt.string()};
+  for (const std::string& item : parent ? job.task.group_overrides : job.task.overrides)
+    words.insert(words.end(), {"--set", item});
+  if (parent) words.insert(words.end(), {"--until", folder_.until()});
+  if (job.branch) words.insert(words.end(), {"--from", state_of(job.group)});
+  job.begun = wall_now();
+  const pid_t process = spawn(words, job.attempt.string() + ".log");
+  running_[process] = std::move(job);
+}
+
+void Runner::ended(Job job, int status, bool stopped) {
+  std::error_code ec;
+  const fs::path log = job.attempt.string() + ".log";
+  const int code = WIFSIGNALED(status) ? kExitSignal + WTERMSIG(status) : WEXITSTATUS(status);
+  if (stopped) {  // it will be made anew
+    fs::remove_all(job.attempt, ec);
+    fs::remove(log, ec);
+    return;
+  }
+  if (job.number < 0) {
+    if (code == kExitOk || code == kExitNotValid)
+      fs::rename(job.attempt, folder_.parent_folder(job.group), ec);
+    fs::remove_all(job.attempt, ec);
+    fs::remove(log, ec);
+    group_state_[job.group] = state_of(job.group).empty() ? 2 : 1;
+    return;
+  }
+  if (job.branch && code == kExitInput) {  // what differs is more than a branch may have: as a run of its own
+    fs::remove_all(job.attempt, ec);
+    fs::remove(log, ec);
+    job.branch = false;
+    job.group.clear();
+    waiting_.push_front(std::move(job));
+    return;
+  }
+  RunRecord record{job.number, status_of(code), code, wall_now() - job.begun, host_name(), said(log)};
+  if (code == kExitOk) record.message.clear();  // warnings stand in its summary
+  fs::create_directories(job.attempt, ec);
+  if (settings_.report && record.status == "finished") {
+    const pid_t process = spawn({settings_.program, "report", job.attempt.string()}, log);
+    int ignored = 0;
+    while (waitpid(process, &ignored, 0) < 0 && errno == EINTR) continue;
+  }
+  if (!settings_.keep_all) keep_answers(job.attempt);
+  if (settings_.keep_all && !record.message.empty()) fs::rename(log, job.attempt / kLog, ec);
+  fs::remove(log, ec);
+  folder_.finish(job.number, job.attempt, record);
+  ++progress_.done;
+  progress_.failed += record.status != "finished";
+}
+
+void Runner::run(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
+                 const std::function<bool()>& stop) {
+  progress_ = {};
+  progress_.all = static_cast<int>(numbers.size());
+  std::deque<Job> parents;
+  for (const int number : numbers) {
+    if (folder_.is_done(number)) {
+      ++progress_.done;
+      const auto record = folder_.record_of(number);
+      progress_.failed += record && record->status != "finished";
+      continue;
+    }
+    Job job;
+    job.number = number, job.task = folder_.task(number), job.group = job.task.group;
+    if (!job.group.empty() && !group_state_.count(job.group)) {
+      std::error_code ec;
+      const bool there = fs::exists(folder_.parent_folder(job.group), ec);
+      group_state_[job.group] = !there ? 0 : state_of(job.group).empty() ? 2 : 1;
+      if (!there) {
+        Job parent = job;
+        parent.number = -1;
+        parents.push_back(std::move(parent));
+      }
+    }
+    waiting_.push_back(std::move(job));
+  }
+  waiting_.insert(waiting_.begin(), parents.begin(), parents.end());
+  const int before = progress_.done;
+  const double begun = wall_now();
+  bool stopped = false;
+  while (!waiting_.empty() || !running_.empty()) {
+    // as many as there is room for; those whose parent is being made wait
+    for (size_t i = 0;
+         i < waiting_.size() && !stopped && static_cast<int>(running_.size()) < settings_.jobs;) {
+      Job& next = waiting_[i];
+      if (next.number >= 0 && !next.group.empty()) {
+        const int state = group_state_[next.group];
+        if (state == 0) {
+          ++i;
+          continue;
+        }
+        next.branch = state == 1;
+      }
+      Job job = std::move(next);
+      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+      start(std::move(job));
+    }
+    if (running_.empty()) break;
+    int status = 0;
+    const pid_t process = waitpid(-1, &status, 0);
+    if (process < 0 && errno != EINTR) fail_file(settings_.program, "waited for", errno);
+    if (!stopped && stop()) {
+      stopped = true;
+      waiting_.clear();
+      for (const auto& [running, job] : running_) kill(running, SIGTERM);
+    }
+    const auto at = running_.find(process);
+    if (process < 0 || at == running_.end()) continue;
+    Job job = std::move(at->second);
+    running_.erase(at);
+    ended(std::move(job), status, stopped);
+    progress_.running = static_cast<int>(running_.size());
+    const int ours = progress_.done - before;
+    if (ours > 0) progress_.to_go = (wall_now() - begun) / ours * (progress_.all - progress_.done);
+    told(progress_);
+  }
+}
+
+}  // namespace talus::study

@@ -1,0 +1,279 @@
+// talus study: a small model many times.
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "support/command.h"
+#include "support/results.h"
+
+namespace test_study_command {
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+// A stone on a floor, at rest and then pushed by an acceleration: it slides where tan(phi) is less.
+const char* kModel = R"(talus = 1
+[variables]
+phi = "30 deg"
+push = 4
+[model]
+gravity = [0, -9.81]
+[material.m]
+density = 2000
+[joint.face]
+friction_angle = "$phi"
+[contact]
+joint = "face"
+[[block]]
+name = "floor"
+polygon = [[-5, -1], [50, -1], [50, 0], [-5, 0]]
+material = "m"
+kind = "fixed"
+[[block]]
+name = "stone"
+polygon = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
+material = "m"
+kind = "rigid"
+[history.push]
+time = [0, 0.001, 1]
+value = [0, 1, 1]
+scale = "$push"
+[[load]]
+name = "push"
+acceleration_x = "push"
+stages = ["go"]
+[[stage]]
+name = "rest"
+kind = "static"
+duration = "1 s"
+time_step = "5 ms"
+[[stage]]
+name = "go"
+kind = "dynamic"
+duration = "0.5 s"
+time_step = "5 ms"
+[[monitor]]
+name = "stone"
+centroid = "stone"
+[output]
+save_interval = 0
+)";
+
+const char* kStudy = R"(talus_study = 1
+title = "Sliding <stone>"
+model = "model.toml"
+[answers]
+way = "stone.displacement_x.greatest"
+[[vary]]
+key = "variables.phi"
+values = ["10 deg", "20 deg", "30 deg"]
+[[vary]]
+key = "variables.push"
+values = [2, 4, 8]
+[failure]
+when = "way > 0.1"
+[fragility]
+over = "push"
+)";
+
+void write(const Folder& folder, const std::string& name, const std::string& text) {
+  std::ofstream(folder / name) << text;
+}
+
+// results.csv without times, hosts and messages.
+std::string numbers_of(const Folder& folder, const std::string& out) {
+  const TextTable table = read_text_table(folder / (out + "/results.csv"));
+  std::string text;
+  for (const auto& row : table.rows) {
+    for (size_t c = 0; c + 3 < row.size(); ++c) text += row[c] + ",";
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("command study: a table of runs whose numbers are those of the formula, and of runs by hand") {
+  const Folder folder;
+  write(folder, "model.toml", kModel), write(folder, "study.toml", kStudy);
+  const Outcome dry = shell(folder, "$talus study study.toml -o out --dry-run");
+  CHECK(dry.code == 0);
+  has(dry.text, "9 runs of model.toml, 2 blocks each");
+  CHECK(!std::filesystem::exists(folder / "out"));
+  const Outcome all = shell(folder, "$talus study study.toml -o out");
+  INFO(all.text);
+  REQUIRE(all.code == 0);
+  has(all.text, "9 runs: 9 finished, 0 failed, 0 not valid, 0 missing");
+  const TextTable table = read_text_table(folder / "out/results.csv");
+  REQUIRE(table.rows.size() == 9);
+  for (const auto& row : table.rows) {
+    const double phi = std::stod(row[1]) * std::acos(-1) / 180, push = std::stod(row[2]),
+                 way = std::stod(row[5]);
+    // a = push - g tan(phi), for 0.5 s; the push grows over the first millisecond, a fifth of a step
+    const double expected = std::max(0.0, 0.125 * (push - 9.81 * std::tan(phi)));
+    INFO(row[1], " deg, ", push);
+    CHECK(std::abs(way - expected) <= 0.02 * expected + 1e-6);
+    CHECK(row[4] == (way > 0.1 ? "1" : "0"));
+  }
+  // the static stage was made once for each angle, and each run is the bits of one by hand
+  size_t parents = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "out/parents"))
+    parents += entry.is_directory();
+  CHECK(parents == 3);
+  CHECK(shell(folder,
+              "$talus run model.toml -q -o hand --set 'variables.phi=\"20 deg\"' --set variables.push=8")
+            .code == 0);
+  const auto frames = [&](const std::string& run) {
+    const std::string text = content(folder / (run + "/histories.csv"));
+    return text.substr(text.rfind('\n', text.size() - 2));  // the last row
+  };
+  CHECK(frames("out/runs/000005") == frames("hand"));
+  has(content(folder / "out/study.html"), "Sliding &lt;stone&gt;");
+  has(content(folder / "out/study.html"), "<a href=\"runs/000008/\">8</a>");
+  CHECK(std::filesystem::exists(folder / "out/figures/fragility.svg"));
+  CHECK(std::filesystem::exists(folder / "out/figures/way_over_phi.svg"));
+  CHECK(std::filesystem::exists(folder / "out/figures/incremental_way.png"));
+  // without sharing the same numbers
+  write(folder, "alone.toml", "share_static = false\n" + std::string(kStudy));
+  CHECK(shell(folder, "$talus study alone.toml -q -o alone --jobs 1").code == 0);
+  CHECK(numbers_of(folder, "alone") == numbers_of(folder, "out"));
+  // answers may change afterwards
+  std::string changed = kStudy;
+  changed.replace(changed.find("way > 0.1"), 9, "way > 0.5");
+  write(folder, "out/study.toml", changed);
+  CHECK(shell(folder, "$talus study gather out").code == 0);
+  CHECK(numbers_of(folder, "out") != numbers_of(folder, "alone"));
+}
+
+TEST_CASE(
+    "command study: killed on the way, it goes on with what is missing; the table is that of an unbroken one") {
+  const Folder folder;
+  write(folder, "model.toml", kModel), write(folder, "study.toml", kStudy);
+  CHECK(shell(folder, "$talus study study.toml -q -o whole").code == 0);
+  // its processes die with it, as when a machine goes down
+  for (int k = 0; k < 4; ++k)
+    shell(
+        folder,
+        fmt::format(
+            "setsid sh -c '$talus study study.toml -q -o broken --jobs 2 & echo $$ > group; wait' & sleep 0.{}5; kill -9 -$(cat group); wait",
+            k + 1));
+  const Outcome rest = shell(folder, "$talus study study.toml -o broken");
+  INFO(rest.text);
+  CHECK(rest.code == 0);
+  CHECK(numbers_of(folder, "broken") == numbers_of(folder, "whole"));
+  CHECK(std::filesystem::is_empty(folder / "broken/work"));
+  // again: nothing is run
+  const auto when = std::filesystem::last_write_time(folder / "broken/runs/000003/run.json");
+  CHECK(shell(folder, "$talus study study.toml -q -o broken").code == 0);
+  CHECK(std::filesystem::last_write_time(folder / "broken/runs/000003/run.json") == when);
+  // a signal ends it and its runs
+  const Outcome stopped =
+      shell(folder, "$talus study study.toml -o stopped --jobs 1 & sleep 0.2; kill -INT $!; wait $!");
+  CHECK((stopped.code == 130 || stopped.code == 0));
+}
+
+TEST_CASE("command study: what is refused is a row that says so") {
+  const Folder folder;
+  std::string model = kModel;
+  model.replace(model.find("polygon = [[0, 0], [1, 0]"), 25, "polygon = [[0, \"$dip\"], [1, 0]");
+  model.replace(model.find("push = 4"), 8, "push = 4\ndip = 0");
+  write(folder, "model.toml", model);
+  std::string study = kStudy;
+  study.replace(study.find("[2, 4, 8]"), 9, "[2, 4]");
+  // a stone whose corner is far in the floor: refused
+  write(folder, "study.toml", study + "[[vary]]\nkey = \"variables.dip\"\nvalues = [0, 2]\n");
+  const Outcome all = shell(folder, "$talus study study.toml -o out");
+  INFO(all.text);
+  CHECK(all.code == 0);
+  has(all.text, "6 finished, 6 failed");
+  const TextTable table = read_text_table(folder / "out/results.csv");
+  CHECK(table.rows[1][4] == "refused");
+  CHECK(table.rows[1][5].empty());
+  has(table.rows[1].back(), "error");
+}
+
+TEST_CASE("command study: single tasks and gather, as batch systems call them, by a stand-in of sbatch too") {
+  const Folder folder;
+  write(folder, "model.toml", kModel), write(folder, "study.toml", kStudy);
+  CHECK(shell(folder, "$talus study study.toml -q -o whole").code == 0);
+  CHECK(shell(folder, "$talus study study.toml -o tasks --plan").code == 0);
+  for (int k = 0; k < 9; k += 2) CHECK(shell(folder, fmt::format("$talus study task tasks {}", k)).code == 0);
+  const Outcome part = shell(folder, "$talus study gather tasks");
+  has(part.text, "5 finished, 0 failed, 0 not valid, 4 missing");
+  CHECK(shell(folder, "$talus study task tasks 0 --count 100").code == 0);
+  CHECK(shell(folder, "$talus study gather tasks").code == 0);
+  CHECK(numbers_of(folder, "tasks") == numbers_of(folder, "whole"));
+  CHECK(shell(folder, "$talus study task tasks 9").code == 2);
+  CHECK(shell(folder, "$talus study task nowhere 0").code == 4);
+
+  // sbatch reads the array from the script and runs its elements, two of them at once; scontrol knows the limit
+  std::filesystem::create_directories(folder / "bin");
+  write(folder, "bin/scontrol", "#!/bin/sh\necho 'MaxArraySize            = 4'\n");
+  write(folder, "bin/sbatch",
+        "#!/bin/sh\nwhile [ $# -gt 1 ]; do echo \"$1\" >> \"$(dirname \"$0\")/options\"; shift; done\n"
+        "last=$(sed -n 's/^#SBATCH --array=0-//p' \"$1\")\n"
+        "for i in $(seq 0 \"$last\"); do SLURM_ARRAY_TASK_ID=$i sh \"$1\" & done\nwait\necho 4711\n");
+  for (const char* name : {"bin/scontrol", "bin/sbatch"})
+    std::filesystem::permissions(folder / name, std::filesystem::perms::owner_all);
+  const Outcome slurm = shell(
+      folder,
+      "PATH=$PWD/bin:$PATH $talus study study.toml -o slurm --on slurm --sbatch '--partition=long --time=1:00'");
+  INFO(slurm.text);
+  CHECK(slurm.code == 0);
+  has(slurm.text, "job 4711: 9 runs in 3 array elements of 3");
+  has(content(folder / "bin/options"), "--partition=long");
+  CHECK(shell(folder, "$talus study gather slurm").code == 0);
+  CHECK(numbers_of(folder, "slurm") == numbers_of(folder, "whole"));
+}
+
+TEST_CASE("command study: wrong input is told before anything is run or written") {
+  const Folder folder;
+  write(folder, "model.toml", kModel), write(folder, "study.toml", kStudy);
+  const auto refused = [&](const std::string& from, const std::string& to, int code,
+                           const std::string& part) {
+    std::string text = kStudy;
+    text.replace(text.find(from), from.size(), to);
+    write(folder, "wrong.toml", text);
+    const Outcome o = shell(folder, "$talus study wrong.toml -o out");
+    INFO(o.text);
+    CHECK(o.code == code);
+    has(o.text, part);
+    CHECK(!std::filesystem::exists(folder / "out"));
+  };
+  refused("model.toml", "modell.toml", 4, "modell.toml");
+  refused("variables.phi", "variables.pi", 3, "used by nothing");
+  refused("stone.displacement_x.greatest", "ston.displacement_x.greatest", 3,
+          "did you mean \"stone.displacement_x.greatest\"");
+  refused("way > 0.1", "way >", 3, "failure.failure.when");
+  refused("\"10 deg\"", "\"100 deg\"", 3, "friction_angle");
+  refused("over = \"push\"", "over = \"pull\"", 3, "there is phi or push");
+  CHECK(shell(folder, "$talus study study.toml").code == 2);
+  CHECK(shell(folder, "$talus study study.toml -q -o out").code == 0);
+  write(folder, "model.toml", std::string(kModel) + "# changed\n");
+  const Outcome other = shell(folder, "$talus study study.toml -o out");
+  CHECK(other.code == 3);
+  has(other.text, "the model file differ from those that this folder was begun with");
+  CHECK(shell(folder, "$talus study study.toml -o .").code == 4);
+}
+
+TEST_CASE("command run --until: ends after a stage, and going on from there has the bits of a whole run") {
+  const Folder folder;
+  write(folder, "model.toml", kModel);
+  CHECK(shell(folder, "$talus run model.toml -q -o whole").code == 0);
+  CHECK(shell(folder, "$talus run model.toml -q -o half --until rest").code == 0);
+  CHECK(std::filesystem::exists(folder / "half/saved/stage_01.h5"));
+  CHECK(!std::filesystem::exists(folder / "half/saved/stage_02.h5"));
+  CHECK(shell(folder, "$talus run model.toml -q --from half/saved/stage_01.h5").code == 0);
+  auto whole = results_in(folder / "whole"), half = results_in(folder / "half");
+  CHECK(whole.at("histories.csv") == half.at("histories.csv"));
+  CHECK(whole.at("monitors.csv") == half.at("monitors.csv"));
+  CHECK(whole.at("steps.csv") == half.at("steps.csv"));
+  const Outcome wrong = shell(folder, "$talus run model.toml -o no --until nowhere");
+  CHECK(wrong.code == 2);
+  has(wrong.text, "there is no stage \"nowhere\"; there is rest or go");
+}
+
+}  // namespace test_study_command

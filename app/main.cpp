@@ -107,13 +107,19 @@ int verb_of_line(int argc, char** argv) {
   talus::app::add_import_arguments(*import_verb, import);
 
   CLI::App* safety_verb = app.add_subcommand(
-      "safety", "seek the factor of safety: joint strength divided by a factor until the model fails");
+      "safety",
+      "seek what a model just bears: the factor of safety of its joints, or a load, tilt or acceleration raised until it fails");
   add_model_arguments(*safety_verb, model);
   add_strict(*safety_verb, model);
-  safety_verb->add_option("-o,--output", folder, "folder for the results")->required();
-  safety_verb->add_flag("--force", force, "replace the results in that folder");
-  safety_verb->add_option("--threads", how.threads, "threads inside a step, 0: as many as pay")
+  talus::app::SafetyArguments safety;
+  safety_verb->add_option("-o,--output", safety.folder, "folder for the results")->required();
+  safety_verb->add_flag("--force", safety.force, "replace the results in that folder");
+  safety_verb->add_flag("--resume", safety.resume, "go on with a search in that folder that was broken off");
+  safety_verb->add_option("--threads", safety.threads, "threads inside a step, 0: as many as pay")
       ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  safety_verb->add_option("--jobs", safety.jobs, "trials side by side")
+      ->check(CLI::Range(1, 256))
       ->capture_default_str();
   safety_verb->footer("Example: talus safety examples/toppling/toppling.toml -o out/toppling");
 
@@ -200,7 +206,7 @@ int verb_of_line(int argc, char** argv) {
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
-  if (*safety_verb) return talus::app::safety_command(model, folder, force, how.threads);
+  if (*safety_verb) return talus::app::safety_command(model, safety);
   if (*study_verb) return talus::app::study_command(study);
   if (*replay_verb) return talus::app::replay_command(problem);
   if (*record_verb) return talus::app::record_command(record);

@@ -1,5 +1,5 @@
 #pragma once
-// `talus safety`: factor of safety of a model by reduction of joint strength.
+// `talus safety`: what a model just bears.
 
 #include <string>
 
@@ -7,7 +7,13 @@
 
 namespace talus::app {
 
-/// Runs the trials, prints each, writes safety.csv, safety.json and model.toml. Returns the exit code.
-int safety_command(const ModelArguments& args, const std::string& folder, bool force, int threads);
+struct SafetyArguments {
+  std::string folder;
+  bool force = false, resume = false;
+  int threads = 0, jobs = 1;
+};
+
+/// Throws InputError, FileError, NumericalError; returns the exit code.
+int safety_command(const ModelArguments& args, const SafetyArguments& how);
 
 }  // namespace talus::app

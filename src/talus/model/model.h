@@ -182,6 +182,7 @@ struct LoadInput : Selection, Staged {
   bool has_place = false;  // point, edge or along is given
   Signal x, y;             // [m/s2], [Pa] or [N]
   Signal pressure;         // of a kSurface [Pa]
+  double factor = 1;       // on all of it: what `talus safety` raises
   Where where;
 };
 
@@ -284,7 +285,12 @@ struct OutputInput {
 };
 
 /// Search for the factor of safety by strength reduction (`talus safety`).
+/// What `talus safety` changes until the model fails.
+enum class SafetyBy { kStrength, kLoad, kTilt, kAcceleration };
+
 struct SafetyInput {
+  SafetyBy by = SafetyBy::kStrength;
+  int load = -1;                     // that is raised
   double lowest = 0.5, highest = 4;  // factors between which it is sought
   double tolerance = 0.01;           // of the factor
   double displacement =

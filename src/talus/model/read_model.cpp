@@ -500,9 +500,32 @@ class ModelReader : private SectionReader {
   void read_safety() {
     const Fields f = read_table("safety");
     SafetyInput& s = model_.safety;
-    s.lowest = f.get("lowest", s.lowest);
-    s.highest = f.get("highest", s.highest);
-    s.tolerance = f.get("tolerance", s.tolerance);
+    const std::string by = f.get<std::string>("by");
+    s.by = by == "load"           ? SafetyBy::kLoad
+           : by == "tilt"         ? SafetyBy::kTilt
+           : by == "acceleration" ? SafetyBy::kAcceleration
+                                  : SafetyBy::kStrength;
+    // strength and loads by factors, a tilt in degrees, an acceleration in shares of gravity
+    const double usual[4][3] = {{0.5, 4, 0.01}, {0.5, 4, 0.01}, {1, 60, 0.05}, {0.01, 1, 0.001}};
+    const auto& [lowest, highest, tolerance] = usual[static_cast<size_t>(s.by)];
+    s.lowest = f.get("lowest", lowest), s.highest = f.get("highest", highest);
+    s.tolerance = f.get("tolerance", tolerance);
+    if (f.given("load") != (s.by == SafetyBy::kLoad))
+      findings_.error(f.given("load") ? f.where("load") : f.where("by"), f.path_of("load"),
+                      f.given("load") ? "is raised by = \"load\" alone" : "is missing: which load is raised",
+                      "give by = \"load\" and load = \"NAME\"");
+    s.load = refer(f, "load", model_.loads, "load");
+    if (s.by != SafetyBy::kStrength && f.given("joints"))
+      findings_.error(f.where("joints"), f.path_of("joints"), "belongs to by = \"strength\"", "leave it out");
+    const bool turns = s.by == SafetyBy::kTilt || s.by == SafetyBy::kAcceleration;
+    if (turns && (norm(model_.gravity) == 0 || model_.in_situ.given))
+      findings_.error(f.where("by"), f.path_of("by"),
+                      model_.in_situ.given
+                          ? "turns gravity, and the stress of the ground is that of the gravity given"
+                          : "turns gravity, and there is none",
+                      model_.in_situ.given ? "leave [in_situ] out" : "give model.gravity");
+    if (s.by == SafetyBy::kTilt && s.highest >= 90)
+      findings_.error(f.where("highest"), f.path_of("highest"), "is a tilt of 90 degrees or more");
     s.displacement = f.get("displacement_limit", s.displacement);
     s.accept_merged = f.get("accept_merged", false);
     s.where = f.where();

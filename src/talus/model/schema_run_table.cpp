@@ -164,23 +164,34 @@ std::vector<SectionSpec> run_sections() {
 
       {"safety",
        SectionShape::kTable,
-       "How `talus safety` seeks the factor of safety: tan(friction angle), cohesion and tensile strength "
+       "How `talus safety` seeks what a model just bears. By strength: tan(friction angle), cohesion and tensile strength "
        "of joints, peak and residual, are divided by a factor F; the static stages before the first dynamic "
-       "one are run from the start; the largest F at which they come to rest is found by halving. Other "
+       "one are run from the start; the largest F at which they come to rest is found by halving. By load, tilt or "
+       "acceleration: these stages are run once without it, then it is raised from rest to rest, in a stage like the last of them. Other "
        "verbs ignore it.",
-       {{.name = "lowest",
+       {{.name = "by",
+         .type = K::kChoice,
+         .default_text = "\"strength\"",
+         .choices = {"strength", "load", "tilt", "acceleration"},
+         .doc =
+             "`strength`: factor of safety. `load`: factor on `load`. `tilt`: angle [deg] by which gravity is turned towards +x, as "
+             "on a table that is tilted. `acceleration`: horizontal body "
+             "force towards +x as share of the weight."},
+        {.name = "load",
+         .type = K::kName,
+         .refers_to = "load",
+         .doc = "With `by = \"load\"`: the load that is raised."},
+        {.name = "lowest",
          .range = kPositive,
-         .default_text = "0.5",
-         .doc = "Factor at which the model should stand; tried first."},
+         .doc =
+             "Factor (angle, share) at which the model should stand; tried first. None: 0.5; tilt 1, acceleration 0.01."},
         {.name = "highest",
          .range = kPositive,
-         .default_text = "4",
-         .doc = "Factor at which it should fail; tried second."},
+         .doc = "The same at which it should fail; tried second. None: 4; tilt 60, acceleration 1."},
         {.name = "tolerance",
-         .range = {.min = 1e-6, .max = 1},
-         .default_text = "0.01",
+         .range = {.min = 1e-6, .max = 10},
          .doc =
-             "Difference of the last factor that stands and the first that fails at which the search ends."},
+             "Difference of the last that stands and the first that fails at which the search ends. None: 0.01; tilt 0.05, acceleration 0.001."},
         {.name = "displacement_limit",
          .type = K::kQuantityAuto,
          .dimension = D::kLength,

@@ -17,7 +17,7 @@ struct Instant {
   double advance = 0;  // [s] by which time goes on; less than the step, work.clock.dt, in long ones from rest
   int stage = 0;
   bool stage_start = false;
-  bool last = false;  // no step follows
+  bool last = false;         // no step follows
   int64_t steps_before = 0;  // of this stage, also before a run went on from a saved state
 };
 

@@ -62,7 +62,8 @@ void Progress::show(const Instant& instant, double now) {
   const double rate = static_cast<double>(stage_step_) / (now - stage_wall_);
   const auto left = static_cast<double>(instant.plan.steps - instant.steps_before);
   const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
-  const double share = 100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
+  const double share =
+      100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
   const std::string pace =
       s.from_rest
           ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt)

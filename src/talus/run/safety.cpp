@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <thread>
 
+#include "talus/base/angle.h"
 #include "talus/base/error.h"
 #include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
@@ -119,39 +122,246 @@ Scene weakened(const PreparedRun& prepared, double factor) {
   return scene;
 }
 
-SafetyTrial run_trial(const PreparedRun& prepared, double factor, const Workers& workers) {
-  Scene scene = weakened(prepared, factor);
-  const size_t stages = leading_static_stages(scene.model);
-  scene.model.stages.resize(stages);
-  const std::vector<StagePlan> plans(prepared.plans.begin(),
-                                     prepared.plans.begin() + static_cast<std::ptrdiff_t>(stages));
-  const Electorate electorate(scene);
-  Watch watch(scene, electorate);
-  State state = start_state(scene);
-  const RunResult run = run_stages(scene, plans, state, watch, workers);
-  const StageResult& last = run.stages.back();
-
-  SafetyTrial trial;
-  trial.factor = factor;
-  trial.stage = last.name;
-  trial.time = state.time;
-  trial.steps = state.step;
-  trial.displacement = watch.farthest();
-  trial.block = scene.blocks.name[watch.block()];
-  trial.unbalanced = last.unbalanced;
-  trial.closure = run.closure();
-  if (watch.failed()) {
-    trial.outcome = "displacement limit";
-  } else if (run.failure.empty() && !run.interrupted) {
-    trial.outcome = "at rest", trial.stands = true;
-  } else if (!run.no_rest) {
-    throw NumericalError(fmt::format("trial at factor {:g} says nothing of safety: {}", factor, run.failure));
-  } else {
-    trial.stands = watch.only_needles_move(scene.model.stages.back().unbalanced);
-    trial.outcome = trial.stands ? "needles move" : "no rest";
+// Forwards to a second observer, which may say no word.
+class Both : public Observer {
+ public:
+  Both(Watch& watch, Observer& second) : watch_(watch), second_(second) {}
+  void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
+    second_.stage_begins(scene, stage, plan);
   }
-  return trial;
-}
+  void at(const Instant& i) override { watch_.at(i), second_.at(i); }
+  void fails(const Instant& i) override { second_.fails(i); }
+  bool stop() override { return watch_.stop(); }
+
+ private:
+  Watch& watch_;
+  Observer& second_;
+};
+
+// From where trials start: the model as it stands under the largest action it is known to bear.
+struct Base {
+  Scene scene;
+  std::vector<StagePlan> plans;
+  Standing standing;
+  State state;
+};
+
+// Searches by trials of one kind.
+class Search {
+ public:
+  Search(const PreparedRun& prepared, const Workers& workers, const SafetySettings& settings)
+      : prepared_(prepared), workers_(workers), settings_(settings), input_(prepared.scene.model.safety) {
+    if (input_.by != SafetyBy::kStrength) settle();
+  }
+
+  SafetyResult run() {
+    if (!round({input_.lowest})) return ended(SafetyStatus::kBelow);
+    if (round({input_.highest}); result_.fails == 0) return ended(SafetyStatus::kAbove);
+    while (result_.fails - result_.stands > input_.tolerance) {
+      std::vector<double> factors;
+      for (int k = 1; k <= settings_.jobs; ++k)
+        factors.push_back(settings_.jobs == 1
+                              ? result_.factor()
+                              : result_.stands + k * (result_.fails - result_.stands) / (settings_.jobs + 1));
+      round(factors);
+    }
+    return ended(SafetyStatus::kFound);
+  }
+
+ private:
+  struct Tried {
+    SafetyTrial trial;
+    std::unique_ptr<Base> after;  // of one that stands, where trials go on from there
+  };
+
+  SafetyResult ended(SafetyStatus status) {
+    result_.status = status;
+    if (settings_.keeper)
+      for (const auto& [factor, from] :
+           {std::pair(result_.stands, before_), std::pair(result_.fails, failed_from_)})
+        if (factor > 0) keep(factor, from);
+    return result_;
+  }
+
+  // Tries factors, rising, side by side, and takes over what they say; whether the first stands.
+  bool round(const std::vector<double>& factors) {
+    const std::shared_ptr<const Base> from = base_;
+    std::vector<Tried> tried(factors.size());
+    std::vector<std::exception_ptr> wrong(factors.size());
+    const auto one = [&](size_t k, const Workers& workers) {
+      try {
+        tried[k] = attempt(factors[k], workers);
+      } catch (...) {
+        wrong[k] = std::current_exception();
+      }
+    };
+    if (factors.size() == 1) {
+      one(0, workers_);
+    } else {
+      std::vector<std::thread> threads;
+      for (size_t k = 0; k < factors.size(); ++k) threads.emplace_back([&one, k] { one(k, Workers(1)); });
+      for (std::thread& t : threads) t.join();
+    }
+    bool all_stand = true;
+    for (size_t k = 0; k < factors.size(); ++k) {
+      if (wrong[k]) std::rethrow_exception(wrong[k]);
+      result_.trials.push_back(tried[k].trial);
+      if (settings_.told) settings_.told(tried[k].trial);
+      // of several that were tried at once the first that fails ends it: what lies above is not asked
+      if (tried[k].trial.stands && all_stand) {
+        result_.stands = factors[k];
+        if (tried[k].after) before_ = from, base_ = std::move(tried[k].after);
+      } else if (!tried[k].trial.stands && all_stand) {
+        result_.fails = factors[k];
+        failed_from_ = from;
+        all_stand = false;
+      }
+    }
+    return tried[0].trial.stands;
+  }
+
+  // The stages without the action, once.
+  void settle() {
+    auto base = std::make_shared<Base>(Base{prepared_.scene, {}, {}, {}});
+    Model& model = base->scene.model;
+    const size_t stages = leading_static_stages(model);
+    model.stages.resize(stages);
+    base->plans.assign(prepared_.plans.begin(),
+                       prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
+    if (input_.by == SafetyBy::kLoad) model.loads[static_cast<size_t>(input_.load)].factor = 0;
+    base->state = start_state(base->scene);
+    struct Nobody : Observer {
+      void at(const Instant&) override {}
+    } nobody;
+    base->standing.result = run_stages(base->scene, base->plans, base->state, nobody, workers_);
+    if (!base->standing.result.failure.empty())
+      throw NumericalError("the model does not come to rest before anything is raised: " +
+                           base->standing.result.failure);
+    base->standing.between = true;
+    // the stage in which it is raised: like the last one, with what acts there
+    const int last = static_cast<int>(stages) - 1;
+    StageInput raised = model.stages.back();
+    raised.name += ", raised";
+    raised.excavate.clear(), raised.relaxation.clear();
+    raised.reset_displacements = true;
+    const auto also = [last](auto& list) {
+      for (auto& item : list)
+        if (!item.stages.empty() && item.acts_in(last)) item.stages.push_back(last + 1);
+    };
+    also(model.supports), also(model.boundaries), also(model.loads);
+    model.stages.push_back(raised);
+    base->plans.push_back(base->plans.back());
+    base_ = before_ = std::move(base);
+  }
+
+  // Puts the action into a scene whose blocks stand as `state` says. The ledger goes on: what turns is no work.
+  void raise(Scene& scene, State& state, double factor) const {
+    Model& model = scene.model;
+    if (input_.by == SafetyBy::kLoad) {
+      model.loads[static_cast<size_t>(input_.load)].factor = factor;
+      return;
+    }
+    const Vec2 was = model.gravity, down = prepared_.scene.model.gravity, aside = turn_left(down);
+    if (input_.by == SafetyBy::kAcceleration) {
+      model.gravity = down + factor * aside;
+    } else {
+      const double angle = factor * kDegree;
+      model.gravity = std::cos(angle) * down + std::sin(angle) * aside;
+    }
+    for (size_t k = 0; k < state.displacement.size(); ++k)
+      state.energy_start -= scene.blocks.mass[k] * dot(model.gravity - was, state.displacement[k]);
+  }
+
+  Tried attempt(double factor, const Workers& workers) const {
+    for (const SafetyTrial& k : settings_.known)
+      if (k.factor == factor && (!k.stands || input_.by == SafetyBy::kStrength)) return {k, nullptr};
+    return input_.by == SafetyBy::kStrength ? of_strength(factor, workers, nullptr)
+                                            : of_action(factor, *base_, workers, nullptr);
+  }
+
+  // The same trial again, shown to a keeper.
+  void keep(double factor, const std::shared_ptr<const Base>& from) const {
+    SafetyTrial told;
+    for (const SafetyTrial& t : result_.trials)
+      if (t.factor == factor) told = t;
+    if (input_.by == SafetyBy::kStrength)
+      of_strength(factor, workers_, &told);
+    else
+      of_action(factor, *from, workers_, &told);
+  }
+
+  Tried of_strength(double factor, const Workers& workers, const SafetyTrial* kept) const {
+    Scene scene = weakened(prepared_, factor);
+    const size_t stages = leading_static_stages(scene.model);
+    scene.model.stages.resize(stages);
+    const std::vector<StagePlan> plans(prepared_.plans.begin(),
+                                       prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
+    State state = start_state(scene);
+    return judged(factor, scene, kept, state,
+                  [&](Observer& observer) { return run_stages(scene, plans, state, observer, workers); });
+  }
+
+  Tried of_action(double factor, const Base& from, const Workers& workers, const SafetyTrial* kept) const {
+    auto after = std::make_unique<Base>(from);
+    raise(after->scene, after->state, factor);
+    RunResult run;
+    Tried tried = judged(factor, after->scene, kept, after->state, [&](Observer& observer) {
+      run = continue_stages(after->scene, after->plans, after->standing, after->state, observer, workers);
+      return run;
+    });
+    if (!tried.trial.stands) return tried;
+    // the next trial is another go of the same stage
+    run.stages.pop_back();
+    after->standing = {run, true};
+    tried.after = std::move(after);
+    return tried;
+  }
+
+  template <class Run>
+  Tried judged(double factor, const Scene& scene, const SafetyTrial* kept, const State& state, Run go) const {
+    const Electorate electorate(scene);
+    Watch watch(scene, electorate);
+    RunResult run;
+    if (kept) {
+      const std::unique_ptr<Observer> keeper = settings_.keeper(scene, *kept);
+      Both both(watch, *keeper);
+      run = go(both);
+      if (settings_.kept) settings_.kept(*keeper, run);
+    } else {
+      run = go(watch);
+    }
+    const StageResult& last = run.stages.back();
+    SafetyTrial trial;
+    trial.factor = factor;
+    trial.stage = last.name;
+    trial.time = state.time;
+    trial.steps = state.step;
+    trial.displacement = watch.farthest();
+    trial.block = scene.blocks.name[watch.block()];
+    trial.unbalanced = last.unbalanced;
+    trial.closure = run.closure();
+    if (watch.failed()) {
+      trial.outcome = "displacement limit";
+    } else if (run.failure.empty() && !run.interrupted) {
+      trial.outcome = "at rest", trial.stands = true;
+    } else if (!run.no_rest) {
+      throw NumericalError(
+          fmt::format("trial at factor {:g} says nothing of safety: {}", factor, run.failure));
+    } else {
+      trial.stands = watch.only_needles_move(scene.model.stages.back().unbalanced);
+      trial.outcome = trial.stands ? "needles move" : "no rest";
+    }
+    return {trial, nullptr};
+  }
+
+  const PreparedRun& prepared_;
+  const Workers& workers_;
+  const SafetySettings& settings_;
+  const SafetyInput& input_;
+  SafetyResult result_;
+  std::shared_ptr<const Base> base_, before_,
+      failed_from_;  // now; of the last trial that stands, and that fails
+};
 
 }  // namespace
 
@@ -177,26 +387,14 @@ void check_safety(const PreparedRun& prepared) {
 }
 
 SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
-                         const std::function<void(const SafetyTrial&)>& told) {
-  const Model& model = prepared.scene.model;
+                         const SafetySettings& settings) {
   check_safety(prepared);
-  SafetyResult result;
-  const auto stands = [&](double factor) {
-    result.trials.push_back(run_trial(prepared, factor, workers));
-    if (told) told(result.trials.back());
-    (result.trials.back().stands ? result.stands : result.fails) = factor;
-    return result.trials.back().stands;
-  };
-  if (!stands(model.safety.lowest)) {
-    result.status = SafetyStatus::kBelow;
-    return result;
-  }
-  if (stands(model.safety.highest)) {
-    result.status = SafetyStatus::kAbove;
-    return result;
-  }
-  while (result.fails - result.stands > model.safety.tolerance) stands(result.factor());
-  return result;
+  return Search(prepared, workers, settings).run();
+}
+
+const char* name_of(SafetyBy by) {
+  constexpr const char* kName[] = {"factor of safety", "load factor", "tilt [deg]", "acceleration [g]"};
+  return kName[static_cast<size_t>(by)];
 }
 
 }  // namespace talus

@@ -1,15 +1,15 @@
 #pragma once
-// Factor of safety by reduction of joint strength: which factor F leaves a model just standing when
-// tan(friction), cohesion and tensile strength of its joints are divided by it. Theory: docs/theory.md
-// section 4.20.
+// What a model just bears: by which factor joint strength can be divided, or how far a load, the tilt of its ground or a
+// horizontal acceleration can be raised. Theory: docs/theory.md section 4.20.
 
 #include <functional>
+#include <memory>
 
 #include "talus/run/run.h"
 
 namespace talus {
 
-/// One run at reduced strength.
+/// One run at reduced strength, or with a raised action.
 struct SafetyTrial {
   double factor = 1;
   bool stands = false;
@@ -40,12 +40,25 @@ void check_safety(const PreparedRun& prepared);
 /// trial ends for another reason than failure of the model, InputError as check_safety().
 /// @param prepared  the model as read and cut once: all trials have the same blocks
 /// @param told      shown each trial when it ends
+/// @param settings  how it is sought, who is told, and where its mechanism goes
+struct SafetySettings {
+  int jobs = 1;  // trials side by side; more try other factors, and come to the same within the tolerance
+  std::function<void(const SafetyTrial&)> told;
+  /// An observer of one more run of the last trial that stands and the first that fails, whose scene it is; none: not run.
+  std::function<std::unique_ptr<Observer>(const Scene& scene, const SafetyTrial& trial)> keeper;
+  /// Shown what that run came to, before its observer ends.
+  std::function<void(Observer& keeper, const RunResult& result)> kept;
+  std::vector<SafetyTrial> known;  // of a search that was broken off: those that failed are not run again
+};
 SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
-                         const std::function<void(const SafetyTrial&)>& told = nullptr);
+                         const SafetySettings& settings = {});
+
+/// "factor of safety", "load factor", "tilt [deg]", "acceleration [g]".
+const char* name_of(SafetyBy by);
 
 /// Table of the trials for people, and the files safety.csv and safety.json.
 std::string safety_line(const SafetyTrial& trial);
-std::string safety_text(const SafetyResult& result);
+std::string safety_text(const Model& model, const SafetyResult& result);
 std::string safety_csv(const SafetyResult& result);
 std::string safety_json(const Model& model, const SafetyResult& result);
 

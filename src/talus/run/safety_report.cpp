@@ -17,18 +17,17 @@ std::string safety_line(const SafetyTrial& t) {
                      t.block);
 }
 
-std::string safety_text(const SafetyResult& r) {
+std::string safety_text(const Model& model, const SafetyResult& r) {
+  const char* what = name_of(model.safety.by);
   int loose = 0;
   for (const SafetyTrial& t : r.trials) loose += t.outcome == "needles move";
   std::string out;
   if (r.status == SafetyStatus::kBelow)
-    out = fmt::format("factor of safety: below {:g}, the lowest tried; give a smaller safety.lowest\n",
-                      r.fails);
+    out = fmt::format("{}: below {:g}, the lowest tried; give a smaller safety.lowest\n", what, r.fails);
   else if (r.status == SafetyStatus::kAbove)
-    out = fmt::format("factor of safety: above {:g}, the highest tried; give a larger safety.highest\n",
-                      r.stands);
+    out = fmt::format("{}: above {:g}, the highest tried; give a larger safety.highest\n", what, r.stands);
   else
-    out = fmt::format("factor of safety: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n", r.factor(),
+    out = fmt::format("{}: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n", what, r.factor(),
                       r.stands, r.fails, r.trials.size());
   if (loose > 0)
     out += fmt::format(
@@ -50,12 +49,15 @@ std::string safety_csv(const SafetyResult& r) {
 
 std::string safety_json(const Model& model, const SafetyResult& r) {
   using nlohmann::ordered_json;
+  constexpr const char* kBy[] = {"strength", "load", "tilt", "acceleration"};
   constexpr const char* kStatus[] = {"found", "below", "above"};
   ordered_json j = {{"program", fmt::format("talus {}", kVersion)},
                     {"model_file", std::filesystem::path(model.file).filename().string()},
                     {"model_hash", model.hash},
+                    {"by", kBy[static_cast<size_t>(model.safety.by)]},
                     {"status", kStatus[static_cast<int>(r.status)]}};
-  if (r.status == SafetyStatus::kFound) j["factor_of_safety"] = r.factor();
+  if (r.status == SafetyStatus::kFound)
+    j[model.safety.by == SafetyBy::kStrength ? "factor_of_safety" : name_of(model.safety.by)] = r.factor();
   if (r.status != SafetyStatus::kBelow) j["stands_at"] = r.stands;
   if (r.status != SafetyStatus::kAbove) j["fails_at"] = r.fails;
   j["tolerance"] = model.safety.tolerance;

@@ -8,7 +8,7 @@ namespace talus {
 namespace {
 
 Vec2 value_of(const LoadInput& load, const Model& model, double time) {
-  return {load.x.value_at(time, model.histories), load.y.value_at(time, model.histories)};
+  return load.factor * Vec2{load.x.value_at(time, model.histories), load.y.value_at(time, model.histories)};
 }
 
 std::vector<int> loaded_blocks(const LoadInput& load, const Layout& layout) {
@@ -73,7 +73,7 @@ void add_edge_and_point_loads(const BlockSet& blocks, const Model& model, const 
     if (l.pressure.is_given()) {
       const Vec2 turn = elastic_state(blocks.moduli[block], state.strain_part[block]).rotation;
       const Vec2 n{turn.x * p.normal.x - turn.y * p.normal.y, turn.y * p.normal.x + turn.x * p.normal.y};
-      f -= l.pressure.value_at(time, model.histories) * n;
+      f -= l.factor * l.pressure.value_at(time, model.histories) * n;
     }
     f *= p.area;
     force[block] += {f, outer(f, acting_arm(blocks, state, block, p.arm))};

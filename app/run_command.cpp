@@ -115,7 +115,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
   if (args.from.empty() || branches) check_result_folder(args.folder, args.force);
   auto [findings, prepared] = prepare_model(model);
-  if (!args.until.empty()) prepared.plans.resize(stages_until(prepared.scene.model, args.until));
+  if (!args.until.empty()) end_after(prepared, stages_until(prepared.scene.model, args.until));
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
   if (!out) throw FileError("/dev/null: cannot be opened");
   std::optional<ResultFolder> folder;

@@ -90,8 +90,9 @@ study::StudyFolder::Sharing sharing_of(const study::Study& s, const std::vector<
     const BranchKeys keys = branch_keys(now, before, begun, false, !model.bolts.empty());
     // what solves the steps tells in the stages before
     later[a] = keys.earlier.empty() &&
-               std::none_of(keys.later.begin(), keys.later.end(),
-                            [](const KeyDifference& d) { return d.key.rfind("solver.", 0) == 0; });
+               std::none_of(keys.later.begin(), keys.later.end(), [](const KeyDifference& d) {
+                 return d.key.rfind("solver.", 0) == 0 || d.key.rfind("stage.", 0) == 0;
+               });
   }
   if (std::none_of(later.begin(), later.end(), [](bool l) { return l; })) return sharing;
   sharing.until = begun.back();

@@ -6,6 +6,7 @@
 long_table="
 sliding | joints slide at their strength, whatever the mesh | build/release/studies/sliding_joints
 includes | every file compiled by itself, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
+slurm | a study on a Slurm of two nodes, one of which dies (root, Debian's slurmctld, slurmd, slurm-client, munge; else skipped) | tests/slurm/two_nodes.sh build/release
 "
 
 long_suites() { grep -rhoE 'TEST_SUITE\("long: [^" ]+"\)|test_suite\("long: [^" ]+"\)' tests --include='*.cpp' | sed 's/.*long: \([^"]*\)".*/\1/' | sort -u; }

@@ -54,7 +54,7 @@ time_step = "5 ms"
 name = "go"
 kind = "dynamic"
 duration = "0.5 s"
-time_step = "5 ms"
+time_step = "0.5 ms"
 [[monitor]]
 name = "stone"
 centroid = "stone"
@@ -112,7 +112,7 @@ TEST_CASE("command study: a table of runs whose numbers are those of the formula
   for (const auto& row : table.rows) {
     const double phi = std::stod(row[1]) * std::acos(-1) / 180, push = std::stod(row[2]),
                  way = std::stod(row[5]);
-    // a = push - g tan(phi), for 0.5 s; the push grows over the first millisecond, a fifth of a step
+    // a = push - g tan(phi), for 0.5 s; the push grows over the first millisecond
     const double expected = std::max(0.0, 0.125 * (push - 9.81 * std::tan(phi)));
     INFO(row[1], " deg, ", push);
     CHECK(std::abs(way - expected) <= 0.02 * expected + 1e-6);

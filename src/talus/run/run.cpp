@@ -456,6 +456,15 @@ RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, con
   return Runner(scene, plans, state, observer, workers).run(&from);
 }
 
+void end_after(PreparedRun& prepared, size_t stages) {
+  TALUS_ASSERT(stages > 0 && stages <= prepared.plans.size());
+  // hard contacts give by the shortest step of the whole
+  ContactGive& give = prepared.scene.give;
+  for (const StagePlan& plan : prepared.plans)
+    give.shortest_step = give.shortest_step > 0 ? std::min(give.shortest_step, plan.dt) : plan.dt;
+  prepared.plans.resize(stages);
+}
+
 int threads_for(int blocks) {
   // below this many blocks to a thread the handing over of work costs as much as it gains
   constexpr int kBlocksPerThread = 2000;

@@ -84,4 +84,8 @@ struct PreparedRun {
 PreparedRun prepare_run(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides, Findings& findings, Cut* cut = nullptr);
 
+/// Lets a run end after its first stages, of which all is as in the whole run.
+/// @pre  0 < stages <= all
+void end_after(PreparedRun& prepared, size_t stages);
+
 }  // namespace talus

@@ -53,7 +53,7 @@ std::vector<SectionSpec> sections() {
          .type = K::kBool,
          .default_text = "true",
          .doc =
-             "Run the static stages that come first once for all runs whose keys differ only in what begins later, and branch off (Branches, in docs/file_format.md)."}}},
+             "Run the static stages that come first once for all runs whose keys differ only in what begins later, and branch off (Branches, in docs/file_format.md). Keys of `[solver]` and `[[stage]]` are not shared over: they tell in the stages before."}}},
       {"vary",
        SectionShape::kList,
        "A key of the model that varies. Give one of `values` (a list), `range` `{ from, to, count }`, `files`, `distribution` `{ mean, normal }`, `{ mean, lognormal }` or `{ from, to }` (with `least`, `most` where it is cut off). Listed keys make every combination; sampled ones are drawn together, `sampling.runs` times for each combination.",

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "plot_blocks.h"
 #include "talus/base/text_file.h"
@@ -28,11 +29,15 @@ std::vector<SafetyTrial> known_trials(const fs::path& folder, const Model& model
         fmt::format("{}: the search there is of another model, or of other --set", folder.string()));
   std::vector<SafetyTrial> known;
   for (const auto& row : read_text_table(folder / kTrials).rows) {
-    if (row.size() != 10) continue;  // cut short
     SafetyTrial t;
-    t.factor = std::stod(row[0]), t.stands = row[1] == "1", t.outcome = row[2], t.stage = row[3];
-    t.time = std::stod(row[4]), t.steps = std::stoll(row[5]), t.unbalanced = std::stod(row[6]);
-    t.displacement = std::stod(row[7]), t.block = row[8], t.closure = std::stod(row[9]);
+    try {
+      t.factor = std::stod(row.at(0)), t.stands = row.at(1) == "1", t.outcome = row.at(2),
+      t.stage = row.at(3);
+      t.time = std::stod(row.at(4)), t.steps = std::stoll(row.at(5)), t.unbalanced = std::stod(row.at(6));
+      t.displacement = std::stod(row.at(7)), t.block = row.at(8), t.closure = std::stod(row.at(9));
+    } catch (const std::logic_error&) {  // a row that is no trial, or cut short: that trial is run again
+      continue;
+    }
     known.push_back(t);
   }
   return known;

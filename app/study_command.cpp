@@ -14,6 +14,7 @@
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
+#include "talus/model/read_model.h"
 #include "talus/model/variables.h"
 #include "talus/output/files.h"
 #include "talus/run/branch.h"
@@ -112,6 +113,24 @@ study::StudyFolder::Sharing sharing_of(const study::Study& s, const std::vector<
   return sharing;
 }
 
+// Every value of every key in the first run, read and not cut: what is wrong with one is told before anything runs.
+void check_values(const study::Study& s, const std::vector<study::PlannedRun>& plan,
+                  const std::string& text) {
+  constexpr size_t kMost = 300;  // of an axis
+  for (size_t a = 0; a < s.axes.size(); ++a) {
+    const size_t at = s.set.size() + a;
+    std::set<std::string> seen{plan[0].overrides[at]};
+    for (const study::PlannedRun& run : plan) {
+      if (seen.size() > kMost || !seen.insert(run.overrides[at]).second) continue;
+      std::vector<std::string> overrides = plan[0].overrides;
+      overrides[at] = run.overrides[at];
+      Findings findings(s.model.string(), text);
+      read_model(s.model.string(), text, overrides, findings);
+      findings.throw_if_errors();
+    }
+  }
+}
+
 void show_progress(const study::Progress& p, bool terminal, bool quiet) {
   static double last = -1e9;
   const double now = wall_now();
@@ -205,10 +224,13 @@ int begin_study(const StudyArguments& args) {
   Findings of_study(args.file, s.text);
   std::vector<std::string> stages;
   for (const StageInput& stage : first.scene.model.stages) stages.push_back(stage.name);
-  study::check_formulas(
-      s, study::possible_numbers(Histories(first.scene, nullptr).answers().titles(), stages), of_study);
+  study::check_formulas(s,
+                        study::possible_numbers(Histories(first.scene, nullptr).answers().titles(), stages,
+                                                first.scene.layout.origins),
+                        of_study);
   of_study.throw_if_errors();
 
+  check_values(s, plan, text);
   study::StudyFolder folder(args.folder);
   folder.set_sharing(sharing_of(s, plan, first.scene.model));
   if (args.dry) {
@@ -216,7 +238,11 @@ int begin_study(const StudyArguments& args) {
     for (const std::string& item : plan[0].overrides) show("  --set {}\n", item);
     return kExitOk;
   }
-  folder.begin(s, plan, fmt::format("talus {}", kVersion));
+  // the hash of the first model is of its files, too
+  std::string inputs = text_hash(text) + first.scene.model.hash;
+  for (const study::Axis& axis : s.axes)
+    for (const fs::path& path : axis.paths) inputs += text_hash(read_text_file(path));
+  folder.begin(s, plan, fmt::format("talus {}", kVersion), text_hash(inputs));
   if (args.plan) {
     show("{}: {} runs are planned; talus study task {} K makes one\n", args.folder, plan.size(), args.folder);
     return kExitOk;

@@ -249,13 +249,18 @@ TEST_CASE("command study: wrong input is told before anything is run or written"
           "did you mean \"stone.displacement_x.greatest\"");
   refused("way > 0.1", "way >", 3, "failure.failure.when");
   refused("\"10 deg\"", "\"100 deg\"", 3, "friction_angle");
+  refused("\"20 deg\", \"30 deg\"]", "\"20 deg\", \"30 m\"]", 3, "more than one unit");
+  refused("[2, 4, 8]", "[2, 4, \"8 m\"]", 3, "more than one unit");
+  refused("\"30 deg\"]", "\"-30 deg\"]", 3, "must be >= 0");
+  refused("stone.displacement_x.greatest", "stone.displacement_x.max", 3,
+          "stone.displacement_x has at_end, at_start, greatest");
   refused("over = \"push\"", "over = \"pull\"", 3, "there is phi or push");
   CHECK(shell(folder, "$talus study study.toml").code == 2);
   CHECK(shell(folder, "$talus study study.toml -q -o out").code == 0);
   write(folder, "model.toml", std::string(kModel) + "# changed\n");
   const Outcome other = shell(folder, "$talus study study.toml -o out");
   CHECK(other.code == 3);
-  has(other.text, "the model file differ from those that this folder was begun with");
+  has(other.text, "is not what it was for the runs that this folder was begun with");
   CHECK(shell(folder, "$talus study study.toml -o .").code == 4);
 }
 

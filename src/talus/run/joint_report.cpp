@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "talus/base/error.h"
@@ -133,6 +134,14 @@ void JointSummary::look(const Scene& scene, const State& state) {
 void JointSummary::add(const JointPoint& p) {
   ++points;
   slip_area += p.slip * p.length;
+  if (!p.face && p.slip > 0) {
+    const auto at = std::find_if(slip_by_set.begin(), slip_by_set.end(),
+                                 [&p](const auto& one) { return one.first == p.set; });
+    if (at == slip_by_set.end())
+      slip_by_set.emplace_back(p.set, p.slip);
+    else
+      at->second = std::max(at->second, p.slip);
+  }
   intact += p.state == JointState::kIntact;
   slipped += p.state == JointState::kSlipped;
   open += p.state == JointState::kOpen;
@@ -162,19 +171,24 @@ void resize_for_loading(const Loader&, auto& list, size_t count) {
 }
 void resize_for_loading(const Saver&, const auto&, size_t) {}
 
+void exchange_sets(auto& x, auto& list, const std::string& name) {
+  size_t sets = list.size();
+  x(name + "s", sets);
+  resize_for_loading(x, list, sets);
+  for (size_t i = 0; i < sets; ++i) {
+    x(fmt::format("{}.{}", name, i), list[i].first);
+    x(fmt::format("{}.{}.value", name, i), list[i].second);
+  }
+}
+
 void exchange_summary(auto& x, auto& s, const std::string& name) {
   x(name + ".time", s.time), x(name + ".points", s.points), x(name + ".intact", s.intact);
   x(name + ".slipped", s.slipped), x(name + ".open", s.open), x(name + ".widest", s.widest);
   x(name + ".slipped_joints", s.slipped_joints);
   x(name + ".slip_area", s.slip_area), x(name + ".broken", s.broken);
   x(name + ".moved_area", s.moved_area), x(name + ".moved_blocks", s.moved_blocks);
-  size_t sets = s.broken_by_set.size();
-  x(name + ".sets", sets);
-  resize_for_loading(x, s.broken_by_set, sets);
-  for (size_t i = 0; i < sets; ++i) {
-    x(fmt::format("{}.set.{}", name, i), s.broken_by_set[i].first);
-    x(fmt::format("{}.set.{}.length", name, i), s.broken_by_set[i].second);
-  }
+  exchange_sets(x, s.broken_by_set, name + ".broken_set"),
+      exchange_sets(x, s.slip_by_set, name + ".slip_set");
   exchange_point(x, s.largest, name + ".largest");
   exchange_point(x, s.most_residual, name + ".most_residual");
 }

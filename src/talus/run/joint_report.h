@@ -53,7 +53,8 @@ struct JointSummary {
   double slip_area = 0;      // sum of slip x length over points [m2]
   double broken = 0;         // length of faces that have broken [m]
   std::vector<std::pair<std::string, double>>
-      broken_by_set;      // by what they were cut along, "" where by nothing [m]
+      broken_by_set;  // by what they were cut along, "" where by nothing [m]
+  std::vector<std::pair<std::string, double>> slip_by_set;  // the largest [m]
   double moved_area = 0;  // of blocks that have moved by a tenth of their size or more since the start [m2]
   int moved_blocks = 0;
 

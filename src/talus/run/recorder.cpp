@@ -696,6 +696,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   };
   j["joints"]["slip_times_length [m2]"] = joints.slip_area;
   j["joints"]["broken_length [m]"] = joints.broken;
+  for (const auto& [set, slip] : joints.slip_by_set) j["joints"]["slip_largest_by_set [m]"][set] = slip;
   for (const auto& [set, length] : joints.broken_by_set)
     j["joints"]["broken_length_by_set [m]"][set] = length;
   j["moved"] = {{"blocks", joints.moved_blocks}, {"area [m2]", joints.moved_area}};

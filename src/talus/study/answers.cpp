@@ -49,6 +49,9 @@ double evaluate(const std::string& formula, const Numbers& numbers, std::string&
   Numbers used;
   for (const std::string& name : names_in(formula)) {
     const auto at = numbers.find(name);
+    // a set of which nothing slipped or broke is not listed
+    if (at == numbers.end() && name.find("_by_set.") != std::string::npos && numbers.count("joints.points"))
+      used[name] = 0;
     if (at == numbers.end()) continue;
     if (std::isnan(at->second)) return std::nan("");
     used.insert(*at);
@@ -103,7 +106,8 @@ Numbers numbers_of(const json& summary) {
   return out;
 }
 
-Numbers possible_numbers(const std::vector<std::string>& columns, const std::vector<std::string>& stages) {
+Numbers possible_numbers(const std::vector<std::string>& columns, const std::vector<std::string>& stages,
+                         const std::vector<std::string>& sets) {
   Numbers out;
   for (const char* name :
        {"joints.time", "joints.points", "joints.intact", "joints.slipped", "joints.open",
@@ -112,6 +116,9 @@ Numbers possible_numbers(const std::vector<std::string>& columns, const std::vec
         "contacts.bond_faces", "contacts.bond_faces_broken", "energy_closure", "solver.failed_steps",
         "solver.contact_error_worst"})
     out[name] = 1;
+  for (const std::string& set : sets)
+    for (const char* what : {"joints.slip_largest_by_set.", "joints.broken_length_by_set."})
+      out[what + as_name(set)] = 1;
   for (const std::string& column : columns) {
     const std::string name = as_name(column), monitor = name.substr(0, name.find('.'));
     for (const char* what : kOfColumn) {
@@ -141,22 +148,43 @@ bool is_damaged(const DamageState& state, const Numbers& numbers, std::string& t
   return !std::isnan(value) && value != 0;
 }
 
+namespace {
+
+// What the first name that there is not might have been.
+std::string hint_for(const std::string& formula, const Numbers& numbers) {
+  for (const std::string& name : names_in(formula)) {
+    if (numbers.count(name)) continue;
+    const size_t dot = name.rfind('.');
+    if (dot == std::string::npos) {
+      std::vector<std::string> own;
+      for (const auto& [known, value] : numbers)
+        if (known.find('.') == std::string::npos) own.push_back(known);
+      if (const std::string near = closest_name(name, own); !near.empty())
+        return fmt::format("did you mean \"{}\"?", near);
+      continue;
+    }
+    // the same beginning, another end
+    std::vector<std::string> ends, all;
+    for (const auto& [known, value] : numbers) {
+      if (known.rfind(name.substr(0, dot + 1), 0) == 0) ends.push_back(known.substr(dot + 1));
+      all.push_back(known);
+    }
+    if (!ends.empty()) return fmt::format("{} has {}", name.substr(0, dot), join_or(ends));
+    if (const std::string near = closest_name(name, all); !near.empty())
+      return fmt::format("did you mean \"{}\"?", near);
+  }
+  return "names are answers given before it, MONITOR.QUANTITY.largest (at_start, at_end, least, greatest, residual) and those of summary.json; "
+         "numbers are in SI without units, equal is ==";
+}
+
+}  // namespace
+
 void check_formulas(const Study& study, Numbers numbers, Findings& findings) {
-  std::vector<std::string> known;
   const auto check = [&](const std::string& formula, const Where& where, const std::string& path) {
     std::string trouble;
     evaluate(formula, numbers, trouble);
     if (trouble.empty() || trouble.find("is not finite") != std::string::npos) return;
-    known.clear();
-    for (const auto& [name, value] : numbers) known.push_back(name);
-    std::string near;
-    for (const std::string& name : names_in(formula))
-      if (!numbers.count(name) && name.find('.') != std::string::npos) near = closest_name(name, known);
-    findings.error(
-        where, path, trouble,
-        near.empty()
-            ? "names are those of monitors.csv, as MONITOR.QUANTITY.largest (at_start, at_end, least, greatest, residual), and of summary.json"
-            : fmt::format("did you mean \"{}\"?", near));
+    findings.error(where, path, trouble, hint_for(formula, numbers));
   };
   for (const NamedFormula& answer : study.answers) {
     check(answer.formula, answer.where, "answers." + answer.name);

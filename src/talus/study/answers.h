@@ -20,7 +20,9 @@ Numbers numbers_of(const nlohmann::json& summary);
 
 /// The same names with values of 1, of monitors with these columns ("top.displacement_x [m]") and these stages: whether a
 /// formula can be read before anything is run.
-Numbers possible_numbers(const std::vector<std::string>& columns, const std::vector<std::string>& stages);
+/// @param sets  what edges were cut along
+Numbers possible_numbers(const std::vector<std::string>& columns, const std::vector<std::string>& stages,
+                         const std::vector<std::string>& sets = {});
 
 /// Values of the answers of a study, each may name those before it. NaN where a number that it names is not there.
 /// @param trouble  of the last one that could not be evaluated

@@ -140,6 +140,54 @@ class Figures {
     keep(figure, "incremental_" + study_.answers[k].name);
   }
 
+  static std::string numbered(const Axis& axis) {
+    constexpr size_t kMost = 9;
+    std::string out;
+    for (size_t i = 0; i < axis.values.size() && i < kMost; ++i)
+      out += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, axis.values[i].shown);
+    return out + (axis.values.size() > kMost ? fmt::format(" ... {}", axis.values.size()) : "");
+  }
+
+  // Another key by whose values the runs of a figure are told apart: the first with few of them.
+  size_t told_apart_by(size_t a) const {
+    for (size_t o = 0; o < study_.axes.size(); ++o)
+      if (o != a && !study_.axes[o].sampled && study_.axes[o].values.size() >= 2 &&
+          study_.axes[o].values.size() <= 8)
+        return o;
+    return study_.axes.size();
+  }
+
+  // Crosses for the runs of each value of another key, and a line through their medians where the key has numbers.
+  void lines(plot::Figure& figure, size_t k, size_t a, size_t other,
+             const std::map<std::string, double>& place, bool numbers, double width, double height) const {
+    const Axis& by = study_.axes[other];
+    for (size_t v = 0; v < by.values.size(); ++v) {
+      const int color = static_cast<int>(v);
+      std::vector<double> x, y;
+      std::map<double, std::vector<double>> levels;
+      for (const ResultRow& row : found_.rows) {
+        if (!row.counts || !std::isfinite(row.answers[k]) || row.values[other].shown != by.values[v].shown)
+          continue;
+        x.push_back(numbers ? row.values[a].number : place.at(row.values[a].shown)),
+            y.push_back(row.answers[k]);
+        levels[x.back()].push_back(y.back());
+      }
+      if (x.empty()) continue;
+      const std::string label =
+          fmt::format("{} {}{}{}", by.name, by.values[v].shown, by.unit.empty() ? "" : " ", by.unit);
+      plot::Curve marks = crosses(label, x, y, width, height, color);
+      const bool drawn = numbers && !study_.axes[a].sampled && levels.size() > 1;
+      marks.in_legend = !drawn;
+      figure.curves.push_back(std::move(marks));
+      if (!drawn) continue;
+      plot::Curve median{
+          label + (levels.size() < x.size() ? " (median)" : ""), {}, {}, color, plot::Style::kSolid, true};
+      for (const auto& [level, answers] : levels)
+        median.x.push_back(level), median.y.push_back(median_of(answers));
+      figure.curves.push_back(std::move(median));
+    }
+  }
+
   // The answer over one key: all runs, and their median at each value.
   void scatter(size_t k, size_t a) {
     const Axis& axis = study_.axes[a];
@@ -160,17 +208,21 @@ class Figures {
     if (x.empty()) return;
     plot::Figure figure;
     figure.title = fmt::format("{} over {}", study_.answers[k].name, axis.name);
-    figure.x_label =
-        numbers ? axis.title() : fmt::format("{} (by number, in the order of the table)", axis.name);
+    figure.x_label = numbers ? axis.title() : axis.name + ": " + numbered(axis);
     figure.y_label = study_.answers[k].name;
     const Span sx = span_of(x), sy = span_of(y);
     figure.x_min = sx.least - 0.05 * sx.width(), figure.x_max = sx.most + 0.05 * sx.width();
-    figure.curves.push_back(crosses("runs", x, y, sx.width(), sy.width(), 0));
-    if (!axis.sampled && levels.size() > 1) {
-      plot::Curve median{"median", {}, {}, 1, plot::Style::kDashed, true};
-      for (const auto& [level, answers] : levels)
-        median.x.push_back(level), median.y.push_back(median_of(answers));
-      figure.curves.push_back(std::move(median));
+    const size_t other = told_apart_by(a);
+    if (other < study_.axes.size()) {
+      lines(figure, k, a, other, place, numbers, sx.width(), sy.width());
+    } else {
+      figure.curves.push_back(crosses("runs", x, y, sx.width(), sy.width(), 0));
+      if (numbers && !axis.sampled && levels.size() > 1) {
+        plot::Curve median{"median", {}, {}, 1, plot::Style::kDashed, true};
+        for (const auto& [level, answers] : levels)
+          median.x.push_back(level), median.y.push_back(median_of(answers));
+        figure.curves.push_back(std::move(median));
+      }
     }
     keep(figure, study_.answers[k].name + "_over_" + axis.name);
   }
@@ -238,7 +290,7 @@ std::vector<std::string> write_figures(const Study& study, const Gathered& found
 }
 
 std::string study_page(const Study& study, const Gathered& found, const std::vector<std::string>& figures) {
-  const std::string title = study.title.empty() ? "Study" : study.title;
+  const std::string title = study.title.empty() ? "Study of " + study.model.filename().string() : study.title;
   std::string out = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
       "content=\"width=device-width\"><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
@@ -262,6 +314,9 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
     }
     out += "</table>\n";
   }
+  if (!study.states.empty() && found.fragility.empty())
+    out +=
+        "<p>There is no fragility curve: it needs a key with numbers, scaled by a measure or named by <code>[fragility] over</code>.</p>\n";
   if (const std::vector<Sensitivity> list = sensitivities(study, found); !list.empty()) {
     out +=
         "<h2>Sensitivity</h2>\n<p>Rank correlation (Spearman) of answers with keys: 1 grows together, -1 against each other, 0 neither.</p>\n<table><tr><th class=\"text\">answer</th><th class=\"text\">key</th><th>correlation</th></tr>\n";

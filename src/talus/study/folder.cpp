@@ -48,25 +48,28 @@ std::string host_name() {
   return name;
 }
 
-void StudyFolder::begin(const Study& study, const std::vector<PlannedRun>& plan, const std::string& program) {
+void StudyFolder::begin(const Study& study, const std::vector<PlannedRun>& plan, const std::string& program,
+                        const std::string& inputs) {
   const std::string text = plan_text(plan, sharing_);
   ordered_json now = {{"talus_study", 1},
                       {"program", program},
                       {"study_file", fs::absolute(study.file).lexically_normal().string()},
                       {"model", fs::absolute(study.model).lexically_normal().string()},
-                      {"model_hash", text_hash(read_text_file(study.model))},
+                      {"inputs_hash", inputs},
                       {"runs", plan.size()},
                       {"plan_hash", text_hash(text)},
                       {"until", sharing_.until}};
   std::error_code ec;
   if (fs::exists(path_ / "study.json", ec)) {
     const ordered_json before = json_of(path_ / "study.json");
-    for (const auto& [key, what] : {std::pair("plan_hash", "the runs that the study file plans"),
-                                    std::pair("model_hash", "the model file")})
+    for (const auto& [key, what] :
+         {std::pair("plan_hash", "the study file plans other runs than those"),
+          std::pair("inputs_hash",
+                    "the model file, or a file that it or the study names, is not what it was for the runs")})
       if (before.value(key, "") != now[key])
         throw InputError(fmt::format(
-            "{}: error: {} differ from those that this folder was begun with. Take another folder, or change them back "
-            "(answers, failure, fragility may change)\n",
+            "{}: error: {} that this folder was begun with. Take another folder, or change it back "
+            "(answers, failure and fragility may change)\n",
             path_.string(), what));
     write_file(study_file(), study.text);  // answers may have changed
     return;
@@ -89,11 +92,16 @@ void StudyFolder::check() const {
                     path_.string()));
 }
 
-std::string StudyFolder::study_origin() const {
-  return json_of(path_ / "study.json").at("study_file").get<std::string>();
+StudyFolder::Description StudyFolder::description() const {
+  const fs::path file = path_ / "study.json";
+  const ordered_json j = json_of(file);
+  try {
+    return {j.at("study_file").get<std::string>(), j.at("model").get<std::string>(),
+            j.at("until").get<std::string>(), j.at("runs").get<int>()};
+  } catch (const nlohmann::json::exception& e) {
+    throw FileError(fmt::format("{}: is not what talus study wrote: {}", file.string(), e.what()));
+  }
 }
-std::string StudyFolder::until() const { return json_of(path_ / "study.json").value("until", ""); }
-int StudyFolder::planned() const { return json_of(path_ / "study.json").at("runs").get<int>(); }
 
 const std::string& StudyFolder::line(int number) const {
   if (lines_.empty()) {
@@ -107,11 +115,16 @@ const std::string& StudyFolder::line(int number) const {
 }
 
 StudyFolder::Task StudyFolder::task(int number) const {
-  const auto j = ordered_json::parse(line(number));
   Task task;
-  task.overrides = j.at("set").get<std::vector<std::string>>();
-  if (j.contains("group"))
-    task.group = j["group"], task.group_overrides = j["group_set"].get<std::vector<std::string>>();
+  try {
+    const auto j = ordered_json::parse(line(number));
+    task.overrides = j.at("set").get<std::vector<std::string>>();
+    if (j.contains("group"))
+      task.group = j["group"], task.group_overrides = j["group_set"].get<std::vector<std::string>>();
+  } catch (const nlohmann::json::exception& e) {
+    throw FileError(
+        fmt::format("{}: run {} cannot be read: {}", (path_ / "plan.jsonl").string(), number, e.what()));
+  }
   return task;
 }
 
@@ -122,9 +135,13 @@ std::optional<RunRecord> StudyFolder::record_of(int number) const {
   std::error_code ec;
   if (!fs::exists(file, ec)) return std::nullopt;
   const ordered_json j = json_of(file);
-  return RunRecord{j.value("run", -1),      j.value("status", ""),
-                   j.value("exit_code", 0), j.value("wall_time [s]", 0.0),
-                   j.value("host", ""),     j.value("message", "")};
+  try {
+    return RunRecord{j.at("run").get<int>(),  j.at("status").get<std::string>(),
+                     j.value("exit_code", 0), j.value("wall_time [s]", 0.0),
+                     j.value("host", ""),     j.value("message", "")};
+  } catch (const nlohmann::json::exception& e) {
+    throw FileError(fmt::format("{}: is not what talus study wrote: {}", file.string(), e.what()));
+  }
 }
 
 bool StudyFolder::is_done(int number) const {

@@ -27,22 +27,26 @@ class StudyFolder {
 
   /// Makes the folder for this study and plan, or finds that it is its own. Throws FileError when it holds anything
   /// else, InputError when another study, model or plan was begun in it.
-  void begin(const Study& study, const std::vector<PlannedRun>& plan, const std::string& program);
+  /// @param inputs  digest of all files that the runs read
+  void begin(const Study& study, const std::vector<PlannedRun>& plan, const std::string& program,
+             const std::string& inputs);
   /// Throws FileError when it is no folder of a study.
   void check() const;
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path study_file() const { return path_ / "study.toml"; }
   /// The study file that it was begun with, from which paths count.
-  std::string study_origin() const;
-  int planned() const;
+  std::string study_origin() const { return description().study_file; }
+  std::string model() const { return description().model; }
+  int planned() const { return description().runs; }
   /// Overrides of planned run `number`, and the name of its group (runs that share their static stages).
   struct Task {
     std::vector<std::string> overrides, group_overrides;
     std::string group;  // "": none shared
   };
   Task task(int number) const;
-  std::string until() const;  // stage with which the shared stages end; "": none
+  /// Stage with which the shared stages end; "": none.
+  std::string until() const { return description().until; }
 
   std::filesystem::path run_folder(int number) const;
   std::filesystem::path parent_folder(const std::string& group) const { return path_ / "parents" / group; }
@@ -68,6 +72,12 @@ class StudyFolder {
   void set_sharing(Sharing sharing) { sharing_ = std::move(sharing); }
 
  private:
+  // What study.json holds. Throws FileError.
+  struct Description {
+    std::string study_file, model, until;
+    int runs = 0;
+  };
+  Description description() const;
   const std::string& line(int number) const;
 
   std::filesystem::path path_;

@@ -51,8 +51,13 @@ ResultRow row_of(const Study& study, const PlannedRun& run, const StudyFolder& f
   row.counts = row.status == "finished";
   row.has_report = fs::exists(there / "report.html", ec);
   if (summary.is_object() && (row.counts || row.status == "not valid")) {
-    Numbers numbers = numbers_of(summary);
     std::string trouble;
+    Numbers numbers;
+    try {
+      numbers = numbers_of(summary);
+    } catch (const nlohmann::json::exception& e) {
+      trouble = fmt::format("run {}: its summary cannot be read: {}", run.number, e.what());
+    }
     row.answers = evaluate_answers(study, numbers, trouble);
     for (size_t s = 0; s < study.states.size(); ++s) {
       const bool damaged = is_damaged(study.states[s], numbers, trouble);
@@ -181,6 +186,13 @@ std::string gathered_text(const Study& study, const Gathered& found) {
   std::string out =
       fmt::format("{} runs: {} finished, {} failed, {} not valid, {} missing\n", found.rows.size(),
                   found.finished, found.failed, found.not_valid, found.missing);
+  constexpr int kMostReasons = 3;
+  int reasons = 0;
+  for (const ResultRow& row : found.rows)
+    if (!row.counts && !row.record.message.empty() && reasons++ < kMostReasons)
+      out += fmt::format("run {}, {}: {}\n", row.number, row.status, row.record.message);
+  if (reasons > kMostReasons)
+    out += fmt::format("and {} more: the last column of results.csv\n", reasons - kMostReasons);
   for (const std::string& trouble : found.troubles) out += "note: " + trouble + "\n";
   for (size_t s = 0; s < found.fragility.size(); ++s) {
     const Fragility& f = found.fragility[s];

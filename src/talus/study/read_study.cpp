@@ -271,12 +271,12 @@ class StudyReader {
                       "write values = [1, 2, 3] or [\"30 deg\", \"35 deg\"]");
       return;
     }
-    bool numbers = true;
+    bool numbers = true, quantities = true;
     std::string unit;
     for (const toml::node& item : *list) {
       const auto v = with_unit_of(item);
       if (v && axis.values.empty()) unit = v->unit;
-      numbers = numbers && v && v->unit == unit;
+      numbers = numbers && v && v->unit == unit, quantities = quantities && v;
       AxisValue value;
       if (v) {
         value = value_of(v->number, v->unit);
@@ -289,6 +289,9 @@ class StudyReader {
       }
       axis.values.push_back(value);
     }
+    if (quantities && !numbers)
+      findings_.error(where_of(node.source()), path + ".values", "has more than one unit",
+                      "write all values in one");
     if (numbers) axis.unit = unit;
     if (!numbers)
       for (size_t i = 0; i < axis.values.size(); ++i) {

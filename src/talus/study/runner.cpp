@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <nlohmann/json.hpp>
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
@@ -85,8 +84,7 @@ std::string Runner::state_of(const std::string& group) const {
 }
 
 void Runner::start(Job job) {
-  const std::string model =
-      nlohmann::json::parse(read_text_file(folder_.path() / "study.json")).at("model").get<std::string>();
+  const std::string model = folder_.model();
   const bool parent = job.number < 0;
   job.attempt = folder_.attempt(parent ? "parent_" + job.group : fmt::format("{:06}", job.number));
   std::vector<std::string> words{settings_.program, "run", model, "-q",
@@ -189,6 +187,8 @@ void Runner::run(const std::vector<int>& numbers, const std::function<void(const
       start(std::move(job));
     }
     if (running_.empty()) break;
+    progress_.running = static_cast<int>(running_.size());
+    told(progress_);
     int status = 0;
     const pid_t process = waitpid(-1, &status, 0);
     if (process < 0 && errno != EINTR) fail_file(settings_.program, "waited for", errno);
@@ -202,11 +202,11 @@ void Runner::run(const std::vector<int>& numbers, const std::function<void(const
     Job job = std::move(at->second);
     running_.erase(at);
     ended(std::move(job), status, stopped);
-    progress_.running = static_cast<int>(running_.size());
     const int ours = progress_.done - before;
     if (ours > 0) progress_.to_go = (wall_now() - begun) / ours * (progress_.all - progress_.done);
-    told(progress_);
   }
+  progress_.running = 0;
+  told(progress_);
 }
 
 }  // namespace talus::study

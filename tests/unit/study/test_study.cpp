@@ -266,7 +266,7 @@ TEST_CASE("study: formulas name what runs answer") {
   Findings told("study.toml", wrong.text);
   check_formulas(wrong, possible, told);
   CHECK(told.error_count() == 2);
-  CHECK(told.render().find("did you mean \"top_left.displacement_x.largest\"") != std::string::npos);
+  CHECK(told.render().find("top_left.displacement_x has at_end, at_start, greatest") != std::string::npos);
 }
 
 TEST_CASE("study: the folder takes a run whole or not at all, and the first of two") {
@@ -275,7 +275,7 @@ TEST_CASE("study: the folder takes a run whole or not at all, and the first of t
   const Study s = read(kHead + "[[vary]]\nkey = \"a\"\nvalues = [1, 2]\n", (scratch / "study.toml").string());
   const std::vector<PlannedRun> plan = plan_runs(s);
   StudyFolder folder(scratch / "out");
-  folder.begin(s, plan, "talus test");
+  folder.begin(s, plan, "talus test", "files");
   CHECK(folder.planned() == 2);
   CHECK(folder.task(1).overrides == std::vector<std::string>{"a=2"});
   CHECK_THROWS_AS(folder.task(2), FileError);
@@ -300,13 +300,13 @@ TEST_CASE("study: the folder takes a run whole or not at all, and the first of t
   CHECK(!std::filesystem::exists(folder.path() / "work" / ("000001." + host_name() + ".99999999.0")));
   CHECK(std::filesystem::exists(folder.path() / "work" / "000001.elsewhere.1.0"));
   // the same study goes on; another one is refused, and a folder of other things
-  StudyFolder(scratch / "out").begin(s, plan, "talus test");
+  StudyFolder(scratch / "out").begin(s, plan, "talus test", "files");
   const Study other =
       read(kHead + "[[vary]]\nkey = \"a\"\nvalues = [1, 3]\n", (scratch / "study.toml").string());
-  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(other, plan_runs(other), "talus test"), InputError);
-  std::ofstream(scratch / "m.toml") << "talus = 1\n# changed\n";
-  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(s, plan, "talus test"), InputError);
-  CHECK_THROWS_AS(StudyFolder(scratch.path()).begin(s, plan, "talus test"), FileError);
+  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(other, plan_runs(other), "talus test", "files"),
+                  InputError);
+  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(s, plan, "talus test", "other files"), InputError);
+  CHECK_THROWS_AS(StudyFolder(scratch.path()).begin(s, plan, "talus test", "files"), FileError);
 }
 
 TEST_CASE(
@@ -323,7 +323,7 @@ TEST_CASE(
   const Study s = study_with("");
   const std::vector<PlannedRun> plan = plan_runs(s);
   StudyFolder folder(scratch / "out");
-  folder.begin(s, plan, "talus test");
+  folder.begin(s, plan, "talus test", "files");
   const auto finish = [&](int number, const std::string& status, const std::string& summary) {
     const auto attempt = folder.attempt("x");
     std::filesystem::create_directories(attempt);

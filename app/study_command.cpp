@@ -282,6 +282,7 @@ void add_study_arguments(CLI::App& verb, StudyArguments& args) {
   args.task->footer("Example: seq 0 899 | parallel talus study task out/walls {}");
   args.gather = verb.add_subcommand("gather", "collect what is done: results.csv, figures, study.html");
   args.gather->add_option("DIR", args.folder, "folder of the study")->required();
+  args.gather->add_flag("-q,--quiet", args.quiet, "say nothing but errors");
   args.gather->footer("Example: talus study gather out/walls");
   verb.footer("Example: talus study examples/many_runs/friction.toml -o out/friction");
 }

@@ -149,7 +149,7 @@ TEST_CASE("command study: a table of runs whose numbers are those of the formula
 }
 
 TEST_CASE(
-    "command study: killed on the way, it goes on with what is missing; the table is that of an unbroken one") {
+    "command study: killed on the way, it goes on with what is missing, and the table is that of an unbroken one") {
   const Folder folder;
   write(folder, "model.toml", kModel), write(folder, "study.toml", kStudy);
   CHECK(shell(folder, "$talus study study.toml -q -o whole").code == 0);

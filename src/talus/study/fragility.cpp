@@ -48,6 +48,8 @@ std::string separated(const std::vector<FragilityPoint>& points) {
   if (damaged == 0) return "no run is in this state: go to higher intensities";
   if (whole == 0) return "every run is in this state: go to lower intensities";
   if (lowest == highest) return "all runs have one intensity";
+  if (highest_whole == lowest_damaged)
+    return "only at one intensity some runs are in this state and some are not: give levels just below and above it";
   if (highest_whole < lowest_damaged)
     return "all runs above some intensity are in this state and none below: give levels between";
   return "";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <set>
 
 #include "talus/base/error.h"
@@ -68,7 +69,7 @@ std::vector<SectionSpec> sections() {
         {.name = "files",
          .type = K::kText,
          .doc =
-             "Pattern of file names, `motions/*.csv`, from the folder of the study: each file is a value."},
+             "Pattern of file names (`*`, `?`, `[abc]`), `motions/*.csv`, from the folder of the study: each file is a value."},
         {.name = "measure",
          .type = K::kText,
          .doc =
@@ -160,10 +161,14 @@ AxisValue value_of(double number, const std::string& unit) {
   return v;
 }
 
-// Whether `text` is as `pattern` says, with * for anything and ? for one character.
+// Whether `text` is as `pattern` says, with * for anything, ? for one character, [abc] for one of these.
 bool matches(const char* pattern, const char* text) {
   if (*pattern == '*') return matches(pattern + 1, text) || (*text && matches(pattern, text + 1));
   if (*text == 0) return *pattern == 0;
+  if (const char* end = *pattern == '[' ? std::strchr(pattern, ']') : nullptr) {
+    const std::string_view set(pattern + 1, static_cast<size_t>(end - pattern - 1));
+    return set.find(*text) != std::string_view::npos && matches(end + 1, text + 1);
+  }
   return (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
 }
 
@@ -384,17 +389,17 @@ class StudyReader {
     if (axis.paths.empty())
       findings_.error(
           f.where("files"), path + ".files", fmt::format("\"{}\" are no files", (folder_ / pattern).string()),
-          "the path counts from the folder of the study file; * stands for anything within a name");
+          "the path counts from the folder of the study file; * stands for anything within a name, ? for one character, [abc] for one of these");
   }
 
-  // A path on its way through a pattern, and what stood for its first part with * or ?.
+  // A path on its way through a pattern, and what stood for its first part with *, ? or [].
   struct Found {
     fs::path path;
     std::string name;
   };
 
   static void add_matches(const Found& at, const std::string& part, std::vector<Found>& out) {
-    if (part.find_first_of("*?") == std::string::npos) {
+    if (part.find_first_of("*?[") == std::string::npos) {
       out.push_back({at.path / part, at.name});
       return;
     }

@@ -90,7 +90,7 @@ TEST_CASE("study: motions are scaled to their measures") {
   }
   const Study s = read(
       kHead +
-          "[[vary]]\nname = \"motion\"\nkey = \"variables.file\"\nfiles = \"*.csv\"\n"
+          "[[vary]]\nname = \"motion\"\nkey = \"variables.file\"\nfiles = \"[ot][nw][eo].csv\"\n"
           "[[vary]]\nname = \"pga\"\nkey = \"variables.scale\"\nvalues = [\"0.5 g\", \"1 g\"]\nmeasure = \"PGA\"\n",
       (folder / "study.toml").string());
   const std::vector<PlannedRun> plan = plan_runs(s);
@@ -224,6 +224,9 @@ TEST_CASE("study: where there is no fragility curve, it says why") {
   CHECK(fit_fragility({{1, 5, 0}, {2, 5, 0}}).trouble.find("no run is in this state") != std::string::npos);
   CHECK(fit_fragility({{1, 5, 5}, {2, 5, 5}}).trouble.find("every run") != std::string::npos);
   CHECK(fit_fragility({{1, 5, 0}, {2, 5, 5}}).trouble.find("levels between") != std::string::npos);
+  CHECK(fit_fragility({{1, 5, 0}, {2, 5, 2}, {3, 5, 5}}).trouble.find("only at one intensity") !=
+        std::string::npos);
+  CHECK(fit_fragility({{1, 50, 0}, {2, 50, 20}, {3, 50, 49}}).found());
   CHECK(fit_fragility({{1, 5, 3}}).trouble.find("one intensity") != std::string::npos);
   CHECK(fit_fragility({{1, 50, 40}, {2, 50, 10}}).trouble.find("does not grow") != std::string::npos);
   CHECK(!fit_fragility({}).found());

@@ -130,8 +130,9 @@ std::vector<SectionSpec> run_sections() {
          .dimension = D::kTime,
          .range = kNonNegative,
          .default_text = "\"0 s\"",
-         .doc = "Spacing of the rows of histories.csv; 0: every step. Rows are values of single steps, not "
-                "means: faster motion is aliased, impulses stay exact."},
+         .doc =
+             "Spacing of the rows of histories.csv, from the beginning of each stage on, linear between the two steps about a row; 0: "
+             "every step. Rows are no means: faster motion is aliased, impulses stay exact."},
         {.name = "steps_interval",
          .dimension = D::kTime,
          .range = kNonNegative,

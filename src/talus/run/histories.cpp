@@ -277,6 +277,47 @@ void Histories::sample_bolt(const Instant& instant, const std::string& name, std
 }
 
 void Histories::at(const Instant& instant, bool keep) {
+  std::vector<double> row = sample(instant);
+  if (keep) keep_row(std::move(row));
+  release(known_until_, false);
+}
+
+void Histories::keep_row(std::vector<double> row) {
+  const double ready = row[0] + 0.5 * widest_;
+  waiting_.push_back({std::move(row), ready});
+}
+
+void Histories::at_even(const Instant& instant, double interval, Even& even) {
+  constexpr double kSame = 1e-6;  // of a step: an instant so near is that of the row
+  std::vector<double> row = sample(instant);
+  const double t = instant.state.time, near = kSame * instant.advance;
+  const bool begins = before_.empty() || instant.stage_start;
+  bool kept = false;
+  if (!before_.empty()) {
+    // what a stage resets is not between two instants: the last values stand until then
+    const bool resets = begins && scene_.model.stages[static_cast<size_t>(instant.stage)].reset_displacements;
+    const std::vector<double>& after = resets ? before_ : row;
+    for (;; even.rows += 1) {
+      const double at = even.begin + even.rows * interval;
+      if (begins ? at >= t - near : at > t + near) break;
+      kept = std::abs(at - t) <= near;
+      std::vector<double> here = row;
+      if (!kept) {
+        const double share = std::clamp((at - before_[0]) / (t - before_[0]), 0.0, 1.0);
+        for (size_t c = 0; c < row.size(); ++c) here[c] = before_[c] + share * (after[c] - before_[c]);
+        here[0] = at;
+      }
+      keep_row(std::move(here));
+    }
+  }
+  if (begins) even = {t, 1};
+  if (begins || (instant.last && !kept)) keep_row(row);
+  before_ = std::move(row);
+  release(known_until_, false);
+}
+
+// All columns now; window means are filled in when they are known.
+std::vector<double> Histories::sample(const Instant& instant) {
   const State& s = instant.state;
   std::vector<double> row{s.time, s.history_time};
   size_t point = 0, centroid = 0, crack = 0, pair = 0, block = 0, support = 0, contact = 0;
@@ -321,8 +362,7 @@ void Histories::at(const Instant& instant, bool keep) {
   }
   answers_->at(instant, row);
   known_until_ = s.time + 0.5 * instant.advance;
-  if (keep) waiting_.push_back({std::move(row), s.time + 0.5 * widest_});
-  release(known_until_, false);
+  return row;
 }
 
 void Histories::release(double known_until, bool all) {
@@ -409,7 +449,7 @@ Histories::Spectra Histories::spectra() const {
 
 template <class X, class Self>
 void Histories::exchange(X& x, Self& self) {
-  x("histories.known_until", self.known_until_);
+  x("histories.known_until", self.known_until_), x("histories.before", self.before_);
   for (size_t i = 0; i < self.spectra_.size(); ++i) {
     const std::string name = fmt::format("histories.spectrum.{}.", i);
     auto& s = self.spectra_[i];
@@ -448,6 +488,9 @@ void Histories::load(Loader& from) {
   }
   exchange(from, *this);
   answers_->load(from);
+  if (!before_.empty() && before_.size() != columns_.size())
+    throw FileError(fmt::format("the instant before in the saved state has {} values, not {}", before_.size(),
+                                columns_.size()));
   for (const Spectrum& s : spectra_)
     if (s.x.size() != s.time.size() || s.y.size() != s.time.size())
       throw FileError("accelerations of the saved state are not as many as their times");

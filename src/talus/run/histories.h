@@ -33,6 +33,14 @@ class Histories {
   /// @param keep  whether this instant becomes a row
   void at(const Instant& instant, bool keep);
 
+  /// Rows at even times.
+  struct Even {
+    double begin = 0, rows = 0;  // of the present stage [s], so far
+  };
+  /// The same with a row at the beginning of each stage and every `interval` after it, linear between the two instants
+  /// about it, and one at the last instant.
+  void at_even(const Instant& instant, double interval, Even& even);
+
   struct Peak {
     std::string name;     // of the monitor
     double velocity = 0;  // largest in dynamic stages, relative where the monitor is [m/s]
@@ -84,6 +92,8 @@ class Histories {
   };
 
   void add_columns(const std::string& name, const std::vector<std::string>& titles);
+  std::vector<double> sample(const Instant& instant);
+  void keep_row(std::vector<double> row);
   void set_up_contact(const MonitorInput& m);
   static Vec2 acceleration_of(const Instant& instant, int block, Vec2 arm);
   double rotation_of(const State& state, int block) const;
@@ -143,6 +153,7 @@ class Histories {
   std::vector<int> blocks_;          // one per block monitor
   std::vector<int> supports_;        // one per support monitor
   std::vector<Impulses> contacts_;   // one per contact monitor
+  std::vector<double> before_;       // all columns at the instant before, where rows are even
   double widest_ = 0;                // largest window [s]
   double known_until_ = 0;
   std::deque<Waiting> waiting_;

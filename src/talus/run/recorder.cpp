@@ -218,7 +218,7 @@ std::unique_ptr<Recorder> Recorder::branch_off(const Scene& scene, ResultFolder 
 // The sizes of the tables are read where these are opened.
 template <class X, class Self>
 void Recorder::Due::exchange(X& x, Self& due) {
-  x("recorder.next_history", due.history), x("recorder.next_steps", due.steps);
+  x("recorder.history", due.history), x("recorder.next_steps", due.steps);
   x("recorder.next_frame", due.frame), x("recorder.worst", due.worst);
   x("recorder.dumped_failure", due.dumped_failure);
 }
@@ -370,7 +370,10 @@ void Recorder::at(const Instant& i) {
   const double t = i.state.time, dt = i.advance;
   // of these results, which may be those of a branch
   const bool first = block_frames_.count() == 0, start = first || i.stage_start;
-  histories_.at(i, is_due(t, dt, out.history_interval, due_.history) || i.last);
+  if (out.history_interval > 0)
+    histories_.at_even(i, out.history_interval, due_.history);
+  else
+    histories_.at(i, true);
   record_step(i);
   const bool failure = i.report.failed && !due_.dumped_failure;
   if (failure || i.state.step == dump_step_) {

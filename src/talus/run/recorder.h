@@ -96,8 +96,9 @@ class Recorder : public Observer {
 
   // When what is written next, and what waits for it.
   struct Due {
-    double history = 0, steps = 0, frame = 0;  // time [s]
-    std::vector<double> worst;                 // of steps.csv columns since its last row
+    Histories::Even history;
+    double steps = 0, frame = 0;  // time [s]
+    std::vector<double> worst;    // of steps.csv columns since its last row
     bool dumped_failure = false;
 
     template <class X, class Self>

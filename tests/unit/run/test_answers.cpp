@@ -147,4 +147,55 @@ TEST_CASE("answers go by every step, whatever the rows of histories are, and by 
   CHECK(csv.find("base,velocity_x,m/s,shake hard,") != std::string::npos);
 }
 
+TEST_CASE("rows of an interval are even, whatever the step, and begin anew with each stage") {
+  // X = V t: linear between steps, so that rows are exact
+  const std::string text = fmt::format(R"(
+talus = 1
+[material.m]
+density = 2500
+[[block]]
+name = "b"
+polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
+material = "m"
+kind = "rigid"
+velocity = [{}, 0]
+[[stage]]
+name = "first"
+kind = "dynamic"
+duration = "0.105 s"
+time_step = "7 ms"
+[[stage]]
+name = "second"
+kind = "dynamic"
+duration = "0.06 s"
+time_step = "25 ms"
+reset_displacements = true
+[[monitor]]
+name = "b"
+centroid = "b"
+)",
+                                       kSpeed);
+  Findings findings("model.toml", text);
+  PreparedRun prepared = prepare_run("model.toml", text, {}, findings);
+  std::vector<std::vector<double>> rows;
+  struct EvenRows : Observer {
+    EvenRows(const Scene& scene, std::vector<std::vector<double>>& all)
+        : histories(scene, [&all](const std::vector<double>& row) { all.push_back(row); }) {}
+    void at(const Instant& i) override { histories.at_even(i, 0.01, even); }
+    Histories histories;
+    Histories::Even even;
+  } observer(prepared.scene, rows);
+  State state = start_state(prepared.scene);
+  run_stages(prepared.scene, prepared.plans, state, observer, Workers(1));
+  // 0 to 0.1, then from 0.105 on by 0.01 to 0.165, which is its end: 20 ms are three steps of it
+  REQUIRE(rows.size() == 11 + 7);
+  for (size_t k = 0; k < rows.size(); ++k) {
+    const double t = k < 11 ? 0.01 * static_cast<double>(k) : 0.105 + 0.01 * static_cast<double>(k - 11);
+    INFO(k);
+    CHECK(std::abs(rows[k][0] - t) < 1e-12);
+    // the last row before displacements are reset has those of the step before it, at 0.098 s
+    CHECK(std::abs(rows[k][2] - kSpeed * (k < 10 ? t : k == 10 ? 0.098 : t - 0.105)) < 1e-12);
+  }
+}
+
 }  // namespace test_answers

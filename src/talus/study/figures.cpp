@@ -75,7 +75,7 @@ class Figures {
     plot::Figure figure;
     figure.title = "Fragility: probability of damage, with bands of 90 %";
     figure.x_label = study_.axes[over_].title(), figure.y_label = "probability";
-    figure.y_min = 0, figure.y_max = 1, figure.x_min = 0;
+    figure.y_min = -0.02, figure.y_max = 1.02, figure.x_min = 0;  // marks at 0 and 1 are seen whole
     double most = 0;
     for (const auto& points : found_.points)
       for (const FragilityPoint& p : points) most = std::max(most, p.intensity);
@@ -135,6 +135,13 @@ class Figures {
     plot::Curve median{"median", {}, {}, 0, plot::Style::kSolid, true};
     for (const auto& [level, answers] : levels)
       median.x.push_back(median_of(answers)), median.y.push_back(level);
+    // the few that run away do not hide the others
+    constexpr double kShown = 4;  // times the largest median
+    const double shown = kShown * *std::max_element(median.x.begin(), median.x.end());
+    double most = 0;
+    for (const auto& [others, points] : lines)
+      for (const auto& [answer, level] : points) most = std::max(most, answer);
+    if (shown > 0 && most > shown) figure.x_max = shown;
     figure.curves.push_back(std::move(median));
     figure.y_min = 0;
     keep(figure, "incremental_" + study_.answers[k].name);

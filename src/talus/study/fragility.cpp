@@ -11,7 +11,7 @@ namespace talus::study {
 namespace {
 
 constexpr int kMostRounds = 200;
-constexpr double kConverged = 1e-12;
+constexpr double kConverged = 1e-9;
 
 // P = Phi(eta); the score and the expected information of a point, without underflow far out.
 struct Term {

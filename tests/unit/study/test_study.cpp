@@ -220,6 +220,24 @@ TEST_CASE("study: a fragility curve is where the likelihood is greatest") {
   CHECK(f.band(0.6, 1.645) > f.probability(0.6));
 }
 
+TEST_CASE(
+    "study: a fragility curve of thousands of intensities, each of one run, is that of the distribution drawn from") {
+  // capacities lognormal: median 4, beta 0.3; a run is damaged when its intensity is above
+  constexpr int kRuns = 20000;
+  std::vector<FragilityPoint> points;
+  for (int i = 0; i < kRuns; ++i) {
+    const double x = 1 + 9 * (i + 0.5) / kRuns, u = std::fmod(0.5 + i * 0.6180339887498949, 1.0);
+    points.push_back({x, 1, x > 4 * std::exp(0.3 * normal_quantile(std::clamp(u, 1e-9, 1 - 1e-9))) ? 1 : 0});
+  }
+  const Fragility f = fit_fragility(points);
+  INFO(f.trouble);
+  REQUIRE(f.found());
+  // four standard errors
+  CHECK(std::abs(std::log(f.median / 4)) < 4 * f.median_error);
+  CHECK(std::abs(f.beta - 0.3) < 4 * f.beta_error);
+  CHECK(f.median_error < 0.01);
+}
+
 TEST_CASE("study: where there is no fragility curve, it says why") {
   CHECK(fit_fragility({{1, 5, 0}, {2, 5, 0}}).trouble.find("no run is in this state") != std::string::npos);
   CHECK(fit_fragility({{1, 5, 5}, {2, 5, 5}}).trouble.find("every run") != std::string::npos);

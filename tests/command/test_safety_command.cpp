@@ -65,8 +65,11 @@ TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on afte
   CHECK(shell(f, "$talus report s/fails").code == 0);
 
   // broken off: the table of trials is there, and the search comes to the same
-  shell(f, fmt::format("$talus safety {} --set safety.tolerance=0.0001 -o k & sleep 0.5; kill -9 $!; wait",
-                       model));
+  shell(
+      f,
+      fmt::format(
+          "$talus safety {} --set safety.tolerance=0.0001 -o k & n=0; while [ $n -lt 600 ] && [ \"$(cat k/safety.csv 2>/dev/null | wc -l)\" -lt 3 ]; do sleep 0.05; n=$((n + 1)); done; kill -9 $!; wait",
+          model));
   const std::string begun = read_text_file((f / "k/safety.csv").string());
   CHECK(std::count(begun.begin(), begun.end(), '\n') >= 2);
   const Outcome rest =

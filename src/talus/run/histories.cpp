@@ -1,6 +1,7 @@
 #include "talus/run/histories.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -443,6 +444,16 @@ Histories::Spectra Histories::spectra() const {
       out.columns.push_back(fmt::format("{}.Sa_{} [m/s2]", s.name, a == &s.x ? "x" : "y"));
       out.values.push_back(record::response_spectrum(even, dt, periods));
     }
+  }
+  return out;
+}
+
+std::string Histories::Spectra::csv() const {
+  std::string out = fmt::format("{}\n", fmt::join(columns, ","));
+  for (size_t row = 0; row < values[0].size(); ++row) {
+    for (size_t c = 0; c < values.size(); ++c)
+      out += fmt::format("{}{:.17g}", c == 0 ? "" : ",", values[c][row]);
+    out += "\n";
   }
   return out;
 }

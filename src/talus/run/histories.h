@@ -62,6 +62,8 @@ class Histories {
   struct Spectra {
     std::vector<std::string> columns;
     std::vector<std::vector<double>> values;  // [column][period]
+
+    std::string csv() const;
   };
   Spectra spectra() const;
 

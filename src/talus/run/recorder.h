@@ -8,19 +8,12 @@
 #include "talus/output/csv.h"
 #include "talus/output/frame_series.h"
 #include "talus/run/auditor.h"
-#include "talus/run/branch.h"
 #include "talus/run/histories.h"
 #include "talus/run/joint_report.h"
 #include "talus/run/saved_state.h"
+#include "talus/run/summary.h"
 
 namespace talus {
-
-/// What summary.json says of how the model came about.
-struct RunNotes {
-  std::vector<std::string> overrides;
-  std::vector<std::string> warnings;  // "key: text"
-  std::optional<BranchOrigin> branch = {};
-};
 
 /// model.toml, histories.csv, steps.csv, joints.csv, slips.csv, fields/, saved/, with bolts also bolts.csv.
 /// Rows reach the system at least once a second, frames at once, saved states and summaries the disk.
@@ -145,12 +138,5 @@ class Recorder : public Observer {
   double held_at_ = 0, holding_took_ = 0;  // wall time [s]
   int64_t dump_step_ = -1;
 };
-
-/// Text of summary.json.
-/// @param model  model_in_numbers() of the scene as it began, as text
-std::string summary_text(const Scene& scene, const RunResult& result, const RunNotes& notes, int frames,
-                         const JointSummary& joints = {}, const Histories* histories = nullptr,
-                         const std::string& model = "{}",
-                         const std::optional<audit::Report>& audit = std::nullopt);
 
 }  // namespace talus

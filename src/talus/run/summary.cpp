@@ -1,0 +1,199 @@
+#include "talus/run/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/version.h"
+
+namespace talus {
+
+namespace {
+
+nlohmann::ordered_json monitor_numbers(const Scene& scene, const Histories& histories) {
+  nlohmann::ordered_json j = nlohmann::ordered_json::object();
+  for (const Histories::Peak& p : histories.peaks()) j[p.name]["peak_velocity [m/s]"] = p.velocity;
+  for (const Histories::Touch& t : histories.touches()) {
+    if (t.first < 0) continue;
+    j[t.name]["first_touch [s]"] = t.first, j[t.name]["last_touch [s]"] = t.last;
+  }
+  const Answers& answers = histories.answers();
+  for (const Answers::Stage& s : answers.stages()) {
+    const StageInput& stage = scene.model.stages[static_cast<size_t>(s.stage)];
+    for (size_t k = 0; k < answers.titles().size(); ++k) {
+      const ColumnTitle title = parts_of_title(answers.titles()[k]);
+      const Answer& a = s.asked[k];
+      j[title.monitor]["stages"][stage.name]
+       [title.quantity + (title.unit.empty() ? "" : " [" + title.unit + "]")] = {
+           {"at_start", a.at_start},
+           {"at_end", a.at_end},
+           {"least", a.least},
+           {"time_of_least [s]", a.time_of_least},
+           {"greatest", a.greatest},
+           {"time_of_greatest [s]", a.time_of_greatest},
+           {"residual", a.residual(stage.kind == StageKind::kDynamic)}};
+    }
+  }
+  return j;
+}
+
+nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<audit::Report>& audit) {
+  using nlohmann::ordered_json;
+  if (!audit) return {};
+  ordered_json j = {{"frames", audit->frames},
+                    {"steps", audit->steps},
+                    {"unexplained_overlap_share", audit->unexplained_share},
+                    {"unexplained_overlap [m2]", audit->unexplained_area},
+                    {"closure_share", audit->closure_share},
+                    {"defects", ordered_json::array()}};
+  for (size_t d = 0; d < audit::kDefects; ++d) {
+    const auto defect = static_cast<audit::Defect>(d);
+    const audit::Report::Entry& e = audit->of(defect);
+    if (e.count == 0) continue;
+    ordered_json one = {{"kind", audit::key_of(defect)},
+                        {"valid", !e.invalid},
+                        {"count", e.count},
+                        {"first [s]", e.first.time},
+                        {"worst [s]", e.worst.time}};
+    if (e.worst.block_a >= 0) {
+      ordered_json names = ordered_json::array();
+      for (const int k : {e.worst.block_a, e.worst.block_b})
+        if (k >= 0) names.push_back(scene.blocks.name[static_cast<size_t>(k)]);
+      one["blocks"] = names, one["x [m]"] = e.worst.place.x, one["y [m]"] = e.worst.place.y;
+    }
+    one["share"] = e.worst.share, one["text"] = e.worst.text;
+    j["defects"].push_back(one);
+  }
+  return j;
+}
+
+}  // namespace
+
+std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes& notes, int frames,
+                         const JointSummary& joints, const Histories* histories, const std::string& model,
+                         const std::optional<audit::Report>& audit) {
+  using nlohmann::ordered_json;
+  const BlockSet& b = scene.blocks;
+  const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
+  ordered_json j;
+  j["program"] = fmt::format("talus {}", kVersion);
+  j["title"] = scene.model.title;
+  j["model_file"] = std::filesystem::path(scene.model.file).filename().string();
+  j["model_hash"] = scene.model.hash;
+  j["overrides"] = notes.overrides;
+  if (notes.branch) {
+    const BranchOrigin& o = *notes.branch;
+    j["branch"] = {{"state", o.state},   {"digest", o.digest},       {"model_hash", o.model_hash},
+                   {"stage", o.stage},   {"stage_ended", o.between}, {"step", o.step},
+                   {"time [s]", o.time}, {"differs", o.differs}};
+  }
+  j["status"] = !r.failure.empty() ? "failed" : r.interrupted ? "interrupted" : "finished";
+  if (!r.failure.empty()) j["failure"] = r.failure;
+  ordered_json warnings = notes.warnings;
+  if (audit)
+    for (const std::string& line : audit->lines(b.name)) warnings.push_back("audit: " + line);
+  j["valid"] = audit ? ordered_json(audit->valid()) : ordered_json();
+  if (const std::string side = free_field_side(scene, joints); !side.empty())
+    warnings.push_back("the largest slip ends at the free-field side " + side);
+  j["warnings"] = warnings;
+  j["audit"] = audit_numbers(scene, audit);
+
+  j["blocks"] = {{"all", b.count},
+                 {"deformable", count(BlockKind::kDeformable)},
+                 {"rigid", count(BlockKind::kRigid)},
+                 {"fixed", count(BlockKind::kFixed)},
+                 {"driven", count(BlockKind::kDriven)},
+                 {"needles_merged", scene.layout.needles_merged},
+                 {"slivers_merged", scene.layout.slivers_merged},
+                 {"slivers_deleted", scene.layout.slivers_deleted},
+                 {"slivers_kept", scene.layout.slivers_kept}};
+  j["contacts"] = {
+      {"bond_faces", scene.bonds.faces.size()},         {"bond_faces_broken", r.broken_faces},
+      {"supported_points", scene.supported.size()},     {"boundary_points", scene.boundaries.points.size()},
+      {"tied_points", scene.boundaries.ties.size()},    {"contact_points_most", r.most_contacts},
+      {"candidate_list_rebuilds", r.candidate_rebuilds}};
+  j["joints"] = {{"time [s]", joints.time},
+                 {"points", joints.points},
+                 {"intact", joints.intact},
+                 {"slipped", joints.slipped},
+                 {"open", joints.open},
+                 {"slip_largest [m]", joints.largest.slip},
+                 {"opening_largest [m]", joints.widest}};
+  const auto where = [&b](const JointPoint& p) {
+    return ordered_json{
+        {"x [m]", p.point.x},
+        {"y [m]", p.point.y},
+        {"blocks", {b.name[static_cast<size_t>(p.block_a)], b.name[static_cast<size_t>(p.block_b)]}}};
+  };
+  j["joints"]["slip_times_length [m2]"] = joints.slip_area;
+  j["joints"]["broken_length [m]"] = joints.broken;
+  for (const auto& [set, slip] : joints.slip_by_set) j["joints"]["slip_largest_by_set [m]"][set] = slip;
+  for (const auto& [set, length] : joints.broken_by_set)
+    j["joints"]["broken_length_by_set [m]"][set] = length;
+  j["moved"] = {{"blocks", joints.moved_blocks}, {"area [m2]", joints.moved_area}};
+  if (joints.largest.slip > 0) j["joints"]["slip_largest_at"] = where(joints.largest);
+  j["joints"]["slipped_joints"] = joints.slipped_joints;
+  if (joints.slipped_joints > 0) {
+    j["joints"]["residual_slip_largest [m]"] = joints.most_residual.residual_slip();
+    j["joints"]["residual_slip_largest_at"] = where(joints.most_residual);
+    if (!joints.most_residual.set.empty())
+      j["joints"]["residual_slip_largest_at"]["set"] = joints.most_residual.set;
+  }
+  j["model"] = ordered_json::parse(model);
+  j["stages"] = ordered_json::array();
+  for (const StageResult& s : r.stages) {
+    ordered_json stage = {{"name", s.name},
+                          {"kind", s.kind == StageKind::kStatic ? "static" : "dynamic"},
+                          {"begin [s]", s.begin},
+                          {"end [s]", s.end},
+                          {"steps", s.steps},
+                          {"dt [s]", s.plan.dt},
+                          {"dt_bound [s]", s.plan.dt_bound},
+                          {"dt_bound_undamped [s]", s.plan.dt_undamped},
+                          {"dt_bound_block", bound_name(scene, s.plan)},
+                          {"blocks_clamped", s.plan.clamped},
+                          {"largest_clamp", s.plan.largest_clamp},
+                          {"unbalanced", s.unbalanced}};
+    if (s.kind == StageKind::kStatic) stage["at_rest"] = s.at_rest;
+    j["stages"].push_back(stage);
+  }
+  ordered_json& solver = j["solver"];
+  solver = {{"method", name_of(scene.model.solver.method)},
+            {"jacobian", scene.model.solver.jacobian == JacobianKind::kAnalytic ? "analytic" : "difference"},
+            {"contact_solves", r.steps},
+            {"failed_steps", r.failed_steps},
+            {"second_solver_steps", r.second_solver_steps}};
+  for (size_t k = 1; k < kSolverName.size(); ++k)
+    solver[fmt::format("{}_steps", kSolverName[k])] = r.steps_by[k];
+  solver["drift_deepest [m]"] = r.deepest_drift;
+  solver["iterations_mean"] =
+      r.steps > 0 ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0;
+  solver["iterations_most"] = r.most_iterations;
+  solver["contact_error_worst [m]"] = r.worst_error;
+  solver["contact_error_time [s]"] = r.worst_error_time;
+  solver["contact_error_at"] = r.worst_error_row;
+  const Energy& e = r.energy;
+  auto& energy = j["energy [J]"];
+  energy = {{"kinetic", e.kinetic},
+            {"between_steps", e.between},
+            {"strain", e.strain},
+            {"gravity_work", e.gravity}};
+  for (size_t k = 0; k < kCauses; ++k) {
+    std::string name(kCauseName[k]);
+    std::replace(name.begin(), name.end(), ' ', '_');
+    energy[name + "_work"] = e.work.by[k];
+  }
+  energy["left_over"] = e.left_over;
+  energy["left_over_largest"] = r.largest_left_over;
+  energy["term_largest"] = r.largest_energy;
+  j["energy_closure"] = r.closure();
+  if (histories) j["monitors"] = monitor_numbers(scene, *histories);
+  j["frames"] = frames;
+  j["wall_time [s]"] = r.wall_seconds;
+  j["cpu_time [s]"] = r.cpu_seconds;
+  return j.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace talus

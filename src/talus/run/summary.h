@@ -1,0 +1,29 @@
+#pragma once
+// summary.json: what a run came to, in one file.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/audit/findings.h"
+#include "talus/run/branch.h"
+#include "talus/run/histories.h"
+#include "talus/run/joint_report.h"
+
+namespace talus {
+
+/// What summary.json says of how the model came about.
+struct RunNotes {
+  std::vector<std::string> overrides;
+  std::vector<std::string> warnings;  // "key: text"
+  std::optional<BranchOrigin> branch = {};
+};
+
+/// Text of summary.json.
+/// @param model  model_in_numbers() of the scene as it began, as text
+std::string summary_text(const Scene& scene, const RunResult& result, const RunNotes& notes, int frames,
+                         const JointSummary& joints = {}, const Histories* histories = nullptr,
+                         const std::string& model = "{}",
+                         const std::optional<audit::Report>& audit = std::nullopt);
+
+}  // namespace talus

@@ -128,11 +128,11 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     folder.emplace(ResultFolder::go_on(folder_of_saved(args.from)));
     saved.emplace(read_saved_run(args.from, prepared));
   }
-  // threads: after the state was read, by a copy of this process, which must have none; and before any result is
-  // touched, since the system may refuse them
   if (saved && saved->standing.result.stages.size() > prepared.plans.size())
     throw Error(kExitUsage,
                 fmt::format("--until: stage \"{}\" had ended when that state was saved", args.until));
+  // threads: after the state was read, by a copy of this process, which must have none; and before any result is
+  // touched, since the system may refuse them
   const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
   StopSignals signals;
   if (!folder) folder.emplace(args.folder, args.force);

@@ -15,7 +15,7 @@
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/model/read_model.h"
-#include "talus/model/variables.h"
+#include "talus/model/toml_source.h"
 #include "talus/output/files.h"
 #include "talus/run/branch.h"
 #include "talus/run/histories.h"
@@ -58,12 +58,6 @@ study::Study read(const std::string& file, const std::string& text) {
 // The study of a folder: its text, with paths from where it came from.
 study::Study read(const study::StudyFolder& folder) {
   return read(folder.study_origin(), read_text_file(folder.study_file()));
-}
-
-// Text of the model with overrides, as run folders keep it.
-std::string with_overrides(std::string text, const std::vector<std::string>& overrides) {
-  for (const std::string& item : overrides) text += "\n# --set " + item;
-  return text;
 }
 
 // Which runs have static stages in common, that come first.
@@ -194,8 +188,8 @@ int submit_to_slurm(const study::StudyFolder& folder, const StudyArguments& args
   const fs::path root = fs::absolute(folder.path()).lexically_normal();
   std::string script = "#!/bin/sh\n# runs of a study, " +
                        fmt::format("{} to an element; those that are done are passed over\n", pack);
-  script += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n#SBATCH --output={}/work/slurm-%A_%a.txt\n",
-                        used - 1, root.string());
+  script += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n#SBATCH --output={}\n", used - 1,
+                        folder.begun("slurm-%A_%a.txt").string());
   script += fmt::format("exec {} study task {} $((SLURM_ARRAY_TASK_ID * {})) --count {}\n",
                         quoted(own_path()), quoted(root.string()), pack, pack);
   write_file(root / "slurm.sh", script);
@@ -231,8 +225,6 @@ int begin_study(const StudyArguments& args) {
   of_study.throw_if_errors();
 
   check_values(s, plan, text);
-  study::StudyFolder folder(args.folder);
-  folder.set_sharing(sharing_of(s, plan, first.scene.model));
   if (args.dry) {
     show("{} runs of {}, {} blocks each; the first:\n", plan.size(), model_file, first.scene.blocks.count);
     for (const std::string& item : plan[0].overrides) show("  --set {}\n", item);
@@ -242,7 +234,9 @@ int begin_study(const StudyArguments& args) {
   std::string inputs = text_hash(text) + first.scene.model.hash;
   for (const study::Axis& axis : s.axes)
     for (const fs::path& path : axis.paths) inputs += text_hash(read_text_file(path));
-  folder.begin(s, plan, fmt::format("talus {}", kVersion), text_hash(inputs));
+  study::StudyFolder folder(args.folder);
+  folder.begin(s, plan, sharing_of(s, plan, first.scene.model), fmt::format("talus {}", kVersion),
+               text_hash(inputs));
   if (args.plan) {
     show("{}: {} runs are planned; talus study task {} K makes one\n", args.folder, plan.size(), args.folder);
     return kExitOk;

@@ -57,7 +57,8 @@ TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on afte
     const auto summary =
         nlohmann::json::parse(read_text_file((f / fmt::format("s/{}/summary.json", trial)).string()));
     CHECK(summary["blocks"]["all"] == 34);
-    CHECK(summary["moved"]["blocks"].get<int>() >= 0);
+    // blocks that went a tenth of their size: none of the wall that stands, what the trial was ended for of the other
+    CHECK((summary["moved"]["blocks"].get<int>() > 0) == (std::string(trial) == "fails"));
     CHECK(summary["status"] == (std::string(trial) == "stands" ? "finished" : "interrupted"));
   }
   CHECK(std::filesystem::file_size(f / "s/mechanism.svg") > 5000);

@@ -14,53 +14,8 @@ using namespace talus::test;
 
 namespace {
 
-// A stone on a floor, at rest and then pushed by an acceleration: it slides where tan(phi) is less.
-const char* kModel = R"(talus = 1
-[variables]
-phi = "30 deg"
-push = 4
-[model]
-gravity = [0, -9.81]
-[material.m]
-density = 2000
-[joint.face]
-friction_angle = "$phi"
-[contact]
-joint = "face"
-[[block]]
-name = "floor"
-polygon = [[-5, -1], [50, -1], [50, 0], [-5, 0]]
-material = "m"
-kind = "fixed"
-[[block]]
-name = "stone"
-polygon = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
-material = "m"
-kind = "rigid"
-[history.push]
-time = [0, 0.001, 1]
-value = [0, 1, 1]
-scale = "$push"
-[[load]]
-name = "push"
-acceleration_x = "push"
-stages = ["go"]
-[[stage]]
-name = "rest"
-kind = "static"
-duration = "1 s"
-time_step = "5 ms"
-[[stage]]
-name = "go"
-kind = "dynamic"
-duration = "0.5 s"
-time_step = "0.5 ms"
-[[monitor]]
-name = "stone"
-centroid = "stone"
-[output]
-save_interval = 0
-)";
+const std::string kModel =
+    read_text_file(std::string(TALUS_SOURCE_DIR) + "/tests/fixtures/sliding_stone.toml");
 
 const char* kStudy = R"(talus_study = 1
 title = "Sliding <stone>"
@@ -169,10 +124,15 @@ TEST_CASE(
   const auto when = std::filesystem::last_write_time(folder / "broken/runs/000003/run.json");
   CHECK(shell(folder, "$talus study study.toml -q -o broken").code == 0);
   CHECK(std::filesystem::last_write_time(folder / "broken/runs/000003/run.json") == when);
-  // a signal ends it and its runs
-  const Outcome stopped =
-      shell(folder, "$talus study study.toml -o stopped --jobs 1 & sleep 0.2; kill -INT $!; wait $!");
-  CHECK((stopped.code == 130 || stopped.code == 0));
+  // a signal ends it and its runs: nine of a fifth of a second and more each, heard after the first
+  write(folder, "slow.toml", "set = [\"stage.go.time_step=0.01 ms\"]\n" + std::string(kStudy));
+  const Outcome stopped = shell(
+      folder,
+      "$talus study slow.toml -o stopped --jobs 1 & n=0; while [ $n -lt 600 ] && [ ! -e stopped/runs/000000 ]; do sleep 0.05; n=$((n + 1)); done; kill -INT $!; wait $!");
+  INFO(stopped.text);
+  CHECK(stopped.code == 130);
+  CHECK(!std::filesystem::exists(folder / "stopped/runs/000008"));
+  CHECK(std::filesystem::is_empty(folder / "stopped/work"));
 }
 
 TEST_CASE("command study: what is refused is a row that says so") {
@@ -257,7 +217,7 @@ TEST_CASE("command study: wrong input is told before anything is run or written"
   refused("over = \"push\"", "over = \"pull\"", 3, "there is phi or push");
   CHECK(shell(folder, "$talus study study.toml").code == 2);
   CHECK(shell(folder, "$talus study study.toml -q -o out").code == 0);
-  write(folder, "model.toml", std::string(kModel) + "# changed\n");
+  write(folder, "model.toml", kModel + "# changed\n");
   const Outcome other = shell(folder, "$talus study study.toml -o out");
   CHECK(other.code == 3);
   has(other.text, "is not what it was for the runs that this folder was begun with");

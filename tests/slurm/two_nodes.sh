@@ -3,7 +3,7 @@
 # made here. Each slurmd has its own host name and network. Needs root and the packages slurmctld, slurmd, slurm-client,
 # munge; where it cannot start it says why and passes. Usage: tests/slurm/two_nodes.sh build/release
 set -u
-build=$(realpath "$1") talus=$(realpath "$1")/app/talus
+talus=$(realpath "$1")/app/talus fixtures=$(realpath "$(dirname "$0")/../fixtures")
 skip() { echo "slurm: skipped, $1"; exit 0; }
 [ "$(id -u)" = 0 ] || skip "not root"
 for program in slurmctld slurmd sbatch squeue munged ip unshare; do command -v $program >/dev/null || skip "$program is not installed"; done
@@ -88,57 +88,11 @@ echo "slurm: $up nodes up"
 
 # 40 small runs, each of about a second
 mkdir "$root/study" && cd "$root/study"
-cat >model.toml <<'MODEL'
-talus = 1
-[variables]
-phi = "30 deg"
-push = 4
-[model]
-gravity = [0, -9.81]
-[material.m]
-density = 2000
-[joint.face]
-friction_angle = "$phi"
-[contact]
-joint = "face"
-[[block]]
-name = "floor"
-polygon = [[-5, -1], [50, -1], [50, 0], [-5, 0]]
-material = "m"
-kind = "fixed"
-[[block]]
-name = "stone"
-polygon = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
-material = "m"
-kind = "rigid"
-[history.push]
-time = [0, 0.001, 1]
-value = [0, 1, 1]
-scale = "$push"
-[[load]]
-name = "push"
-acceleration_x = "push"
-stages = ["go"]
-[[stage]]
-name = "rest"
-kind = "static"
-duration = "1 s"
-time_step = "5 ms"
-[[stage]]
-name = "go"
-kind = "dynamic"
-duration = "0.5 s"
-time_step = "0.01 ms"
-[[monitor]]
-name = "stone"
-centroid = "stone"
-[output]
-history_interval = "0.1 s"
-steps_interval = "0.1 s"
-MODEL
+cp "$fixtures/sliding_stone.toml" model.toml
 cat >study.toml <<'STUDY'
 talus_study = 1
 model = "model.toml"
+set = ["stage.go.time_step=0.01 ms", "output.history_interval=0.1 s", "output.steps_interval=0.1 s"]
 keep = "answers"
 [answers]
 way = "stone.displacement_x.greatest"

@@ -61,6 +61,36 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string in_markup(std::string text) {
+  for (const char* none : {"\xef\xbf\xbe", "\xef\xbf\xbf"})
+    for (size_t at = 0; (at = text.find(none, at)) != std::string::npos;) text.replace(at, 3, " ");
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      out += ' ';
+    else
+      out += c;
+  }
+  return out;
+}
+
 std::string readable_bytes(double bytes) {
   const char* unit[] = {"B", "kB", "MB", "GB", "TB"};
   int i = 0;

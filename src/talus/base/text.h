@@ -17,6 +17,13 @@ std::string join_or(const std::vector<std::string>& words);
 /// Text without blanks at its ends.
 std::string_view trimmed(std::string_view text);
 
+/// The text as one of TOML or JSON: in double quotes, with a backslash before quotes and backslashes.
+std::string in_quotes(std::string_view text);
+
+/// The text within XML or HTML: < > & and double quotes by name, and what XML knows no sign for as blanks (control
+/// characters, U+FFFE, U+FFFF).
+std::string in_markup(std::string text);
+
 /// "950 B", "12.3 kB", "4.5 MB"
 std::string readable_bytes(double bytes);
 

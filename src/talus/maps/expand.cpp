@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "talus/base/text.h"
 #include "talus/model/read_maps.h"
 #include "talus/model/variables.h"
 
@@ -46,15 +47,13 @@ std::string with_folder(const std::string& text, const std::filesystem::path& fo
   };
   const std::string way =
       absolute(folder / "").lexically_relative(absolute(new_folder / "")).generic_string();
-  std::string quoted;
-  for (const char c : way) quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   // the key that is there already becomes a comment
   Findings ignored("", text);
   const TomlSource source = parse_toml(text, {}, ignored);
   const toml::node* key = source.root.get("folder");
   const auto key_line = key ? key->source().begin.line : 0;
   std::istringstream in(text.compare(0, 3, "\xef\xbb\xbf") == 0 ? text.substr(3) : text);
-  std::string out = "folder = \"" + quoted + "\"\n", line;
+  std::string out = "folder = " + in_quotes(way) + "\n", line;
   for (toml::source_index number = 1; std::getline(in, line); ++number)
     out += (number == key_line ? "# " : "") + line + "\n";
   return out;

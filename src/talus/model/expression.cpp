@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -28,6 +29,27 @@ std::vector<double> evaluate_expression(const std::string& formula, const std::v
     return {};
   }
   return values;
+}
+
+std::set<std::string> names_in_formula(const std::string& formula) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::set<std::string> names;
+  for (size_t at = 0; at < formula.size();) {
+    size_t end = at;
+    if (letter(formula[at])) {
+      while (end < formula.size() && (letter(formula[end]) || digit(formula[end]) || formula[end] == '.'))
+        ++end;
+      names.insert(formula.substr(at, end - at));
+    } else {
+      // 2e3 holds no name
+      while (end < formula.size() &&
+             (digit(formula[end]) || (end > at && (letter(formula[end]) || formula[end] == '.'))))
+        ++end;
+    }
+    at = std::max(end, at + 1);
+  }
+  return names;
 }
 
 double evaluate_with(const std::string& formula, const std::map<std::string, double>& values,

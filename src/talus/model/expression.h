@@ -2,6 +2,7 @@
 // Formulas of model files, evaluated by muParser.
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace talus {
 ///                 its value is not finite; the result is then empty
 std::vector<double> evaluate_expression(const std::string& formula, const std::vector<double>& times,
                                         std::string& trouble);
+
+/// Names in a formula, of functions too: letters, digits, _ and dots, no digit first.
+std::set<std::string> names_in_formula(const std::string& formula);
 
 /// Value of a formula in named numbers. Names are letters, digits, _ and dots.
 /// @param trouble  set to what is wrong with the formula, with its position, or that its value is not finite;

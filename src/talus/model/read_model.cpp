@@ -566,8 +566,7 @@ Model read_model(const std::string& file, const std::string& text, const std::ve
                  Findings& findings) {
   Model model;
   model.file = file;
-  model.text = text;
-  for (const std::string& item : overrides) model.text += "\n# --set " + item;
+  model.text = with_overrides(text, overrides);
   model.hash = text_hash(model.text);
   const TomlSource source = read_toml(text, overrides, findings);
   if (findings.has_errors()) {  // after a syntax error every further message would mislead

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "talus/base/error.h"
+#include "talus/base/text.h"
 
 namespace talus {
 
@@ -84,15 +85,6 @@ std::string heading(const SectionSpec& s) {
 // --- JSON schema: written by hand as text, because the shapes are few and the order of keys matters to
 // readers ---
 
-std::string json_text(std::string_view s) {
-  std::string out = "\"";
-  for (const char c : s) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-
 std::string json_range(const Range& r) {
   std::string out;
   const double infinity = std::numeric_limits<double>::infinity();
@@ -124,7 +116,7 @@ std::string json_type(const KeySpec& k) {
       return R"("type": "string")";
     case K::kChoice: {
       std::string list;
-      for (const std::string& c : k.choices) list += (list.empty() ? "" : ", ") + json_text(c);
+      for (const std::string& c : k.choices) list += (list.empty() ? "" : ", ") + in_quotes(c);
       return fmt::format(R"("enum": [{}])", list);
     }
     case K::kNames:
@@ -156,7 +148,8 @@ std::string json_type(const KeySpec& k) {
                          table(R"("exponential": )" + number, R"("exponential")"));
     }
     case K::kStrength: {
-      const std::string number = "{" + quantity + "}", seed = R"("seed": {"type": "integer", "minimum": 0})";
+      const std::string number = "{" + quantity + "}",
+                        seed = R"("seed": {"type": ["integer", "string"], "minimum": 0})";
       const auto table = [&](const char* kind) {
         return fmt::format(
             R"({{"type": "object", "additionalProperties": false, "properties": {{"mean": {}, "{}": {}, {}}}, "required": ["mean", "{}"]}})",
@@ -186,9 +179,9 @@ std::string json_properties(const SectionSpec& s, const std::string& indent) {
     std::string doc(k.doc);
     if (k.dimension != D::kNone) doc += fmt::format(" Unit: {}.", si_symbol(k.dimension));
     out += fmt::format("{}{}{}: {{{}, \"description\": {}{}}}", out.empty() ? "" : ",\n", indent,
-                       json_text(k.name), json_type_or_variable(k), json_text(doc),
+                       in_quotes(k.name), json_type_or_variable(k), in_quotes(doc),
                        k.default_text.empty() ? "" : fmt::format(", \"default\": {}", k.default_text));
-    if (k.required) required += (required.empty() ? "" : ", ") + json_text(k.name);
+    if (k.required) required += (required.empty() ? "" : ", ") + in_quotes(k.name);
   }
   return fmt::format("\"additionalProperties\": false, \"required\": [{}], \"properties\": {{\n{}}}",
                      required, out);
@@ -259,7 +252,7 @@ std::string schema_json() {
     if (s.shape == SectionShape::kNamed)
       body = fmt::format("\"type\": \"object\", \"additionalProperties\": {{{}}}", object);
     if (s.shape == SectionShape::kList) body = fmt::format("\"type\": \"array\", \"items\": {{{}}}", object);
-    out += fmt::format(",\n    {}: {{\"description\": {}, {}}}", json_text(s.name), json_text(s.doc), body);
+    out += fmt::format(",\n    {}: {{\"description\": {}, {}}}", in_quotes(s.name), in_quotes(s.doc), body);
   }
   return fmt::format(
       "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"talus model "

@@ -198,6 +198,11 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
 
 }  // namespace
 
+std::string with_overrides(std::string text, const std::vector<std::string>& overrides) {
+  for (const std::string& item : overrides) text += "\n" + std::string(kOverride) + item;
+  return text;
+}
+
 Where where_of(const toml::source_region& region) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), ""};
 }

@@ -26,6 +26,12 @@ struct TomlSource {
 ///                   or by their number from 0: "block.striker.kind=rigid", "contact_pair.0.joint=glue".
 TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings);
 
+/// What stands before each override behind the text of a model.
+inline constexpr const char* kOverride = "# --set ";
+
+/// The text with overrides as comments of one line behind it, as results keep it.
+std::string with_overrides(std::string text, const std::vector<std::string>& overrides);
+
 /// Position of a node in the file.
 Where where_of(const toml::source_region& region);
 

@@ -116,6 +116,24 @@ std::string describe(Dimension dimension) {
   return fmt::format("{} ({})", article_name(dimension), list);
 }
 
+std::optional<AnyQuantity> parse_any_quantity(std::string_view text) {
+  text = trim(text);
+  AnyQuantity q;
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;
+  const auto [rest, status] = std::from_chars(begin, end, q.number);
+  if (status != std::errc{}) return std::nullopt;
+  q.unit = trim({rest, static_cast<size_t>(end - rest)}), q.value = q.number;
+  if (q.unit.empty()) return q;
+  for (const Unit& u : all_units())
+    if (u.symbol == q.unit) {
+      q.value *= u.factor;
+      return q;
+    }
+  return std::nullopt;
+}
+
 Quantity parse_quantity(std::string_view text, Dimension dimension) {
   text = trim(text);
   Quantity q;

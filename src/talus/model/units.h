@@ -1,6 +1,7 @@
 #pragma once
 // Physical dimensions and the unit symbols that model files may use. Inside talus everything is SI.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,15 @@ struct Quantity {
 /// Reads "5 GPa", "35 deg", "0.4 g", "12" as a quantity of `dimension`; a text without unit is SI.
 /// A bare angle other than 0 is refused: degrees and radians are too easily confused.
 Quantity parse_quantity(std::string_view text, Dimension dimension);
+
+/// A number with a unit of any dimension, or none.
+struct AnyQuantity {
+  double number = 0;
+  std::string unit;  // symbol, "" for none
+  double value = 0;  // SI
+};
+/// Reads "5 GPa", "12"; none of anything else.
+std::optional<AnyQuantity> parse_any_quantity(std::string_view text);
 
 /// `value` [SI] with its SI unit, for messages: "2700 kg/m3".
 std::string with_unit(double value, Dimension dimension);

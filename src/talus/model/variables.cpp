@@ -31,11 +31,8 @@ std::optional<double> number_of(const toml::node& node) {
   if (node.is_number()) return node.value<double>();
   const auto text = node.value_exact<std::string>();
   if (!text) return std::nullopt;
-  for (int d = 0; d <= static_cast<int>(Dimension::kLineForce); ++d) {
-    const Quantity q = parse_quantity(*text, static_cast<Dimension>(d));
-    if (q.error.empty()) return q.value;
-  }
-  return std::nullopt;
+  const auto q = parse_any_quantity(*text);
+  return q ? std::optional(q->value) : std::nullopt;
 }
 
 // A value of any kind that is on its way to its place.
@@ -223,22 +220,6 @@ class Substitution {
     if (result == std::floor(result) && std::abs(result) < kMostWhole)
       return toml::array{static_cast<int64_t>(result)};
     return toml::array{result};
-  }
-
-  static std::set<std::string> names_in_formula(const std::string& formula) {
-    std::set<std::string> names;
-    for (size_t at = 0; at < formula.size();) {
-      if (begins_name(formula[at])) {
-        const size_t end = end_of_name(formula, at);
-        names.insert(formula.substr(at, end - at));
-        at = end;
-      } else if (formula[at] >= '0' && formula[at] <= '9') {  // 2e3 holds no name
-        while (at < formula.size() && (is_in_name(formula[at]) || formula[at] == '.')) ++at;
-      } else {
-        ++at;
-      }
-    }
-    return names;
   }
 
   TomlSource& source_;

@@ -36,11 +36,6 @@ struct Holder {
   std::string text() const { return fmt::format("process {} on {}", process, host); }
 };
 
-std::string this_host() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "unknown";
-}
-
 // When a process began, a number no other process of this id has; -1: there is none.
 long long begin_of(long process) {
   std::ifstream in(fmt::format("/proc/{}/stat", process));
@@ -124,6 +119,11 @@ Descriptor open_lock(const fs::path& path) {
 }
 
 }  // namespace
+
+std::string this_host() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "unknown";
+}
 
 FolderLock::FolderLock(const fs::path& folder)
     : path_(folder / kName), file_(open_lock(path_)), noted_(path_.string()) {

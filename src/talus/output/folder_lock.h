@@ -43,6 +43,9 @@ class FolderLock {
 /// Throws FileError: the folder is in use by `user`.
 [[noreturn]] void fail_in_use(const std::filesystem::path& folder, const std::string& user);
 
+/// Name of this machine.
+std::string this_host();
+
 /// Who writes into the folder now: "process 123 on host"; "" when nobody does.
 std::string user_of_folder(const std::filesystem::path& folder);
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "talus/base/text.h"
+
 namespace talus {
 
 namespace {
@@ -25,26 +27,6 @@ const char* fill_of(BlockKind kind) {
       return "none";
   }
   return "none";
-}
-
-// XML knows no control characters, nor the two numbers of Unicode that are no characters (U+FFFE, U+FFFF).
-std::string escaped(std::string text) {
-  for (const char* none : {"\xef\xbf\xbe", "\xef\xbf\xbf"})
-    for (size_t at = 0; (at = text.find(none, at)) != std::string::npos;) text.replace(at, 3, " ");
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      out += ' ';
-    else
-      out += c;
-  }
-  return out;
 }
 
 // A round length of about a fifth of the width.
@@ -80,7 +62,7 @@ std::string joints_group(const std::vector<JointLine>& joints, const Place& plac
     out += fmt::format(
         "<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\" {}><title>{}: slip {:.3g} mm, opening {:.3g} "
         "mm</title></path>\n",
-        p.x, p.y, q.x, q.y, style, escaped(j.between), 1e3 * j.slip, 1e3 * j.opening);
+        p.x, p.y, q.x, q.y, style, in_markup(j.between), 1e3 * j.slip, 1e3 * j.opening);
   };
   for (const JointLine& j : joints)
     if (j.slip > kDrawn * slip)
@@ -108,7 +90,7 @@ std::string bolts_group(const std::vector<BoltLine>& bolts, const Place& place, 
     if (b.crossing && norm(q - p) < 0.5) continue;  // across a closed joint: nothing to see
     out += fmt::format(
         "<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\" stroke=\"{}\"><title>{}: {:.4g} kN</title></path>\n", p.x,
-        p.y, q.x, q.y, colour_of(b, largest), escaped(b.bolt), 1e-3 * b.axial);
+        p.y, q.x, q.y, colour_of(b, largest), in_markup(b.bolt), 1e-3 * b.axial);
   }
   return out + fmt::format(
                    "</g>\n<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">bolts: tension, dark red "
@@ -139,7 +121,7 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
       "fill=\"white\"/>\n"
       "<text x=\"{2}\" y=\"24\" font-weight=\"bold\">{3}</text>\n"
       "<text x=\"{4}\" y=\"24\" text-anchor=\"end\">t = {5:.6g} s</text>\n",
-      kWidth, height, kMargin, escaped(title), kWidth - kMargin, state.time);
+      kWidth, height, kMargin, in_markup(title), kWidth - kMargin, state.time);
   out += "<g stroke=\"#333333\" stroke-width=\"0.7\" stroke-linejoin=\"round\">\n";
   size_t at = 0;
   for (int i = 0; i < blocks.count; ++i) {
@@ -151,7 +133,7 @@ std::string blocks_svg(const BlockSet& blocks, const State& state, const std::st
     for (int v = 0; v < blocks.vertex_count(i); ++v, ++at)
       out += fmt::format("{:.2f},{:.2f} ", kMargin + scale * (corner[at].x - box.min.x),
                          kHead + scale * (box.max.y - corner[at].y));
-    out += fmt::format("\"><title>{}</title></polygon>\n", escaped(blocks.name[static_cast<size_t>(i)]));
+    out += fmt::format("\"><title>{}</title></polygon>\n", in_markup(blocks.name[static_cast<size_t>(i)]));
   }
   const double bar = bar_length((kWidth - 2 * kMargin) / scale), y = height - 14;
   const auto place = [&](Vec2 p) {

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "talus/base/error.h"
-
 #include "talus/contact/bonds.h"
 
 namespace talus {

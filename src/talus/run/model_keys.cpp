@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <sstream>
 
 #include "talus/model/variables.h"
@@ -11,7 +12,6 @@ namespace talus {
 namespace {
 
 constexpr size_t kMostLines = 20;
-const std::string kOverride = "# --set ";
 
 std::string value_text(const toml::node& node) {
   if (const auto* number = node.as_floating_point())
@@ -43,7 +43,7 @@ std::vector<std::string> overrides_in(const std::string& text) {
   std::vector<std::string> all;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
-    if (line.rfind(kOverride, 0) == 0) all.push_back(line.substr(kOverride.size()));
+    if (line.rfind(kOverride, 0) == 0) all.push_back(line.substr(std::strlen(kOverride)));
   return all;
 }
 

@@ -36,20 +36,21 @@ struct SafetyResult {
 /// and `safety.accept_merged` is not set.
 void check_safety(const PreparedRun& prepared);
 
-/// Seeks the factor between model.safety.lowest and .highest. Throws NumericalError naming the factor when a
-/// trial ends for another reason than failure of the model, InputError as check_safety().
-/// @param prepared  the model as read and cut once: all trials have the same blocks
-/// @param told      shown each trial when it ends
-/// @param settings  how it is sought, who is told, and where its mechanism goes
+/// How it is sought, who is told, and where its mechanism goes.
 struct SafetySettings {
   int jobs = 1;  // trials side by side; more try other factors, and come to the same within the tolerance
-  std::function<void(const SafetyTrial&)> told;
-  /// An observer of one more run of the last trial that stands and the first that fails, whose scene it is; none: not run.
+  std::function<void(const SafetyTrial&)> told;  // shown each trial when it ends
+  /// An observer of one more run of the last trial that stands and the first that fails, whose scene it is; none: not
+  /// run.
   std::function<std::unique_ptr<Observer>(const Scene& scene, const SafetyTrial& trial)> keeper;
   /// Shown what that run came to, before its observer ends.
   std::function<void(Observer& keeper, const RunResult& result)> kept;
   std::vector<SafetyTrial> known;  // of a search that was broken off: those that failed are not run again
 };
+
+/// Seeks what the model bears between model.safety.lowest and .highest. Throws NumericalError naming the factor when a
+/// trial ends for another reason than failure of the model, InputError as check_safety().
+/// @param prepared  the model as read and cut once: all trials have the same blocks
 SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
                          const SafetySettings& settings = {});
 

@@ -23,31 +23,9 @@ std::string as_name(const std::string& text) {
   return out;
 }
 
-// Names in a formula: letters, digits, _ and dots, a letter first.
-std::set<std::string> names_in(const std::string& formula) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::set<std::string> names;
-  for (size_t at = 0; at < formula.size();) {
-    size_t end = at;
-    if (letter(formula[at])) {
-      while (end < formula.size() && (letter(formula[end]) || digit(formula[end]) || formula[end] == '.'))
-        ++end;
-      names.insert(formula.substr(at, end - at));
-    } else {
-      // 2e3 holds no name
-      while (end < formula.size() &&
-             (digit(formula[end]) || (end > at && (letter(formula[end]) || formula[end] == '.'))))
-        ++end;
-    }
-    at = std::max(end, at + 1);
-  }
-  return names;
-}
-
 double evaluate(const std::string& formula, const Numbers& numbers, std::string& trouble) {
   Numbers used;
-  for (const std::string& name : names_in(formula)) {
+  for (const std::string& name : names_in_formula(formula)) {
     const auto at = numbers.find(name);
     // a set of which nothing slipped or broke is not listed
     if (at == numbers.end() && name.find("_by_set.") != std::string::npos && numbers.count("joints.points"))
@@ -152,7 +130,7 @@ namespace {
 
 // What the first name that there is not might have been.
 std::string hint_for(const std::string& formula, const Numbers& numbers) {
-  for (const std::string& name : names_in(formula)) {
+  for (const std::string& name : names_in_formula(formula)) {
     if (numbers.count(name)) continue;
     const size_t dot = name.rfind('.');
     if (dot == std::string::npos) {

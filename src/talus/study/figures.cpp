@@ -7,6 +7,7 @@
 #include <map>
 
 #include "talus/base/name.h"
+#include "talus/base/text.h"
 #include "talus/output/files.h"
 #include "talus/output/text_table.h"
 #include "talus/plot/figure.h"
@@ -241,23 +242,6 @@ class Figures {
   std::vector<std::string> names_;
 };
 
-std::string html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 constexpr const char* kStyle = R"(
 body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 1100px; padding: 0 1rem; color: #222; background: #fff; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
@@ -302,21 +286,21 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
       "content=\"width=device-width\"><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
       "<p>{2} runs of <code>{3}</code>: {4} finished, {5} failed, {6} not valid, {7} missing.</p>\n",
-      html(title), kStyle, found.rows.size(), html(study.model.filename().string()), found.finished,
+      in_markup(title), kStyle, found.rows.size(), in_markup(study.model.filename().string()), found.finished,
       found.failed, found.not_valid, found.missing);
-  for (const std::string& trouble : found.troubles) out += "<p><b>" + html(trouble) + "</b></p>\n";
+  for (const std::string& trouble : found.troubles) out += "<p><b>" + in_markup(trouble) + "</b></p>\n";
   if (!found.fragility.empty()) {
     out += fmt::format(
         "<h2>Fragility over {}</h2>\n<table><tr><th class=\"text\">state</th><th class=\"text\">when</th><th>median</th><th>beta</th><th>runs</th><th>damaged</th></tr>\n",
-        html(study.over));
+        in_markup(study.over));
     for (size_t s = 0; s < found.fragility.size(); ++s) {
       const Fragility& f = found.fragility[s];
       int runs = 0, damaged = 0;
       for (const FragilityPoint& p : found.points[s]) runs += p.runs, damaged += p.damaged;
       out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\"><code>{}</code></td>",
-                         html(study.states[s].name), html(study.states[s].when));
+                         in_markup(study.states[s].name), in_markup(study.states[s].when));
       out += f.found() ? fmt::format("<td>{:.4g}</td><td>{:.3f}</td>", f.median, f.beta)
-                       : fmt::format("<td colspan=\"2\" class=\"text\">{}</td>", html(f.trouble));
+                       : fmt::format("<td colspan=\"2\" class=\"text\">{}</td>", in_markup(f.trouble));
       out += fmt::format("<td>{}</td><td>{}</td></tr>\n", runs, damaged);
     }
     out += "</table>\n";
@@ -329,22 +313,22 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
         "<h2>Sensitivity</h2>\n<p>Rank correlation (Spearman) of answers with keys: 1 grows together, -1 against each other, 0 neither.</p>\n<table><tr><th class=\"text\">answer</th><th class=\"text\">key</th><th>correlation</th></tr>\n";
     for (const Sensitivity& s : list)
       out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{:+.2f}</td></tr>\n",
-                         html(s.answer), html(s.axis), s.correlation);
+                         in_markup(s.answer), in_markup(s.axis), s.correlation);
     out += "</table>\n";
   }
   if (!figures.empty()) {
     out += "<h2>Figures</h2>\n<div class=\"figures\">\n";
     for (const std::string& name : figures)
       out += fmt::format("<a href=\"figures/{0}.svg\"><img src=\"figures/{0}.svg\" alt=\"{0}\"></a>\n",
-                         html(name));
+                         in_markup(name));
     out += "</div>\n";
   }
   out +=
       "<h2>Runs</h2>\n<input id=\"seek\" placeholder=\"seek in the table\">\n<div class=\"scroll\"><table id=\"runs\"><thead><tr><th>run</th>";
-  for (const Axis& a : study.axes) out += "<th>" + html(a.title()) + "</th>";
+  for (const Axis& a : study.axes) out += "<th>" + in_markup(a.title()) + "</th>";
   out += "<th class=\"text\">status</th>";
-  for (const DamageState& s : study.states) out += "<th>" + html(s.name) + "</th>";
-  for (const NamedFormula& a : study.answers) out += "<th>" + html(a.name) + "</th>";
+  for (const DamageState& s : study.states) out += "<th>" + in_markup(s.name) + "</th>";
+  for (const NamedFormula& a : study.answers) out += "<th>" + in_markup(a.name) + "</th>";
   out += "<th>time [s]</th></tr></thead><tbody>\n";
   for (const ResultRow& row : found.rows) {
     const std::string link = fmt::format("runs/{:06}/{}", row.number,
@@ -354,8 +338,8 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
     out += row.counts ? "<tr>" : "<tr class=\"bad\">";
     out += row.status == "missing" ? fmt::format("<td>{}</td>", row.number)
                                    : fmt::format("<td><a href=\"{}\">{}</a></td>", link, row.number);
-    for (const AxisValue& v : row.values) out += "<td>" + html(v.shown) + "</td>";
-    out += fmt::format("<td class=\"text\" title=\"{}\">{}</td>", html(row.record.message), row.status);
+    for (const AxisValue& v : row.values) out += "<td>" + in_markup(v.shown) + "</td>";
+    out += fmt::format("<td class=\"text\" title=\"{}\">{}</td>", in_markup(row.record.message), row.status);
     for (const int damaged : row.damaged)
       out += damaged < 0 ? "<td></td>" : fmt::format("<td>{}</td>", damaged);
     for (const double answer : row.answers)

@@ -12,6 +12,7 @@
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
+#include "talus/output/folder_lock.h"
 
 namespace talus::study {
 
@@ -42,15 +43,9 @@ std::string plan_text(const std::vector<PlannedRun>& plan, const StudyFolder::Sh
 
 }  // namespace
 
-std::string host_name() {
-  char name[256] = "";
-  gethostname(name, sizeof(name) - 1);
-  return name;
-}
-
-void StudyFolder::begin(const Study& study, const std::vector<PlannedRun>& plan, const std::string& program,
-                        const std::string& inputs) {
-  const std::string text = plan_text(plan, sharing_);
+void StudyFolder::begin(const Study& study, const std::vector<PlannedRun>& plan, const Sharing& sharing,
+                        const std::string& program, const std::string& inputs) {
+  const std::string text = plan_text(plan, sharing);
   ordered_json now = {{"talus_study", 1},
                       {"program", program},
                       {"study_file", fs::absolute(study.file).lexically_normal().string()},
@@ -58,7 +53,7 @@ void StudyFolder::begin(const Study& study, const std::vector<PlannedRun>& plan,
                       {"inputs_hash", inputs},
                       {"runs", plan.size()},
                       {"plan_hash", text_hash(text)},
-                      {"until", sharing_.until}};
+                      {"until", sharing.until}};
   std::error_code ec;
   if (fs::exists(path_ / "study.json", ec)) {
     const ordered_json before = json_of(path_ / "study.json");
@@ -149,9 +144,13 @@ bool StudyFolder::is_done(int number) const {
   return record && record->status != "killed";
 }
 
+fs::path StudyFolder::begun(const std::string& name) const {
+  return fs::absolute(path_ / "work" / name).lexically_normal();
+}
+
 fs::path StudyFolder::attempt(const std::string& what) const {
   static int count = 0;
-  return path_ / "work" / fmt::format("{}.{}.{}.{}", what, host_name(), getpid(), count++);
+  return path_ / "work" / fmt::format("{}.{}.{}.{}", what, this_host(), getpid(), count++);
 }
 
 void StudyFolder::finish(int number, const fs::path& attempt, const RunRecord& record) const {
@@ -179,7 +178,7 @@ void StudyFolder::finish(int number, const fs::path& attempt, const RunRecord& r
 
 void StudyFolder::clean() const {
   std::error_code ec;
-  const std::string mine = "." + host_name() + ".";
+  const std::string mine = "." + this_host() + ".";
   for (const auto& entry : fs::directory_iterator(path_ / "work", ec)) {
     const std::string name = entry.path().filename().string();
     const size_t at = name.find(mine);

@@ -25,11 +25,18 @@ class StudyFolder {
  public:
   explicit StudyFolder(std::filesystem::path path) : path_(std::move(path)) {}
 
+  /// Which runs share their static stages, decided when the study begins.
+  struct Sharing {
+    std::string until;                                      // last of the static stages that come first
+    std::vector<std::string> group;                         // of each run
+    std::vector<std::vector<std::string>> group_overrides;  // of each run: those of its parent
+  };
+
   /// Makes the folder for this study and plan, or finds that it is its own. Throws FileError when it holds anything
   /// else, InputError when another study, model or plan was begun in it.
   /// @param inputs  digest of all files that the runs read
-  void begin(const Study& study, const std::vector<PlannedRun>& plan, const std::string& program,
-             const std::string& inputs);
+  void begin(const Study& study, const std::vector<PlannedRun>& plan, const Sharing& sharing,
+             const std::string& program, const std::string& inputs);
   /// Throws FileError when it is no folder of a study.
   void check() const;
 
@@ -55,6 +62,8 @@ class StudyFolder {
   /// Whether there is nothing more to do for it: it has ended, and was not killed.
   bool is_done(int number) const;
 
+  /// A place in work/, of absolute path.
+  std::filesystem::path begun(const std::string& name) const;
   /// A folder in work/ for this attempt, which is not there yet.
   std::filesystem::path attempt(const std::string& what) const;
   /// Puts the record into the attempt and renames it to runs/; an attempt that comes second is removed. A killed run
@@ -62,14 +71,6 @@ class StudyFolder {
   void finish(int number, const std::filesystem::path& attempt, const RunRecord& record) const;
   /// Removes what attempts of processes of this host that have ended have left in work/.
   void clean() const;
-
-  /// Sharing, decided when the study begins.
-  struct Sharing {
-    std::string until;                                      // last of the static stages that come first
-    std::vector<std::string> group;                         // of each run
-    std::vector<std::vector<std::string>> group_overrides;  // of each run: those of its parent
-  };
-  void set_sharing(Sharing sharing) { sharing_ = std::move(sharing); }
 
  private:
   // What study.json holds. Throws FileError.
@@ -81,11 +82,7 @@ class StudyFolder {
   const std::string& line(int number) const;
 
   std::filesystem::path path_;
-  Sharing sharing_;
   mutable std::vector<std::string> lines_;  // of plan.jsonl
 };
-
-/// Name of this machine.
-std::string host_name();
 
 }  // namespace talus::study

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <glob.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <set>
 
 #include "talus/base/error.h"
@@ -114,39 +116,11 @@ std::vector<SectionSpec> sections() {
          .doc = "Name of a [[vary]] with numbers; none: the one with `measure`, if there is one."}}}};
 }
 
-std::string toml_text(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-
-// A number with the unit that stands behind it.
-struct WithUnit {
-  double number = 0;
-  std::string unit;
-};
-
-std::optional<WithUnit> with_unit_of(const toml::node& node) {
-  if (node.is_number()) return WithUnit{*node.value<double>(), ""};
+std::optional<AnyQuantity> quantity_of(const toml::node& node) {
+  if (node.is_number()) return AnyQuantity{*node.value<double>(), "", *node.value<double>()};
   const auto text = node.value_exact<std::string>();
-  if (!text) return std::nullopt;
-  const std::string whole(trimmed(*text));
-  size_t used = 0;
-  WithUnit out;
-  try {
-    out.number = std::stod(whole, &used);
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
-  out.unit = std::string(trimmed(whole.substr(used)));
-  if (!std::isfinite(out.number)) return std::nullopt;
-  if (out.unit.empty()) return out;
-  for (const Unit& u : all_units())
-    if (u.symbol == out.unit) return out;
-  return std::nullopt;
+  const auto q = text ? parse_any_quantity(*text) : std::nullopt;
+  return q && std::isfinite(q->number) ? q : std::nullopt;
 }
 
 std::string digits(double v) {
@@ -157,19 +131,34 @@ std::string digits(double v) {
 AxisValue value_of(double number, const std::string& unit) {
   AxisValue v;
   v.number = number, v.shown = digits(number);
-  v.toml = unit.empty() ? v.shown : toml_text(v.shown + " " + unit);
+  v.toml = unit.empty() ? v.shown : in_quotes(v.shown + " " + unit);
   return v;
 }
 
-// Whether `text` is as `pattern` says, with * for anything, ? for one character, [abc] for one of these.
-bool matches(const char* pattern, const char* text) {
-  if (*pattern == '*') return matches(pattern + 1, text) || (*text && matches(pattern, text + 1));
-  if (*text == 0) return *pattern == 0;
-  if (const char* end = *pattern == '[' ? std::strchr(pattern, ']') : nullptr) {
-    const std::string_view set(pattern + 1, static_cast<size_t>(end - pattern - 1));
-    return set.find(*text) != std::string_view::npos && matches(end + 1, text + 1);
+// Paths that a pattern of the shell stands for, below a folder whose name is none; in order.
+std::vector<fs::path> paths_of(const fs::path& folder, const std::string& pattern) {
+  std::string whole;
+  for (const char c : folder.string())
+    whole += std::strchr("*?[]\\", c) ? std::string("\\") + c : std::string(1, c);
+  whole = (fs::path(whole) / pattern).string();
+  glob_t found{};
+  std::vector<fs::path> paths;
+  if (glob(whole.c_str(), 0, nullptr, &found) == 0)
+    for (size_t i = 0; i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+  globfree(&found);
+  return paths;
+}
+
+// What stood for the first part of a pattern that is no name, without ending: what tells its paths apart.
+std::string name_of_match(const fs::path& path, const fs::path& pattern) {
+  const auto parts = std::distance(pattern.begin(), pattern.end()),
+             all = std::distance(path.begin(), path.end());
+  auto there = std::next(path.begin(), all - parts);
+  for (const fs::path& part : pattern) {
+    if (part.string().find_first_of("*?[") != std::string::npos) return there->stem().string();
+    ++there;
   }
-  return (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
+  return path.stem().string();
 }
 
 class StudyReader {
@@ -279,7 +268,7 @@ class StudyReader {
     bool numbers = true, quantities = true;
     std::string unit;
     for (const toml::node& item : *list) {
-      const auto v = with_unit_of(item);
+      const auto v = quantity_of(item);
       if (v && axis.values.empty()) unit = v->unit;
       numbers = numbers && v && v->unit == unit, quantities = quantities && v;
       AxisValue value;
@@ -288,7 +277,7 @@ class StudyReader {
       } else {
         std::ostringstream out;
         if (const auto text = item.value_exact<std::string>())
-          value.shown = *text, value.toml = toml_text(*text);
+          value.shown = *text, value.toml = in_quotes(*text);
         else
           item.visit([&out](const auto& n) { out << n; }), value.shown = value.toml = out.str();
       }
@@ -300,7 +289,7 @@ class StudyReader {
     if (numbers) axis.unit = unit;
     if (!numbers)
       for (size_t i = 0; i < axis.values.size(); ++i) {
-        const auto v = with_unit_of(*list->get(i));
+        const auto v = quantity_of(*list->get(i));
         axis.values[i].number = std::numeric_limits<double>::quiet_NaN();
         if (v && !v->unit.empty()) axis.values[i].shown += " " + v->unit;
       }
@@ -315,7 +304,7 @@ class StudyReader {
           "write range = { from = \"0.1 g\", to = \"0.6 g\", count = 6 }, both in one unit, count from 2 on");
     };
     if (!t || t->size() != 3 || !t->contains("from") || !t->contains("to")) return bad();
-    const auto from = with_unit_of(*t->get("from")), to = with_unit_of(*t->get("to"));
+    const auto from = quantity_of(*t->get("from")), to = quantity_of(*t->get("to"));
     const int64_t count = (*t)["count"].value_or(int64_t{0});
     if (!from || !to || from->unit != to->unit || count < 2 || count > kMostRuns) return bad();
     axis.unit = from->unit;
@@ -338,9 +327,9 @@ class StudyReader {
           "quantity itself) or { from = ..., to = ... } (uniform), each with least and most if it is cut off; all in one unit");
     };
     if (!t) return bad("is no distribution");
-    std::map<std::string, WithUnit> given;
+    std::map<std::string, AnyQuantity> given;
     for (const auto& [key, value] : *t) {
-      const auto v = with_unit_of(value);
+      const auto v = quantity_of(value);
       if (!v) return bad(fmt::format("\"{}\" is no number", key.str()));
       given[std::string(key.str())] = *v;
     }
@@ -372,45 +361,18 @@ class StudyReader {
 
   void read_files(const Fields& f, const std::string& path, Axis& axis) {
     axis.files = true;
-    const fs::path pattern = f.get<std::string>("files");
-    std::vector<Found> found{{folder_, ""}};
-    for (const fs::path& part : pattern) {
-      std::vector<Found> next;
-      for (const Found& at : found) add_matches(at, part.string(), next);
-      found = std::move(next);
-    }
-    for (const Found& one : found) {
+    const std::string pattern = f.get<std::string>("files");
+    for (const fs::path& file : paths_of(folder_, pattern)) {
       std::error_code ec;
-      if (!fs::is_regular_file(one.path, ec)) continue;
-      axis.paths.push_back(one.path);
-      axis.values.push_back({toml_text(fs::absolute(one.path).lexically_normal().string()),
-                             one.name.empty() ? one.path.stem().string() : one.name});
+      if (!fs::is_regular_file(file, ec)) continue;
+      axis.paths.push_back(file);
+      axis.values.push_back(
+          {in_quotes(fs::absolute(file).lexically_normal().string()), name_of_match(file, pattern)});
     }
     if (axis.paths.empty())
       findings_.error(
           f.where("files"), path + ".files", fmt::format("\"{}\" are no files", (folder_ / pattern).string()),
           "the path counts from the folder of the study file; * stands for anything within a name, ? for one character, [abc] for one of these");
-  }
-
-  // A path on its way through a pattern, and what stood for its first part with *, ? or [].
-  struct Found {
-    fs::path path;
-    std::string name;
-  };
-
-  static void add_matches(const Found& at, const std::string& part, std::vector<Found>& out) {
-    if (part.find_first_of("*?[") == std::string::npos) {
-      out.push_back({at.path / part, at.name});
-      return;
-    }
-    std::error_code ec;
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(at.path.empty() ? "." : at.path, ec))
-      if (const std::string name = entry.path().filename().string(); matches(part.c_str(), name.c_str()))
-        names.push_back(name);
-    std::sort(names.begin(), names.end());
-    for (const std::string& name : names)
-      out.push_back({at.path / name, at.name.empty() ? fs::path(name).stem().string() : at.name});
   }
 
   void read_measure(const Fields& f, const std::string& path, Axis& axis) {

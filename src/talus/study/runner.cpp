@@ -13,6 +13,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
+#include "talus/output/folder_lock.h"
 
 extern char** environ;
 
@@ -123,7 +124,7 @@ void Runner::ended(Job job, int status, bool stopped) {
     waiting_.push_front(std::move(job));
     return;
   }
-  RunRecord record{job.number, status_of(code), code, wall_now() - job.begun, host_name(), said(log)};
+  RunRecord record{job.number, status_of(code), code, wall_now() - job.begun, this_host(), said(log)};
   if (code == kExitOk) record.message.clear();  // warnings stand in its summary
   fs::create_directories(job.attempt, ec);
   if (settings_.report && record.status == "finished") {

@@ -51,21 +51,19 @@ std::unique_ptr<Done> run(const std::string& text) {
   return done;
 }
 
+// A rigid block of 1 m that flies along x and spins [rad/s], without anything else.
+std::string flying_block(double spin) {
+  return fmt::format(
+      "talus = 1\n[material.m]\ndensity = 2500\n[[block]]\nname = \"b\"\npolygon = [[0, 0], [1, 0], [1, 1], [0, "
+      "1]]\nmaterial = \"m\"\nkind = \"rigid\"\nvelocity = [{}, 0]\nspin = \"{} rad/s\"\n",
+      kSpeed, spin);
+}
+
 }  // namespace
 
 TEST_CASE("answers of a rigid block that spins while it flies") {
   // X = V t along x, turned by w t; a point at arm r has the acceleration w^2 r towards the centre
-  const auto done = run(fmt::format(R"(
-talus = 1
-[material.m]
-density = 2500
-[[block]]
-name = "b"
-polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
-material = "m"
-kind = "rigid"
-velocity = [{}, 0]
-spin = "{} rad/s"
+  const auto done = run(flying_block(kSpin) + R"(
 [[stage]]
 name = "first"
 kind = "dynamic"
@@ -87,8 +85,7 @@ spectrum = true
 [[monitor]]
 name = "gauge"
 crack = [[0, 0], [1, 0]]
-)",
-                                    kSpeed, kSpin));
+)");
   const Histories& h = done->kept->histories;
   REQUIRE(h.answers().stages().size() == 2);
   for (const int stage : {0, 1}) {
@@ -149,16 +146,7 @@ TEST_CASE("answers go by every step, whatever the rows of histories are, and by 
 
 TEST_CASE("rows of an interval are even, whatever the step, and begin anew with each stage") {
   // X = V t: linear between steps, so that rows are exact
-  const std::string text = fmt::format(R"(
-talus = 1
-[material.m]
-density = 2500
-[[block]]
-name = "b"
-polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
-material = "m"
-kind = "rigid"
-velocity = [{}, 0]
+  const std::string text = flying_block(0) + R"(
 [[stage]]
 name = "first"
 kind = "dynamic"
@@ -173,8 +161,7 @@ reset_displacements = true
 [[monitor]]
 name = "b"
 centroid = "b"
-)",
-                                       kSpeed);
+)";
   Findings findings("model.toml", text);
   PreparedRun prepared = prepare_run("model.toml", text, {}, findings);
   std::vector<std::vector<double>> rows;

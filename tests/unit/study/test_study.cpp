@@ -12,6 +12,7 @@
 #include "support/folder.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
+#include "talus/output/folder_lock.h"
 #include "talus/study/answers.h"
 #include "talus/study/folder.h"
 #include "talus/study/fragility.h"
@@ -296,7 +297,7 @@ TEST_CASE("study: the folder takes a run whole or not at all, and the first of t
   const Study s = read(kHead + "[[vary]]\nkey = \"a\"\nvalues = [1, 2]\n", (scratch / "study.toml").string());
   const std::vector<PlannedRun> plan = plan_runs(s);
   StudyFolder folder(scratch / "out");
-  folder.begin(s, plan, "talus test", "files");
+  folder.begin(s, plan, {}, "talus test", "files");
   CHECK(folder.planned() == 2);
   CHECK(folder.task(1).overrides == std::vector<std::string>{"a=2"});
   CHECK_THROWS_AS(folder.task(2), FileError);
@@ -315,19 +316,19 @@ TEST_CASE("study: the folder takes a run whole or not at all, and the first of t
   finish(0, "finished", "third");  // another process, which comes too late
   CHECK(read_text_file(folder.run_folder(0) / "mark") == "second");
   // what a process that has ended has left is cleared away; what lives stays
-  std::filesystem::create_directories(folder.path() / "work" / ("000001." + host_name() + ".99999999.0"));
+  std::filesystem::create_directories(folder.path() / "work" / ("000001." + this_host() + ".99999999.0"));
   std::filesystem::create_directories(folder.path() / "work" / "000001.elsewhere.1.0");
   folder.clean();
-  CHECK(!std::filesystem::exists(folder.path() / "work" / ("000001." + host_name() + ".99999999.0")));
+  CHECK(!std::filesystem::exists(folder.path() / "work" / ("000001." + this_host() + ".99999999.0")));
   CHECK(std::filesystem::exists(folder.path() / "work" / "000001.elsewhere.1.0"));
   // the same study goes on; another one is refused, and a folder of other things
-  StudyFolder(scratch / "out").begin(s, plan, "talus test", "files");
+  StudyFolder(scratch / "out").begin(s, plan, {}, "talus test", "files");
   const Study other =
       read(kHead + "[[vary]]\nkey = \"a\"\nvalues = [1, 3]\n", (scratch / "study.toml").string());
-  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(other, plan_runs(other), "talus test", "files"),
+  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(other, plan_runs(other), {}, "talus test", "files"),
                   InputError);
-  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(s, plan, "talus test", "other files"), InputError);
-  CHECK_THROWS_AS(StudyFolder(scratch.path()).begin(s, plan, "talus test", "files"), FileError);
+  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(s, plan, {}, "talus test", "other files"), InputError);
+  CHECK_THROWS_AS(StudyFolder(scratch.path()).begin(s, plan, {}, "talus test", "files"), FileError);
 }
 
 TEST_CASE(
@@ -344,7 +345,7 @@ TEST_CASE(
   const Study s = study_with("");
   const std::vector<PlannedRun> plan = plan_runs(s);
   StudyFolder folder(scratch / "out");
-  folder.begin(s, plan, "talus test", "files");
+  folder.begin(s, plan, {}, "talus test", "files");
   const auto finish = [&](int number, const std::string& status, const std::string& summary) {
     const auto attempt = folder.attempt("x");
     std::filesystem::create_directories(attempt);

@@ -8,8 +8,8 @@
 
 #include "talus/base/text.h"
 #include "talus/plot/cut_picture.h"
+#include "talus/results/prediction.h"
 #include "talus/run/base_report.h"
-#include "talus/run/prediction.h"
 #include "talus/run/resolution.h"
 #include "talus/run/trial.h"
 #include "talus/talus.h"

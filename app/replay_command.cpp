@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
-#include "talus/run/problem_file.h"
+#include "talus/results/problem_file.h"
 
 namespace talus::app {
 

@@ -9,8 +9,8 @@
 #include "signals.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
+#include "talus/results/progress.h"
 #include "talus/run/base_report.h"
-#include "talus/run/progress.h"
 #include "talus/run/resolution.h"
 #include "tell.h"
 

@@ -32,7 +32,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/run/histories.h"
+#include "talus/results/histories.h"
 #include "talus/talus.h"
 
 namespace {

@@ -19,7 +19,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/version.h"
-#include "talus/run/recorder.h"
+#include "talus/results/recorder.h"
 #include "talus/run/run.h"
 #include "talus/run/safety.h"
 #include "talus/run/sliver_offer.h"

@@ -8,7 +8,7 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/angle.h"
-#include "talus/run/auditor.h"
+#include "talus/results/auditor.h"
 
 namespace talus::test::junction {
 

@@ -28,7 +28,7 @@
 #include "talus/record/read_record.h"
 #include "talus/report/frames.h"
 #include "talus/report/page.h"
-#include "talus/run/problem_file.h"
+#include "talus/results/problem_file.h"
 #include "talus/talus.h"
 #ifdef TALUS_WITH_MAPS
 #include "talus/maps/import.h"

@@ -6,7 +6,7 @@
 #include "support/limit_models.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
-#include "talus/run/auditor.h"
+#include "talus/results/auditor.h"
 
 namespace test_contact_give {
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "support/random_model.h"
-#include "talus/run/auditor.h"
+#include "talus/results/auditor.h"
 #include "talus/talus.h"
 
 namespace test_random_models {

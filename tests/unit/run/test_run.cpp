@@ -7,8 +7,8 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
+#include "talus/results/prediction.h"
 #include "talus/run/plan.h"
-#include "talus/run/prediction.h"
 
 namespace test_run {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "support/run_case.h"
-#include "talus/run/joint_report.h"
+#include "talus/results/joint_report.h"
 #include "talus/supports/boundaries.h"
 
 namespace test_free_field {

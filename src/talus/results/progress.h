@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "talus/run/recorder.h"
+#include "talus/results/recorder.h"
 
 namespace talus {
 

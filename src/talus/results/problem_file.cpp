@@ -1,4 +1,4 @@
-#include "talus/run/problem_file.h"
+#include "talus/results/problem_file.h"
 
 #include <fmt/format.h>
 

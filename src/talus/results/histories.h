@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "talus/output/archive.h"
-#include "talus/run/answers.h"
-#include "talus/run/reference.h"
+#include "talus/results/answers.h"
+#include "talus/results/reference.h"
 
 namespace talus {
 

@@ -1,4 +1,4 @@
-#include "talus/run/slip_report.h"
+#include "talus/results/slip_report.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "talus/run/recorder.h"
+#include "talus/results/recorder.h"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include "talus/base/version.h"
 #include "talus/output/picture.h"
 #include "talus/output/vtk.h"
-#include "talus/run/model_report.h"
-#include "talus/run/problem_file.h"
-#include "talus/run/slip_report.h"
+#include "talus/results/model_report.h"
+#include "talus/results/problem_file.h"
+#include "talus/results/slip_report.h"
 
 namespace talus {
 

@@ -1,4 +1,4 @@
-#include "talus/run/answers.h"
+#include "talus/results/answers.h"
 
 #include <fmt/format.h>
 

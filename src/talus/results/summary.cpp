@@ -1,4 +1,4 @@
-#include "talus/run/summary.h"
+#include "talus/results/summary.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "talus/run/model_report.h"
+#include "talus/results/model_report.h"
 
 #include <fmt/format.h>
 

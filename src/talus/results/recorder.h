@@ -7,11 +7,11 @@
 
 #include "talus/output/csv.h"
 #include "talus/output/frame_series.h"
-#include "talus/run/auditor.h"
-#include "talus/run/histories.h"
-#include "talus/run/joint_report.h"
+#include "talus/results/auditor.h"
+#include "talus/results/histories.h"
+#include "talus/results/joint_report.h"
+#include "talus/results/summary.h"
 #include "talus/run/saved_state.h"
-#include "talus/run/summary.h"
 
 namespace talus {
 

@@ -1,4 +1,4 @@
-#include "talus/run/reference.h"
+#include "talus/results/reference.h"
 
 namespace talus {
 

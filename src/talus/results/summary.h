@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "talus/audit/findings.h"
+#include "talus/results/histories.h"
+#include "talus/results/joint_report.h"
 #include "talus/run/branch.h"
-#include "talus/run/histories.h"
-#include "talus/run/joint_report.h"
 
 namespace talus {
 

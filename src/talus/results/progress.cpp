@@ -1,4 +1,4 @@
-#include "talus/run/progress.h"
+#include "talus/results/progress.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/text.h"
-#include "talus/run/slip_report.h"
+#include "talus/results/slip_report.h"
 
 namespace talus {
 

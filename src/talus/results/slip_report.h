@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "talus/run/joint_report.h"
+#include "talus/results/joint_report.h"
 
 namespace talus {
 

@@ -1,4 +1,4 @@
-#include "talus/run/histories.h"
+#include "talus/results/histories.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "talus/base/text_file.h"
-#include "talus/run/progress.h"
+#include "talus/results/progress.h"
 #include "talus/talus.h"
 
 namespace test_slip_report {

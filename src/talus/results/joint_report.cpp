@@ -1,4 +1,4 @@
-#include "talus/run/joint_report.h"
+#include "talus/results/joint_report.h"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 #include "support/run_case.h"
 #include "support/told.h"
 #include "support/tolerance.h"
-#include "talus/run/answers.h"
-#include "talus/run/histories.h"
+#include "talus/results/answers.h"
+#include "talus/results/histories.h"
 
 namespace test_answers {
 

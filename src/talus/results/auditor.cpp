@@ -1,4 +1,4 @@
-#include "talus/run/auditor.h"
+#include "talus/results/auditor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/model/joint_law.h"
-#include "talus/run/joint_report.h"
+#include "talus/results/joint_report.h"
 
 namespace talus {
 

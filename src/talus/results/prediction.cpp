@@ -1,10 +1,10 @@
-#include "talus/run/prediction.h"
+#include "talus/results/prediction.h"
 
 #include <algorithm>
 
 #include "talus/base/error.h"
 #include "talus/contact/pairs.h"
-#include "talus/run/histories.h"
+#include "talus/results/histories.h"
 
 namespace talus {
 

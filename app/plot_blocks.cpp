@@ -61,9 +61,12 @@ size_t frame_near(const Series& s, double time) {
 plot::BlockPicture picture_of(const Series& s, size_t frame, const std::string& title) {
   plot::BlockPicture picture;
   picture.title = title;
-  picture.blocks = read_vtk(s.blocks[frame].file);
-  if (frame < s.contacts.size()) picture.contacts = read_vtk(s.contacts[frame].file);
-  if (frame < s.bolts.size()) picture.bolts = read_vtk(s.bolts[frame].file);
+  FrameReader reader;
+  picture.time = s.blocks[frame].time;
+  picture.blocks = reader.read(s.blocks[frame].file);
+  picture.shapes = reader.shapes().back();
+  if (frame < s.contacts.size()) picture.contacts = read_contacts(s.contacts[frame].file);
+  if (frame < s.bolts.size()) picture.bolts = read_bolts(s.bolts[frame].file);
   return picture;
 }
 

@@ -219,8 +219,8 @@ int begin_study(const StudyArguments& args) {
   std::vector<std::string> stages;
   for (const StageInput& stage : first.scene.model.stages) stages.push_back(stage.name);
   study::check_formulas(s,
-                        study::possible_numbers(Histories(first.scene, nullptr).answers().titles(), stages,
-                                                first.scene.layout.origins),
+                        study::possible_numbers(texts_of(Histories(first.scene, nullptr).answers().titles()),
+                                                stages, first.scene.layout.origins),
                         of_study);
   of_study.throw_if_errors();
 

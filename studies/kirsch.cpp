@@ -33,7 +33,7 @@ class LastRow : public talus::Observer {
     if (now.last) histories_.finish();
   }
   double value(const std::string& column) const {
-    const std::vector<std::string> all = histories_.columns();
+    const std::vector<std::string> all = texts_of(histories_.columns());
     for (size_t i = 0; i < all.size(); ++i)
       if (all[i].rfind(column, 0) == 0) return row_.at(i);
     throw std::runtime_error("no column " + column);

@@ -204,7 +204,7 @@ class Watch : public talus::Observer {
   explicit Watch(const talus::Scene& scene)
       : histories_(scene, [this](const std::vector<double>& row) { rows_.push_back(row); }),
         upper_(scene.layout.blocks_called("upper")) {
-    const auto& titles = histories_.columns();
+    const std::vector<std::string> titles = talus::texts_of(histories_.columns());
     const auto column = [&titles](const char* title) {
       const auto it = std::find(titles.begin(), titles.end(), title);
       if (it == titles.end()) throw std::runtime_error("no column of that title");

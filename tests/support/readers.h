@@ -26,7 +26,7 @@
 #include "talus/plot/block_picture.h"
 #include "talus/record/history_file.h"
 #include "talus/record/read_record.h"
-#include "talus/report/frames.h"
+#include "talus/report/packed_frames.h"
 #include "talus/report/page.h"
 #include "talus/results/problem_file.h"
 #include "talus/talus.h"
@@ -63,7 +63,7 @@ points = [[1, -1], [3, 3]]
 /// A frame as the report takes it.
 inline void take_frame(const std::string& text) {
   const auto path = scratch_file(text);
-  report::FrameReader reader;
+  FrameReader reader;
   const auto tried = [](const auto& read) {
     try {
       read();
@@ -72,17 +72,19 @@ inline void take_frame(const std::string& text) {
       return 0;
     }
   };
-  int taken = tried([&] { reader.read(path).packed(); });
+  int taken = tried([&] { report::packed(reader.read(path)); });
   taken += tried([&] { reader.read(path).spans(); });  // once more, with the shapes of the first
-  taken += tried([&] { report::read_contacts(path).packed({}); });
-  taken += tried([&] { report::read_bolts(path).packed({}); });
+  taken += tried([&] { report::packed(read_contacts(path), {}); });
+  taken += tried([&] { report::packed(read_bolts(path), {}); });
   if (taken == 0) throw FileError("no frame");
 }
 
 /// A frame as a picture takes it.
 inline void take_picture(const std::string& text) {
   plot::BlockPicture picture;
-  picture.blocks = parse_vtk("blocks.vtu", text);
+  FrameReader reader;
+  picture.blocks = reader.read(scratch_file(text));
+  picture.shapes = reader.shapes().back();
   plot::write_block_picture(
       picture, std::filesystem::temp_directory_path() / ("talus_picture_" + std::to_string(getpid())));
 }

@@ -26,7 +26,7 @@ class MemoryObserver : public Observer {
  public:
   MemoryObserver(const Scene& scene, std::function<void(const Instant&)> watch)
       : histories_(scene, [this](const std::vector<double>& row) { keep(row); }), watch_(std::move(watch)) {
-    table.columns = histories_.columns();
+    table.columns = texts_of(histories_.columns());
     table.values.resize(table.columns.size());
   }
   void at(const Instant& instant) override {

@@ -14,14 +14,6 @@ function css(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** "crown.displacement_x [m]" -> {monitor, quantity, unit}. */
-export function splitColumn(column) {
-  const [, rest, unit] = /^(.*?)(?: \[(.*)\])?$/.exec(column);
-  const dot = rest.indexOf(".");
-  const quantity = (dot < 0 ? rest : rest.slice(dot + 1)).replace(/_/g, " ");
-  return { monitor: dot < 0 ? rest : rest.slice(0, dot), quantity, unit: unit || "" };
-}
-
 /** Puts several time axes on one: times, and each series with null where it has no value. */
 function join(series) {
   const same = series.every((s) => s.time.length === series[0].time.length && s.time.every((t, i) => t === series[0].time[i]));

@@ -3,14 +3,14 @@
 import { chunkJson } from "./decode.js";
 import { Run } from "./run.js";
 import { View, contactKey } from "./view.js";
-import { addChart, drawCharts, moveTime, redrawCharts, save, splitColumn } from "./charts.js";
-import { colours, number, palette, quantities, readableUnit, withUnit } from "./quantities.js";
+import { addChart, drawCharts, moveTime, redrawCharts, save } from "./charts.js";
+import { colours, learn, number, quantities, readableUnit, withUnit, words } from "./quantities.js";
 import { element, tableOf } from "./dom.js";
 import { cardsOf, energyOf, listOf, modelOf, stagesOf, warningsOf, worstSteps } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
-const kindNames = ["contact", "glued face", "support", "boundary", "bolt"];
-const stateNames = ["intact", "slipped", "open", "never in touch"];
+
+const contactColumn = (key) => words.contact_columns.find((c) => c.key === key);
 
 let runs = [], run = null, view = null;
 let frameIndex = 0, playing = false, wanted = 0;
@@ -20,6 +20,7 @@ const times = [];    // of frames drawn while playing [ms], for the benchmark
 async function start() {
   setTheme();
   const index = await chunkJson("index");
+  learn(index.words);
   runs = index.runs.map((r) => new Run(r));
   $("made").textContent = `Made by ${index.program} from ${runs.map((r) => r.name).join(", ")}. Everything shown is in this file.`;
   $("notices").textContent = document.getElementById("talus-notices").textContent.trim();
@@ -130,7 +131,7 @@ function afterFrame() {
 }
 
 function setRange() {
-  const q = run.quantities.indexOf(view.quantity);
+  const q = words.quantities.findIndex((one) => one.key === view.quantity);
   if (q < 0) return;
   const span = (entry) => entry.spans.slice(4 * q, 4 * q + 4), mode = $("range").value;
   let least = Infinity, low = Infinity, high = -Infinity, most = -Infinity;
@@ -154,7 +155,7 @@ function legend() {
   const q = quantities[view.quantity];
   if (!q) {
     fill("legend", (view.labels || []).map((label, i) =>
-      element("span", { class: "swatch" }, element("i", { style: `background:${palette[i % palette.length]}` }), label || "none")));
+      element("span", { class: "swatch" }, element("i", { style: `background:${words.colours.palette[i % words.colours.palette.length]}` }), label || "none")));
   } else {
     const { low, high, least, most } = view.range, unit = readableUnit(Math.max(Math.abs(low), Math.abs(high)), q.unit);
     const text = (v) => number(v / unit.factor, 3);
@@ -165,7 +166,7 @@ function legend() {
   }
   const notes = [], c = view.contacts;
   if (c && (view.show.joints || view.show.forces)) {
-    if (view.show.joints && c.lines.length) notes.push(view.largestSlip > 0 ? `Slipped joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}.` : "No joint has slipped.");
+    if (view.show.joints && c.lines.length) notes.push(view.largestSlip > 0 ? `${c.residual ? "Residual" : "Accumulated"} slip of joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}.` : "No joint has slipped.");
     if (view.show.joints && view.largestOpening > 0) notes.push(`Open joints of blocks still near each other dashed, at most ${withUnit(view.largestOpening, "m")}.`);
     if (view.show.forces && view.largestForce > 0) notes.push(`Longest arrow: ${withUnit(view.largestForce, "N")}, on the first of the two blocks.`);
     if (!c.exact) notes.push(`Contacts are those of t = ${number(c.time, 5)} s: this page has them for ${run.contacts.length} frames.`);
@@ -259,17 +260,18 @@ function contactNumbers(key) {
   if (kind === 0) rows.push(["corner on edge", `${corner} of the first on ${edge} of the second`]);
   if (i < 0) rows.push(["", "carries nothing at this time"]);
   else {
-    if (p.state[i] < 4) rows.push(["state", stateNames[p.state[i]]]);
-    rows.push(["normal force", element("span", { "data-quantity": "normal_force", "data-value": String(p.normal[i]) }, withUnit(p.normal[i], "N"))]);
-    rows.push(["shear force", withUnit(p.shear[i], "N")], ["force on the first", `(${withUnit(p.fx[i], "N")}, ${withUnit(p.fy[i], "N")})`]);
-    rows.push(["slip", withUnit(p.slip[i], "m")], ["opening", withUnit(p.opening[i], "m")]);
+    const state = contactColumn("state").names[p.state[i]];
+    if (state) rows.push(["state", state]);
+    for (const c of words.contact_columns.filter((one) => one.shown && p[one.key]))
+      rows.push([c.title, element("span", { "data-quantity": c.key, "data-value": String(p[c.key][i]) }, withUnit(p[c.key][i], c.unit))]);
+    rows.push(["force on the first", `(${withUnit(p.fx[i], "N")}, ${withUnit(p.fy[i], "N")})`]);
   }
-  return tableOf(kindNames[kind] || "contact", ["per the model's thickness", p ? `t = ${number(p.time, 5)} s` : ""], rows);
+  return tableOf(contactColumn("kind").names[kind] || "contact", ["per the model's thickness", p ? `t = ${number(p.time, 5)} s` : ""], rows);
 }
 
 function historyButtons(chosen) {
   const box = element("p", { class: "history" }, "history of ");
-  const offers = chosen.block !== undefined ? Object.entries(quantities).map(([k, q]) => [k, q.title]) : [["normal", "normal force"], ["shear", "shear force"], ["slip", "slip"], ["opening", "opening"]];
+  const offers = chosen.block !== undefined ? Object.entries(quantities).map(([k, q]) => [k, q.title]) : words.contact_columns.filter((c) => c.shown && view.contacts && view.contacts[c.key]).map((c) => [c.key, c.title]);
   const select = element("select", { "aria-label": "history of" }, ...offers.map(([k, t]) => element("option", { value: k }, t)));
   if (chosen.block !== undefined && quantities[view.quantity]) select.value = view.quantity;
   box.append(select, element("button", { type: "button", id: "show-history", onclick: () => drawHistory(chosen, select.value) }, "draw"));
@@ -292,10 +294,11 @@ async function drawHistory(chosen, what) {
       if (k % 10 === 0) note.textContent = `reading frame ${k + 1} of ${run.frames.length}`;
     }
   } else {
-    title = `contact: ${what}`, unit = what === "slip" || what === "opening" ? "m" : "N";
+    const column = contactColumn(what);
+    title = `contact: ${column.title}`, unit = column.unit;
     for (let k = 0; k < run.contacts.length; ++k) {
       const p = await run.contactFrame(k);
-      for (let i = 0; i < p.n; ++i) if (contactKey(p, i) === chosen.contact) time.push(p.time), value.push(p[what][i]);
+      for (let i = 0; i < p.n; ++i) if (p[what] && contactKey(p, i) === chosen.contact) time.push(p.time), value.push(p[what][i]);
     }
   }
   note.remove();
@@ -325,9 +328,9 @@ async function addMonitors() {
   const tables = await Promise.all(runs.map((r) => r.table("histories"))), groups = new Map();
   tables.forEach((table, r) => {
     if (!table) return;
-    table.columns.forEach((column, c) => {
-      if (c === 0 || column === "dynamic_time [s]") return;  // clocks
-      const { monitor, quantity, unit } = splitColumn(column), key = `${quantity} [${unit}]`;
+    table.about.forEach(({ monitor, quantity: name, unit }, c) => {
+      if (!monitor) return;  // clocks
+      const quantity = name.replace(/_/g, " "), key = `${quantity} [${unit}]`;
       if (!groups.has(key)) groups.set(key, { quantity, unit, series: [] });
       groups.get(key).series.push({ label: runs.length > 1 ? `${runs[r].name}: ${monitor}` : monitor, time: table.values[0], value: table.values[c] });
     });

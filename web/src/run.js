@@ -1,6 +1,7 @@
 // One run of the report: shapes, frames, contact points, bolts and tables, decoded when they are wanted.
 
 import { chunk, Unpacker } from "./decode.js";
+import { words } from "./quantities.js";
 
 const kCacheBytes = 300e6;  // of decoded frames
 
@@ -18,7 +19,6 @@ export class Run {
     this.framesReason = data.frames.reason || "";
     this.contacts = data.frames.contacts;
     this.shapesList = data.frames.shapes;
-    this.quantities = data.frames.quantities || [];
     this.origin = data.frames.origin || [0, 0];
     this.decoded_ = new Map();  // promises, by kind and number
     this.used_ = 0;
@@ -103,22 +103,25 @@ export class Run {
 
   contactFrame(k) {
     return this.once_(`contacts ${k}`, async () => {
-      const { count: n, data, frame } = this.contacts[k];
+      const { count: n, data, frame, columns } = this.contacts[k];
       const u = new Unpacker(await chunk(data));
-      const points = {
-        n, frame, time: this.frames[frame].t, kind: u.bytes(n), state: u.bytes(n),
-        a: u.integers(n), b: u.integers(n), corner: u.integers(n), edge: u.integers(n), partner: u.integers(n),
-        x: u.shortFloats(n), y: u.shortFloats(n), direction: u.shortIntegers(n),
-        normal: u.halves(n), shear: u.halves(n), slip: u.halves(n), opening: u.halves(n),
-      };
+      const points = { n, frame, time: this.frames[frame].t };
+      // null: an older talus did not write it
+      for (const c of words.contact_columns) points[c.key] = columns.includes(c.key) ? u[c.by](n) : null;
+      points.x = u.shortFloats(n), points.y = u.shortFloats(n);
+      const direction = u.shortIntegers(n);
       points.fx = new Float32Array(n), points.fy = new Float32Array(n);
       for (let i = 0; i < n; ++i) {
-        const size = Math.hypot(points.normal[i], points.shear[i]), angle = (points.direction[i] / 32767) * Math.PI;
+        const size = Math.hypot(points.normal_force[i], points.shear_force[i]), angle = (direction[i] / 32767) * Math.PI;
         points.fx[i] = size * Math.cos(angle), points.fy[i] = size * Math.sin(angle);
       }
       const lines = [];
       for (let i = 0; i < n; ++i) if (points.partner[i] > i) lines.push(i, points.partner[i]);
       points.lines = Int32Array.from(lines);
+      // points that have no other end
+      points.alone = Int32Array.from([...Array(n).keys()].filter((i) => points.partner[i] < 0 && (points.state[i] === 1 || points.state[i] === 2)));
+      points.residual = points.residual_slip !== null;
+      points.slip = points.residual ? points.residual_slip.map(Math.abs) : points.accumulated_slip;
       return points;
     });
   }
@@ -142,7 +145,7 @@ export class Run {
     if (!t) return Promise.resolve(null);
     return this.once_(`table ${name}`, async () => {
       const values = await Promise.all(t.data.map(async (id) => new Unpacker(await chunk(id)).doubles(t.rows)));
-      return { columns: t.columns, values, rows: t.rows, rowsThere: t.rows_there };
+      return { columns: t.columns.map((c) => c.title), about: t.columns, values, rows: t.rows, rowsThere: t.rows_there };
     });
   }
 }

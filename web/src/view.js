@@ -3,13 +3,13 @@
 
 import { Painter } from "./gl.js";
 import { bytesOf, Lines } from "./mesh.js";
-import { colours, kClasses, palette, quantities } from "./quantities.js";
+import { colours, kClasses, quantities, words } from "./quantities.js";
 import { RasterPainter } from "./raster.js";
 
 const kOutline = 5;      // [px] blocks smaller than this have no outline
 const kArrow = 40;       // [px] of the largest contact force
 const kMargin = 16;      // [px]
-const kLeastLine = 0.02; // share of the largest slip below which a slipped joint is drawn thin
+const kDot = 5;          // [px] across a joint point that has no other end
 
 export class View {
   /** @param canvas  for lines, marks and the pointer; @param ground  below it, for blocks and joints */
@@ -65,7 +65,7 @@ export class View {
 
   /** The colour class of every block, and the colours. */
   classes_() {
-    const f = this.frame, n = f.shapes.n, q = quantities[this.quantity];
+    const f = this.frame, n = f.shapes.n, q = quantities[this.quantity], { palette } = words.colours;
     if (!this.class_ || this.class_.length !== n) this.class_ = new Uint8Array(n);
     if (!q) {
       const labels = new Map(), what = this.quantity;  // material, group, kind
@@ -122,15 +122,21 @@ export class View {
     }
     this.painter.begin(paper, this.still);
     this.painter.blocks(s, places, tints, this.show.outlines && 2 * large > seen ? [20, 20, 20, 115] : null);
-    if (this.show.joints && this.contacts) this.paintJoints_(ink);
+    if (this.show.joints && this.contacts) this.paintJoints_();
     this.painter.end();
   }
 
-  paintJoints_(ink) {
-    const lines = new Lines(), orange = bytesOf("#e6550d"), dark = bytesOf(ink);
+  paintJoints_() {
+    const lines = new Lines(), { slipped, open } = words.colours, orange = bytesOf(slipped), dark = bytesOf(open), least = words.least_drawn;
     this.eachJoint_((px, py, qx, qy, slip, opening) => {
-      if (slip > 0) lines.add(px, py, qx, qy, slip <= kLeastLine ? 0.8 : 1 + 3 * slip, orange);
-      if (opening > kLeastLine) lines.addDashed(px, py, qx, qy, 2, dark);
+      const alone = px === qx && py === qy, wide = 1 + 3 * slip;
+      if (alone) {
+        const half = 0.5 * Math.max(kDot, wide);
+        if (slip > least || opening > least) lines.add(px - half, py, px + half, py, 2 * half, slip > least ? orange : dark);
+        return;
+      }
+      if (slip > least) lines.add(px, py, qx, qy, wide, orange);
+      if (opening > least) lines.addDashed(px, py, qx, qy, 2, dark);
     });
     this.painter.triangles(new Float32Array(lines.places), new Uint8Array(lines.tints));
   }
@@ -154,7 +160,7 @@ export class View {
   }
 
   shift_(p, i, axis) {
-    const f = this.frame, k = f.shapes.place.get(p.a[i]);
+    const f = this.frame, k = f.shapes.place.get(p.block_a[i]);
     if (k === undefined || this.deformation === 1) return 0;
     return (this.deformation - 1) * (axis === "x" ? f.ux[k] : f.uy[k]);
   }
@@ -164,15 +170,17 @@ export class View {
     const p = this.contacts, w = this.canvas.clientWidth, h = this.canvas.clientHeight;
     const slipOf = (i) => (p.state[i] === 1 || p.state[i] === 2 ? p.slip[i] : 0), openOf = (i) => (p.state[i] === 2 ? p.opening[i] : 0);
     let slip = 0, opening = 0;
-    for (const i of p.lines) slip = Math.max(slip, slipOf(i)), opening = Math.max(opening, openOf(i));
+    for (const list of [p.lines, p.alone]) for (const i of list) slip = Math.max(slip, slipOf(i)), opening = Math.max(opening, openOf(i));
     this.largestSlip = slip, this.largestOpening = opening;
-    for (let k = 0; k < p.lines.length; k += 2) {
-      const i = p.lines[k], j = p.lines[k + 1], s = Math.max(slipOf(i), slipOf(j)), o = Math.max(openOf(i), openOf(j));
-      if (s === 0 && o === 0) continue;
+    const one = (i, j) => {
+      const s = Math.max(slipOf(i), slipOf(j)), o = Math.max(openOf(i), openOf(j));
+      if (s === 0 && o === 0) return;
       const [px, py] = this.contactPlace(i), [qx, qy] = this.contactPlace(j);
-      if (Math.max(px, qx) < 0 || Math.max(py, qy) < 0 || Math.min(px, qx) > w || Math.min(py, qy) > h) continue;
+      if (Math.max(px, qx) < 0 || Math.max(py, qy) < 0 || Math.min(px, qx) > w || Math.min(py, qy) > h) return;
       draw(px, py, qx, qy, slip > 0 ? s / slip : 0, opening > 0 ? o / opening : 0);
-    }
+    };
+    for (let k = 0; k < p.lines.length; k += 2) one(p.lines[k], p.lines[k + 1]);
+    for (const i of p.alone) one(i, i);
   }
 
   drawForces_(context) {
@@ -181,7 +189,7 @@ export class View {
     for (let i = 0; i < p.n; ++i) most = Math.max(most, Math.hypot(p.fx[i], p.fy[i]));
     this.largestForce = most;
     if (most === 0) return;
-    context.strokeStyle = context.fillStyle = "#7a0177";
+    context.strokeStyle = context.fillStyle = words.colours.force;
     context.lineWidth = 1.2;
     context.beginPath();
     for (let i = 0; i < p.n; ++i) {
@@ -201,14 +209,15 @@ export class View {
   }
 
   drawBolts_(context) {
-    const b = this.bolts, [ox, oy] = this.run.origin;
+    const b = this.bolts, [ox, oy] = this.run.origin, colour = words.colours;
+    const pale = bytesOf(colour.bolt_pale).slice(0, 3), dark = bytesOf(colour.bolt_dark).slice(0, 3);
     let most = 0;
-    for (let i = 0; i < b.n; ++i) most = Math.max(most, Math.abs(b.axial[i]));
+    for (let i = 0; i < b.n; ++i) most = Math.max(most, b.axial[i]);
     this.largestTension = most;
     for (let i = 0; i < b.n; ++i) {
       const share = most > 0 ? b.axial[i] / most : 0;
-      context.strokeStyle = b.condition[i] === 2 ? "#000" : share < 0 ? "#6b6b6b" : `rgb(${158 * (1 - share)},${76 + 122 * (1 - share)},${41 + 115 * (1 - share)})`;
-      context.lineWidth = 1.2 + 2.4 * Math.abs(share);
+      context.strokeStyle = b.condition[i] === 2 ? colour.bolt_ruptured : share < 0 ? colour.bolt_pressed : `rgb(${pale.map((v, c) => v + share * (dark[c] - v)).join(",")})`;
+      context.lineWidth = 1.2 + 2.4 * Math.max(0, share);
       context.beginPath();
       context.moveTo(...this.toScreen(ox + b.x0[i], oy + b.y0[i]));
       context.lineTo(...this.toScreen(ox + b.x1[i], oy + b.y1[i]));
@@ -328,5 +337,5 @@ export class View {
 
 /** What tells a contact point from the others, the same in all frames. */
 export function contactKey(p, i) {
-  return `${p.kind[i]}:${p.a[i]}:${p.corner[i]}:${p.b[i]}:${p.edge[i]}`;
+  return `${p.kind[i]}:${p.block_a[i]}:${p.corner[i]}:${p.block_b[i]}:${p.edge[i]}`;
 }

@@ -144,9 +144,9 @@ export function worstSteps(table, onTime) {
 /** A table of texts, numbers with fewer digits. */
 export function listOf(caption, table, leaveOut = []) {
   if (!table || !table.rows.length) return null;
-  const kept = table.columns.map((c, i) => i).filter((i) => !leaveOut.includes(table.columns[i]));
+  const kept = table.columns.map((c, i) => i).filter((i) => !leaveOut.includes(table.columns[i].title));
   const short = (text) => (text !== "" && /[.e]/.test(text) && Number.isFinite(Number(text)) ? number(Number(text), 5) : text);
   const more = table.rows_there > table.rows.length ? ` (the first ${table.rows.length} of ${table.rows_there})` : "";
-  const title = (c) => c.replace(/_/g, " ");
+  const title = (c) => (c.unit ? `${c.quantity} [${c.unit}]` : c.quantity).replace(/_/g, " ");
   return tableOf(caption + more, kept.map((i) => title(table.columns[i])), table.rows.map((row) => kept.map((i) => short(row[i]))));
 }

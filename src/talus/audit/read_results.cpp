@@ -289,7 +289,8 @@ class Reader {
     const auto &place = vtk.at("Points", 3).values, &kind = column("kind"), &a = column("block a"),
                &b = column("block b"), &corner = column("corner"), &edge = column("edge"),
                &partner = column("partner"), &gap = column("gap [m]"), &normal = column("normal force [N]"),
-               &shear = column("shear force [N]"), &slip = column("slip [m]");
+               &shear = column("shear force [N]"),
+               &slip = vtk.at_first({"accumulated slip [m]", "slip [m]"}, 1, n).values;
     std::vector<int> at(kind.size(), -1);  // in the list of points
     for (size_t i = 0; i < kind.size(); ++i) {
       if (kind[i] != 0 && kind[i] != 1) continue;

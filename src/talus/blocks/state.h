@@ -229,6 +229,14 @@ inline Vec2 displacement_shown(const State& s, size_t i, Vec2 X) {
   return s.displacement_start.empty() ? u : u - (s.displacement_start[i] + s.strain_part_start[i] * X);
 }
 
+/// Gradient of the displacement shown, against places in the state from which it counts: (F - F0) F0^-1.
+inline Mat2 gradient_shown(const State& s, size_t i) {
+  const Mat2& e = s.strain_part[i];
+  if (s.displacement_start.empty()) return e;
+  const Mat2& e0 = s.strain_part_start[i];
+  return (e - e0) * inverse(kIdentity + e0);
+}
+
 /// The arm on which G acts: X of a deformable block, the turned arm of any other.
 inline Vec2 acting_arm(const BlockSet& b, const State& s, size_t i, Vec2 X) {
   return b.kind[i] == BlockKind::kDeformable ? X : X + s.strain_part[i] * X;

@@ -2,11 +2,6 @@
 
 namespace talus {
 
-const char* state_name(JointState state) {
-  constexpr const char* kName[] = {"intact", "slipped", "open", "apart"};
-  return kName[static_cast<int>(state)];
-}
-
 // Theory 4.19.
 JointState joint_state(bool touched, double normal_force, double slip, double opening, double noticed) {
   if (!touched) return JointState::kApart;

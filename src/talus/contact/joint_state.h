@@ -16,7 +16,6 @@ inline double noticeable(const BlockSet& blocks, size_t a, size_t b) {
 /// kApart: near each other, but never in touch.
 enum class JointState { kIntact, kSlipped, kOpen, kApart };
 constexpr JointState last_of(JointState) { return JointState::kApart; }
-const char* state_name(JointState state);
 
 /// @param normal_force  > 0 pressing [N]
 /// @param opening       gap less the rise [m]

@@ -29,20 +29,21 @@ std::string bolts_vtp(const std::vector<BoltLine>& lines, double time) {
   return out + "</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
-std::string bolts_csv_head() {
-  return "stage,t [s],bolt,piece,kind,x [m],y [m],axial_force [N],shear_force [N],elongation [m],state\n";
-}
-
-std::string bolts_csv_rows(const std::string& stage, double time, const std::vector<BoltLine>& lines) {
-  static constexpr const char* kCondition[] = {"elastic", "yielded", "ruptured"};
-  std::string out;
-  for (const BoltLine& l : lines) {
-    const Vec2 middle = 0.5 * (l.from + l.to);
-    out += fmt::format("{},{:.17g},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}\n", stage, time, l.bolt,
-                       l.piece, l.crossing ? "crossing" : "segment", middle.x, middle.y, l.axial, l.shear,
-                       l.elongation, kCondition[l.condition]);
-  }
-  return out;
+const Columns<BoltRow, Cell>& bolt_columns() {
+  using R = BoltRow;
+  static const Columns<BoltRow, Cell> columns{
+      {"stage", "", [](const R& r) { return r.stage; }},
+      {"t", "s", [](const R& r) { return r.time; }},
+      {"bolt", "", [](const R& r) { return r.line.bolt; }},
+      {"piece", "", [](const R& r) { return int64_t{r.line.piece}; }},
+      {"kind", "", [](const R& r) { return r.line.crossing ? "crossing" : "segment"; }},
+      {"x", "m", [](const R& r) { return 0.5 * (r.line.from.x + r.line.to.x); }, Over::kLast, 9},
+      {"y", "m", [](const R& r) { return 0.5 * (r.line.from.y + r.line.to.y); }, Over::kLast, 9},
+      {"axial_force", "N", [](const R& r) { return r.line.axial; }, Over::kLast, 9},
+      {"shear_force", "N", [](const R& r) { return r.line.shear; }, Over::kLast, 9},
+      {"elongation", "m", [](const R& r) { return r.line.elongation; }, Over::kLast, 9},
+      {"state", "", [](const R& r) { return kBoltConditions.at(static_cast<size_t>(r.line.condition)); }}};
+  return columns;
 }
 
 }  // namespace talus

@@ -1,12 +1,16 @@
 #pragma once
 // Rock bolts in result files: pieces of bar as lines for ParaView and for the picture of the blocks.
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "talus/base/vec2.h"
+#include "talus/output/columns.h"
 
 namespace talus {
+
+inline constexpr std::array<const char*, 3> kBoltConditions{"elastic", "yielded", "ruptured"};
 
 /// A piece of a bolt as it lies; forces of one bolt.
 struct BoltLine {
@@ -17,14 +21,18 @@ struct BoltLine {
   double axial = 0;       // > 0: tension [N]
   double shear = 0;       // [N]
   double elongation = 0;  // [m]
-  int condition = 0;      // 0 elastic, 1 yielded, 2 ruptured
+  int condition = 0;      // index in kBoltConditions
 };
 
 /// Lines with force and condition, and their time [s].
 std::string bolts_vtp(const std::vector<BoltLine>& lines, double time);
 
-/// Titles and rows of bolts.csv; `stage` goes into the first column.
-std::string bolts_csv_head();
-std::string bolts_csv_rows(const std::string& stage, double time, const std::vector<BoltLine>& lines);
+/// A row of bolts.csv.
+struct BoltRow {
+  const BoltLine& line;
+  const std::string& stage;
+  double time;  // [s]
+};
+const Columns<BoltRow, Cell>& bolt_columns();
 
 }  // namespace talus

@@ -111,6 +111,13 @@ const VtkFrame::Array& VtkFrame::at(const std::string& name, int components, lon
   return a;
 }
 
+const VtkFrame::Array& VtkFrame::at_first(std::initializer_list<std::string> names, int components,
+                                          long tuples) const {
+  for (const std::string& name : names)
+    if (has(name)) return at(name, components, tuples);
+  return at(*names.begin(), components, tuples);
+}
+
 VtkFrame parse_vtk(const std::string& name, const std::string& text) {
   VtkFrame frame;
   frame.file = name;

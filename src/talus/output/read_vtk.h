@@ -3,6 +3,7 @@
 // folder.
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct VtkFrame {
   /// Throws FileError when the frame has no such array, or one of other components or length.
   /// @param tuples  asked for; -1: any number
   const Array& at(const std::string& name, int components, long tuples = -1) const;
+  /// The first of these arrays that there is: what an older talus called it comes last.
+  const Array& at_first(std::initializer_list<std::string> names, int components, long tuples) const;
 };
 
 /// @param name  of the file, for messages

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "talus/base/error.h"
 #include "talus/output/block_quantity.h"
+#include "talus/output/colours.h"
 #include "talus/plot/axes.h"
 #include "talus/plot/sheet.h"
 
@@ -20,31 +22,10 @@ constexpr double kLargestWidth = 860, kLargestHeight = 780;  // of the frame
 constexpr double kBarWidth = 260, kBarHeight = 14;
 constexpr double kThinOutline = 7;  // blocks smaller than this have no outline
 
-constexpr double kDrawn = 0.02;  // joints of a smaller share of the largest slip are drawn thin
+constexpr Color of(const Rgb& c) { return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}; }
+constexpr Color kPale{0.86, 0.88, 0.90}, kSlipped = of(kSlippedColour), kOpen = of(kOpenColour);
 
-constexpr Color kPale{0.86, 0.88, 0.90}, kSlipped{0.90, 0.33, 0.05}, kOpen{0.03, 0.19, 0.42};
-
-// One-sided: lightness falls evenly (after cividis), so that grey print keeps the order. Two-sided: blue,
-// pale, orange-brown, which the colour-blind tell apart.
-using Anchors = std::array<std::array<int, 3>, 9>;
-constexpr Anchors kOneSided{{{255, 240, 150},
-                             {236, 214, 92},
-                             {196, 182, 108},
-                             {166, 157, 117},
-                             {138, 134, 120},
-                             {112, 113, 115},
-                             {87, 93, 109},
-                             {57, 72, 107},
-                             {0, 32, 77}}};
-constexpr Anchors kTwoSided{{{5, 48, 97},
-                             {33, 102, 172},
-                             {67, 147, 195},
-                             {146, 197, 222},
-                             {236, 236, 236},
-                             {253, 197, 130},
-                             {241, 130, 55},
-                             {200, 70, 10},
-                             {127, 39, 4}}};
+using Anchors = std::array<Rgb, 9>;
 
 Color mix(const Anchors& anchors, double share) {
   const double s = std::clamp(share, 0.0, 1.0) * static_cast<double>(anchors.size() - 1);
@@ -75,6 +56,7 @@ struct Shape {
   double value = 0;
 };
 
+// A point without another end has one place.
 struct JointSegment {
   Vec2 from, to;
   double slip = 0, opening = 0;  // [m]
@@ -91,58 +73,50 @@ struct Scenery {
   std::vector<JointSegment> joints;
   std::vector<BoltSegment> bolts;
   double slip = 0, opening = 0, tension = 0, pressed = 0;
+  bool residual = true;                           // the slip is what is left of it, not all of it to and fro
   double low = 0, high = 1, least = 0, most = 0;  // of the colours; of all values
   int side = 0;  // -1: all values are negative, 1: positive, and have one half of the two-sided colours
   const BlockQuantity* quantity = nullptr;
 };
 
-Vec2 point_at(const VtkFrame::Array& a, size_t i) { return {a.values[3 * i], a.values[3 * i + 1]}; }
-
 void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
-  const VtkFrame& f = picture.blocks;
-  const auto& points = f.at("Points", 3);
-  const auto corners = static_cast<long>(points.tuples());
-  const auto& moved = f.at("displacement [m]", 3, corners);
-  const auto& velocity = f.at("velocity [m s-1]", 3, corners);
-  const auto& ends = f.at("offsets", 1);
-  const auto& stress = f.at("stress xx yy xy [Pa]", 3, static_cast<long>(ends.tuples()));
-  size_t v = 0;
-  for (size_t b = 0; b < ends.tuples(); ++b) {
-    if (!(ends.values[b] >= static_cast<double>(v + 3) && ends.values[b] <= static_cast<double>(corners)))
-      throw FileError(f.file + ": a block has less than three corners, or more than there are");
-    const auto end = static_cast<size_t>(ends.values[b]);
+  const Shapes& shapes = picture.shapes;
+  const BlockFrame& f = picture.blocks;
+  for (size_t k = 0; k < shapes.id.size(); ++k) {
+    if (!f.present[k]) continue;
     Shape shape;
-    Vec2 u, rate;
-    const size_t begin = v;
-    for (; v < end; ++v) {
-      const Vec2 d = point_at(moved, v);
-      shape.polygon.push_back(point_at(points, v) + (picture.deformation - 1) * d);
-      u += d, rate += point_at(velocity, v);
+    const Vec2 centre = shapes.centre[k];
+    for (auto v = static_cast<size_t>(shapes.begin[k]); v < static_cast<size_t>(shapes.begin[k + 1]); ++v) {
+      const Vec2 u = f.displacement[k] + f.gradient[k] * (shapes.corner[v] - centre);
+      shape.polygon.push_back(shapes.corner[v] + picture.deformation * u);
     }
-    const auto n = static_cast<double>(v - begin);
-    const double* t = &stress.values[3 * b];
-    if (s.quantity) shape.value = block_quantities_of(u / n, rate / n, {t[0], t[2], t[2], t[1]})[quantity];
+    if (s.quantity)
+      shape.value = block_quantities_of(f.displacement[k], f.velocity[k], f.stress[k])[quantity];
     s.shapes.push_back(std::move(shape));
   }
 }
 
-// Joints from end to end.
-void take_joints(const VtkFrame& f, Scenery& s) {
-  const auto& points = f.at("Points", 3);
-  const auto n = static_cast<long>(points.tuples());
-  if (!f.has("partner")) return;  // written before ends knew each other
-  const auto& partner = f.at("partner", 1, n);
-  const auto& state = f.at("state", 1, n);
-  const auto& slip = f.at("slip [m]", 1, n);
-  const auto& opening = f.at("opening [m]", 1, n);
-  for (size_t i = 0; i < points.tuples(); ++i) {
-    if (!(partner.values[i] > static_cast<double>(i) && partner.values[i] < static_cast<double>(n))) continue;
-    const auto j = static_cast<size_t>(partner.values[i]);
-    JointSegment joint{point_at(points, i), point_at(points, j), 0, 0};
+// Where a point is drawn that moves with a block.
+Vec2 place_of(const BlockPicture& picture, int block, Vec2 now) {
+  if (picture.deformation == 1) return now;
+  return now + (picture.deformation - 1) * displacement_of(picture.shapes, picture.blocks, block, now);
+}
+
+// Joints from end to end, and points that have no other end.
+void take_joints(const BlockPicture& picture, Scenery& s) {
+  const ContactPoints& c = *picture.contacts;
+  s.residual = c.has("residual_slip");
+  const std::vector<double>&partner = c.at("partner"), &state = c.at("state"), &opening = c.at("opening"),
+        &block = c.at("block_a"), &slip = c.at(s.residual ? "residual_slip" : "accumulated_slip");
+  for (size_t i = 0; i < c.size(); ++i) {
+    if (partner[i] >= 0 && partner[i] < static_cast<double>(i)) continue;  // seen from its other end
+    const auto j =
+        partner[i] < 0 || partner[i] >= static_cast<double>(c.size()) ? i : static_cast<size_t>(partner[i]);
+    const auto place = [&](size_t e) { return place_of(picture, static_cast<int>(block[e]), c.point[e]); };
+    JointSegment joint{place(i), place(j), 0, 0};
     for (const size_t e : {i, j}) {
-      const double condition = state.values[e];
-      if (condition == 1 || condition == 2) joint.slip = std::max(joint.slip, slip.values[e]);
-      if (condition == 2) joint.opening = std::max(joint.opening, opening.values[e]);
+      if (state[e] == 1 || state[e] == 2) joint.slip = std::max(joint.slip, std::abs(slip[e]));
+      if (state[e] == 2) joint.opening = std::max(joint.opening, opening[e]);
     }
     if (joint.slip == 0 && joint.opening == 0) continue;
     s.slip = std::max(s.slip, joint.slip), s.opening = std::max(s.opening, joint.opening);
@@ -150,16 +124,11 @@ void take_joints(const VtkFrame& f, Scenery& s) {
   }
 }
 
-void take_bolts(const VtkFrame& f, Scenery& s) {
-  const auto& points = f.at("Points", 3);
-  const auto n = static_cast<long>(points.tuples() / 2);
-  const auto& axial = f.at("axial force [N]", 1, n);
-  const auto& condition = f.at("condition", 1, n);
-  if (points.tuples() % 2 != 0) throw FileError(f.file + ": a piece of a bolt has one end");
-  for (size_t i = 0; i < axial.tuples(); ++i) {
-    s.bolts.push_back(
-        {point_at(points, 2 * i), point_at(points, 2 * i + 1), axial.values[i], condition.values[i] == 2});
-    s.tension = std::max(s.tension, axial.values[i]), s.pressed = std::max(s.pressed, -axial.values[i]);
+void take_bolts(const BlockPicture& picture, Scenery& s) {
+  const BoltPieces& b = *picture.bolts;
+  for (size_t i = 0; i < b.size(); ++i) {
+    s.bolts.push_back({b.from[i], b.to[i], b.axial_force[i], b.condition[i] == 2});
+    s.tension = std::max(s.tension, b.axial_force[i]), s.pressed = std::max(s.pressed, -b.axial_force[i]);
   }
 }
 
@@ -242,22 +211,31 @@ Color color_of(const Scenery& s, double value) {
   return s.quantity ? color_at(s, (value - s.low) / (s.high - s.low)) : kPale;
 }
 
+// A joint from end to end; a point alone as a dot, which is never too small to be seen.
 void segment(cairo_t* cr, const View& view, Vec2 from, Vec2 to, const Pen& pen) {
   const Vec2 p = view.to_sheet(from), q = view.to_sheet(to);
   set_pen(cr, pen);
+  if (norm(q - p) < 0.5) {
+    cairo_new_path(cr);
+    cairo_arc(cr, p.x, p.y, 1 + pen.width / 2, 0, 2 * std::numbers::pi);
+    cairo_fill(cr);
+    return;
+  }
   cairo_move_to(cr, p.x, p.y);
   cairo_line_to(cr, q.x, q.y);
   cairo_stroke(cr);
 }
 
-Pen slip_pen(double share) { return {kSlipped, share <= kDrawn ? 0.7 : 1 + 3 * share, {}}; }
+Pen slip_pen(double share) { return {kSlipped, 1 + 3 * share, {}}; }
 Pen open_pen() { return {kOpen, 2, {4, 3}}; }
 
 Pen bolt_pen(const Scenery& s, const BoltSegment& b) {
-  if (b.ruptured) return {{0, 0, 0}, 2.5, {3, 2}};
-  if (b.axial < 0 || s.tension <= 0) return {{0.42, 0.42, 0.42}, 1.5, {}};
+  if (b.ruptured) return {of(kBoltRuptured), 2.5, {3, 2}};
+  if (b.axial < 0 || s.tension <= 0) return {of(kBoltPressed), 1.5, {}};
   const double share = b.axial / s.tension;
-  return {{0.62 * (1 - share), 0.30 + 0.48 * (1 - share), 0.16 + 0.45 * (1 - share)}, 1.4 + 2.3 * share, {}};
+  const Color pale = of(kBoltPale), dark = of(kBoltDark);
+  const auto mixed = [share](double from, double to) { return from + share * (to - from); };
+  return {{mixed(pale.r, dark.r), mixed(pale.g, dark.g), mixed(pale.b, dark.b)}, 1.4 + 2.3 * share, {}};
 }
 
 void draw_scene(cairo_t* cr, const View& view, const Box& box, const Scenery& s) {
@@ -277,9 +255,9 @@ void draw_scene(cairo_t* cr, const View& view, const Box& box, const Scenery& s)
     cairo_stroke(cr);
   }
   for (const JointSegment& j : s.joints)
-    if (j.slip > 0) segment(cr, view, j.from, j.to, slip_pen(j.slip / s.slip));
+    if (j.slip > kLeastDrawn * s.slip) segment(cr, view, j.from, j.to, slip_pen(j.slip / s.slip));
   for (const JointSegment& j : s.joints)
-    if (j.opening > kDrawn * s.opening) segment(cr, view, j.from, j.to, open_pen());
+    if (j.opening > kLeastDrawn * s.opening) segment(cr, view, j.from, j.to, open_pen());
   for (const BoltSegment& b : s.bolts) segment(cr, view, b.from, b.to, bolt_pen(s, b));
   cairo_restore(cr);
 }
@@ -327,7 +305,9 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
   };
   if (s.slip > 0) {
     line(slip_pen(1));
-    text("joints that slipped, the wider the more, at most " + with_unit(s.slip, "m"), x + sample);
+    text(fmt::format("{} slip of joints, the wider the more, at most {}",
+                     s.residual ? "residual" : "accumulated", with_unit(s.slip, "m")),
+         x + sample);
     y += kRow;
   }
   if (s.opening > 0) {
@@ -360,8 +340,8 @@ void write_block_picture(const BlockPicture& picture, const std::filesystem::pat
   for (size_t q = 0; q < kBlockQuantities.size(); ++q)
     if (picture.quantity == kBlockQuantities[q].name) scenery.quantity = &kBlockQuantities[quantity = q];
   take_blocks(picture, quantity, scenery);
-  if (picture.contacts) take_joints(*picture.contacts, scenery);
-  if (picture.bolts) take_bolts(*picture.bolts, scenery);
+  if (picture.contacts) take_joints(picture, scenery);
+  if (picture.bolts) take_bolts(picture, scenery);
   const Box box = box_of(picture, scenery);
   if (std::none_of(scenery.shapes.begin(), scenery.shapes.end(),
                    [&box](const Shape& shape) { return in_window(shape.polygon, box); }))
@@ -376,7 +356,7 @@ void write_block_picture(const BlockPicture& picture, const std::filesystem::pat
     set_color(cr, kText);
     set_font(cr, kFontSize);
     const std::string time = fmt::format(
-        "t = {:.6g} s{}", picture.blocks.time,
+        "t = {:.6g} s{}", picture.time,
         picture.deformation == 1 ? "" : fmt::format(", displacements {:g} times", picture.deformation));
     const double time_width = text_width(cr, time);
     draw_text(cr, time, sheet.view.frame.right(), title_y, 1);

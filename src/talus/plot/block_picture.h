@@ -9,17 +9,20 @@
 
 #include "talus/base/vec2.h"
 #include "talus/geometry/polygon.h"
-#include "talus/output/read_vtk.h"
+#include "talus/output/read_frames.h"
 
 namespace talus::plot {
 
 struct BlockPicture {
   std::string title;
-  VtkFrame blocks;
-  std::optional<VtkFrame> contacts, bolts;  // of the same time
-  std::string quantity = "displacement";    // one of block_quantities(), "" : none, blocks are pale
-  double deformation = 1;                   // displacements are drawn so many times
-  std::optional<Box> window;                // what is shown [m]; none: all blocks
+  double time = 0;  // [s]
+  Shapes shapes;
+  BlockFrame blocks;  // of these shapes
+  std::optional<ContactPoints> contacts;
+  std::optional<BoltPieces> bolts;        // of the same time
+  std::string quantity = "displacement";  // one of block_quantities(), "" : none, blocks are pale
+  double deformation = 1;                 // displacements are drawn so many times
+  std::optional<Box> window;              // what is shown [m]; none: all blocks
 };
 
 /// Names of what may colour blocks: displacement, velocity, stress_xx ...

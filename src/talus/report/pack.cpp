@@ -15,7 +15,7 @@ namespace talus::report {
 
 namespace {
 
-std::string packed(const unsigned char* data, size_t size) {
+std::string gzipped(const unsigned char* data, size_t size) {
   z_stream stream{};
   constexpr int kGzip = 15 + 16;  // largest window, with gzip's head and check
   if (deflateInit2(&stream, 6, Z_DEFLATED, kGzip, 9, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -103,10 +103,10 @@ void Packer::coarse_halves(const std::vector<double>& values) {
 
 void Packer::doubles(const std::vector<double>& values) { planes(values); }
 
-std::string Packer::text() const { return packed(bytes_.data(), bytes_.size()); }
+std::string Packer::text() const { return gzipped(bytes_.data(), bytes_.size()); }
 
 std::string compressed_text(const std::string& text) {
-  return packed(reinterpret_cast<const unsigned char*>(text.data()), text.size());
+  return gzipped(reinterpret_cast<const unsigned char*>(text.data()), text.size());
 }
 
 }  // namespace talus::report

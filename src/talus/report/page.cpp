@@ -9,8 +9,11 @@
 #include "talus/base/error.h"
 #include "talus/base/version.h"
 #include "talus/output/block_quantity.h"
-#include "talus/report/frames.h"
+#include "talus/output/bolt_lines.h"
+#include "talus/output/colours.h"
+#include "talus/output/columns.h"
 #include "talus/report/pack.h"
+#include "talus/report/packed_frames.h"
 
 namespace talus::report {
 
@@ -48,6 +51,18 @@ std::vector<size_t> spread(size_t n, size_t count) {
   return out;
 }
 
+// What a title says, so that the page need not take it apart.
+json column_of(const std::string& title) {
+  const ColumnTitle parts = parts_of_title(title);
+  return {{"title", title}, {"monitor", parts.monitor}, {"quantity", parts.quantity}, {"unit", parts.unit}};
+}
+
+json columns_of(const std::vector<std::string>& titles) {
+  json out = json::array();
+  for (const std::string& title : titles) out.push_back(column_of(title));
+  return out;
+}
+
 // A table of numbers; a very long one loses rows evenly, but never the rows of `keep`.
 json table_of(const CsvTable& table, const std::set<size_t>& keep, Chunks& chunks) {
   if (table.columns.empty()) return nullptr;
@@ -56,16 +71,16 @@ json table_of(const CsvTable& table, const std::set<size_t>& keep, Chunks& chunk
   std::vector<size_t> chosen;
   for (size_t r = 0; r < rows; ++r)
     if (every < 2 || r % every == 0 || r + 1 == rows || keep.count(r)) chosen.push_back(r);
-  json columns = json::array(), data = json::array();
+  json data = json::array();
   for (size_t c = 0; c < table.columns.size(); ++c) {
     std::vector<double> values;
     for (const size_t r : chosen) values.push_back(table.values[c][r]);
     Packer p;
     p.doubles(values);
-    columns.push_back(table.columns[c]);
     data.push_back(chunks.add(p.text()));
   }
-  return {{"columns", columns}, {"data", data}, {"rows", chosen.size()}, {"rows_there", rows}};
+  return {
+      {"columns", columns_of(table.columns)}, {"data", data}, {"rows", chosen.size()}, {"rows_there", rows}};
 }
 
 // Rows of steps.csv with the largest values of some columns.
@@ -89,7 +104,7 @@ json texts_of(const TextTable& table, size_t most) {
   if (table.columns.empty()) return nullptr;
   json rows = json::array();
   for (size_t r = 0; r < std::min(most, table.rows.size()); ++r) rows.push_back(table.rows[r]);
-  return {{"columns", table.columns}, {"rows", rows}, {"rows_there", table.rows.size()}};
+  return {{"columns", columns_of(table.columns)}, {"rows", rows}, {"rows_there", table.rows.size()}};
 }
 
 // Rows of the last stage that the table names.
@@ -156,6 +171,13 @@ struct FramesData {
   double size = 0;  // in the page
 };
 
+json names_of(const ContactPoints& points) {
+  json out = json::array();
+  for (const ContactColumn& c : contact_columns())
+    if (c.page != InPage::kNot && points.has(c.name)) out.push_back(c.name);
+  return out;
+}
+
 FramesData pack_frames(const RunFolder& run, const std::vector<size_t>& chosen, size_t contacts,
                        Vec2 origin) {
   FramesData data;
@@ -172,24 +194,26 @@ FramesData pack_frames(const RunFolder& run, const std::vector<size_t>& chosen, 
     json j = {{"t", entry.time},
               {"stage", stage_at(run.summary, entry.time)},
               {"shapes", frame.shapes},
-              {"data", add(frame.packed())},
+              {"data", add(packed(frame))},
               {"spans", spans_of(frame)}};
     if (i < run.bolt_frames.size()) {
       const BoltPieces bolts = read_bolts(run.bolt_frames[i].file);
-      j["bolts"] = {{"count", bolts.size()}, {"data", add(bolts.packed(origin))}};
+      j["bolts"] = {{"count", bolts.size()}, {"data", add(packed(bolts, origin))}};
     }
     data.lists["blocks"].push_back(j);
   }
   for (const Shapes& s : reader.shapes())
     data.lists["shapes"].push_back(
-        {{"blocks", s.id.size()}, {"corners", s.corner.size()}, {"data", add(s.packed())}});
+        {{"blocks", s.id.size()}, {"corners", s.corner.size()}, {"data", add(packed(s))}});
   // contact points at frames that are shown
   for (const size_t k : spread(chosen.size(), contacts)) {
     const size_t i = chosen[k];
     if (i >= run.contact_frames.size()) continue;
     const ContactPoints points = read_contacts(run.contact_frames[i].file);
-    data.lists["contacts"].push_back(
-        {{"frame", k}, {"count", points.size()}, {"data", add(points.packed(origin))}});
+    data.lists["contacts"].push_back({{"frame", k},
+                                      {"count", points.size()},
+                                      {"data", add(packed(points, origin))},
+                                      {"columns", names_of(points)}});
   }
   return data;
 }
@@ -209,7 +233,6 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
     return p.size() < 2 ? Vec2{} : Vec2{p[0], p[1]};
   }();
   out["origin"] = {origin.x, origin.y};
-  for (const BlockQuantity& q : kBlockQuantities) out["quantities"].push_back(q.name);
 
   // what one frame takes, from some spread over the run; the first have hardly moved and pack too well
   const auto mean_size = [](const std::vector<SeriesEntry>& series, const auto& pack) {
@@ -219,14 +242,14 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
     return sample.empty() ? 1.0 : sum / static_cast<double>(sample.size());
   };
   const double contact_size =
-      mean_size(run.contact_frames, [&](const auto& file) { return read_contacts(file).packed(origin); });
+      mean_size(run.contact_frames, [&](const auto& file) { return packed(read_contacts(file), origin); });
   const auto contacts_fit = static_cast<size_t>(std::max(2.0, kContactShare * room / contact_size));
   const size_t contacts = std::min({kContactFrames, contacts_fit, run.contact_frames.size()});
   FrameReader sampler;
   const double block_size =
-      mean_size(run.block_frames, [&](const auto& file) { return sampler.read(file).packed(); });
+      mean_size(run.block_frames, [&](const auto& file) { return packed(sampler.read(file)); });
   double rest = static_cast<double>(contacts) * contact_size;
-  for (const Shapes& s : sampler.shapes()) rest += static_cast<double>(s.packed().size());
+  for (const Shapes& s : sampler.shapes()) rest += static_cast<double>(packed(s).size());
   size_t count = std::min(there, static_cast<size_t>(std::max(2.0, (room - rest) / block_size)));
   if (count < there) note.reason = "for the size of the page";
   if (options.frames > 0 && static_cast<size_t>(options.frames) < count) {
@@ -254,10 +277,53 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
   return out;
 }
 
+template <class List>
+json colours_of(const List& list) {
+  json out = json::array();
+  for (const Rgb& c : list) out.push_back(fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]));
+  return out;
+}
+
+// What the page has to know of results in general: columns, quantities, names and colours.
+json words_of_results() {
+  json contacts = json::array(), quantities = json::array();
+  for (const ContactColumn& c : contact_columns()) {
+    if (c.page == InPage::kNot) continue;
+    std::string title = c.name;
+    std::replace(title.begin(), title.end(), '_', ' ');
+    contacts.push_back({{"key", c.name},
+                        {"title", title},
+                        {"unit", c.unit},
+                        {"by", unpacked_by(c.page)},
+                        {"shown", c.shown},
+                        {"names", c.names}});
+  }
+  for (const BlockQuantity& q : kBlockQuantities)
+    quantities.push_back(
+        {{"key", q.name}, {"title", q.title}, {"unit", q.unit}, {"signed", q.signed_values}});
+  const auto one = [](const Rgb& c) { return colours_of(std::array<Rgb, 1>{c})[0]; };
+  return {{"contact_columns", contacts},
+          {"quantities", quantities},
+          {"bolt_conditions", kBoltConditions},
+          {"colours",
+           {{"one_sided", colours_of(kOneSided)},
+            {"two_sided", colours_of(kTwoSided)},
+            {"palette", colours_of(kPalette)},
+            {"slipped", one(kSlippedColour)},
+            {"open", one(kOpenColour)},
+            {"force", one(kForceColour)},
+            {"bolt_pale", one(kBoltPale)},
+            {"bolt_dark", one(kBoltDark)},
+            {"bolt_pressed", one(kBoltPressed)},
+            {"bolt_ruptured", one(kBoltRuptured)}}},
+          {"least_drawn", kLeastDrawn}};
+}
+
 // The index of the page, in the order of the runs; their data in `chunks`.
 json index_of(const std::vector<RunFolder>& runs, const PageOptions& options, PageNotes& notes,
               Chunks& chunks) {
-  json index = {{"program", fmt::format("talus {}", kVersion)}, {"runs", json::array()}};
+  json index = {
+      {"program", fmt::format("talus {}", kVersion)}, {"words", words_of_results()}, {"runs", json::array()}};
   size_t blocks = 0;
   for (const RunFolder& run : runs) blocks = std::max(blocks, blocks_in(run));
   const double limit = options.megabytes > 0 ? 1e6 * options.megabytes

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "talus/base/error.h"
-#include "talus/output/text_table.h"
 
 namespace talus {
 
@@ -16,17 +15,7 @@ constexpr double kTail = 0.1;  // of a dynamic stage, over which what is left is
 
 }  // namespace
 
-ColumnTitle parts_of_title(const std::string& title) {
-  const size_t dot = title.find('.'), bracket = title.find(" [");
-  ColumnTitle out;
-  out.monitor = dot == std::string::npos ? "" : title.substr(0, dot);
-  const size_t from = dot == std::string::npos ? 0 : dot + 1;
-  out.quantity = title.substr(from, bracket == std::string::npos ? bracket : bracket - from);
-  if (bracket != std::string::npos) out.unit = title.substr(bracket + 2, title.size() - bracket - 3);
-  return out;
-}
-
-Answers::Answers(const Scene& scene, std::vector<std::string> columns, std::vector<size_t> asked)
+Answers::Answers(const Scene& scene, const std::vector<ColumnTitle>& columns, std::vector<size_t> asked)
     : scene_(scene), asked_(std::move(asked)) {
   for (const size_t c : asked_) titles_.push_back(columns[c]);
 }
@@ -52,21 +41,43 @@ void Answers::at(const Instant& i, const std::vector<double>& row) {
   }
 }
 
+namespace {
+
+// A row of monitors.csv.
+struct AnswerRow {
+  const StageInput& stage;
+  const ColumnTitle& title;
+  const Answer& answer;
+};
+
+const Columns<AnswerRow, Cell>& answer_columns() {
+  using R = AnswerRow;
+  static const Columns<AnswerRow, Cell> columns{
+      {"monitor", "", [](const R& r) { return r.title.monitor; }},
+      {"quantity", "", [](const R& r) { return r.title.quantity; }},
+      {"unit", "", [](const R& r) { return r.title.unit; }},
+      {"stage", "", [](const R& r) { return r.stage.name; }},
+      {"at_start", "", [](const R& r) { return r.answer.at_start; }},
+      {"at_end", "", [](const R& r) { return r.answer.at_end; }},
+      {"least", "", [](const R& r) { return r.answer.least; }},
+      {"time_of_least", "s", [](const R& r) { return r.answer.time_of_least; }},
+      {"greatest", "", [](const R& r) { return r.answer.greatest; }},
+      {"time_of_greatest", "s", [](const R& r) { return r.answer.time_of_greatest; }},
+      {"residual", "", [](const R& r) -> Cell {
+         const double left = r.answer.residual(r.stage.kind == StageKind::kDynamic);
+         return std::isnan(left) ? Cell("") : Cell(left);
+       }}};
+  return columns;
+}
+
+}  // namespace
+
 std::string Answers::csv() const {
-  std::string out =
-      "monitor,quantity,unit,stage,at_start,at_end,least,time_of_least [s],greatest,time_of_greatest [s],residual\n";
-  for (const Stage& s : stages_) {
-    const StageInput& stage = scene_.model.stages[static_cast<size_t>(s.stage)];
-    for (size_t k = 0; k < titles_.size(); ++k) {
-      const ColumnTitle title = parts_of_title(titles_[k]);
-      const Answer& a = s.asked[k];
-      const double left = a.residual(stage.kind == StageKind::kDynamic);
-      out += fmt::format("{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n",
-                         table_cell(title.monitor), title.quantity, title.unit, table_cell(stage.name),
-                         a.at_start, a.at_end, a.least, a.time_of_least, a.greatest, a.time_of_greatest,
-                         std::isnan(left) ? "" : fmt::format("{:.17g}", left));
-    }
-  }
+  std::string out = csv_head(answer_columns());
+  for (const Stage& s : stages_)
+    for (size_t k = 0; k < titles_.size(); ++k)
+      out += csv_row(answer_columns(),
+                     AnswerRow{scene_.model.stages[static_cast<size_t>(s.stage)], titles_[k], s.asked[k]});
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/output/archive.h"
+#include "talus/output/columns.h"
 #include "talus/run/instant.h"
 
 namespace talus {
@@ -28,7 +29,7 @@ struct Answer {
 class Answers {
  public:
   /// @param columns  of histories.csv; those of `asked` are followed
-  Answers(const Scene& scene, std::vector<std::string> columns, std::vector<size_t> asked);
+  Answers(const Scene& scene, const std::vector<ColumnTitle>& columns, std::vector<size_t> asked);
 
   /// @param row  all columns at this instant
   void at(const Instant& instant, const std::vector<double>& row);
@@ -39,7 +40,7 @@ class Answers {
     std::vector<Answer> asked;  // in the order of titles()
   };
   const std::vector<Stage>& stages() const { return stages_; }
-  const std::vector<std::string>& titles() const { return titles_; }
+  const std::vector<ColumnTitle>& titles() const { return titles_; }
 
   /// monitors.csv: a row per stage and column.
   std::string csv() const;
@@ -53,15 +54,9 @@ class Answers {
   static void exchange(X& x, Self& self, size_t count);
 
   const Scene& scene_;
-  std::vector<std::string> titles_;
+  std::vector<ColumnTitle> titles_;
   std::vector<size_t> asked_;
   std::vector<Stage> stages_;
 };
-
-/// "top.displacement_x [m]" in its parts: monitor, quantity, unit ("" where there is none).
-struct ColumnTitle {
-  std::string monitor, quantity, unit;
-};
-ColumnTitle parts_of_title(const std::string& title);
 
 }  // namespace talus

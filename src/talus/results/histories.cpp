@@ -28,9 +28,9 @@ void impulse_at(const auto& knots, double t, double (&out)[3]) {
   for (int c = 0; c < 3; ++c) out[c] = k0.value[c] + s * (k1.value[c] - k0.value[c]);
 }
 
-const std::vector<std::string> kMotionColumns{"displacement_x [m]",    "displacement_y [m]",
-                                              "velocity_x [m/s]",      "velocity_y [m/s]",
-                                              "acceleration_x [m/s2]", "acceleration_y [m/s2]"};
+const std::vector<std::pair<const char*, const char*>> kMotion{
+    {"displacement_x", "m"}, {"displacement_y", "m"},    {"velocity_x", "m/s"},
+    {"velocity_y", "m/s"},   {"acceleration_x", "m/s2"}, {"acceleration_y", "m/s2"}};
 
 // Of response spectra [s].
 constexpr double kShortestPeriod = 0.02, kLongestPeriod = 5;
@@ -42,57 +42,10 @@ bool is_dynamic(const Instant& i) {
 
 }  // namespace
 
-std::vector<std::string> step_columns() {
-  std::vector<std::string> columns{"t [s]",
-                                   "dt [s]",
-                                   "contacts",
-                                   "closed contacts",
-                                   "islands",
-                                   "largest island [points]",
-                                   "iterations",
-                                   "contact error [m]",
-                                   "drift [m]",
-                                   "failed steps",
-                                   "unbalanced",
-                                   "broken faces",
-                                   "kinetic energy [J]",
-                                   "strain energy [J]",
-                                   "gravity work [J]",
-                                   "energy left over [J]"};
-  for (const std::string_view cause : kCauseName)
-    columns.insert(columns.end() - 1, fmt::format("{} work [J]", cause));
-  return columns;
-}
-
-std::vector<double> step_row(const Instant& i) {
-  const StepReport& r = i.report;
-  const Energy& e = r.energy;
-  int broken = 0;
-  for (const FaceState& f : i.state.face) broken += f.broken;
-  std::vector<double> row{i.state.time,
-                          i.work.clock.dt,
-                          static_cast<double>(r.contacts),
-                          static_cast<double>(r.closed),
-                          static_cast<double>(r.solve.islands),
-                          static_cast<double>(r.solve.largest_island),
-                          static_cast<double>(r.solve.iterations),
-                          r.error.worst,
-                          r.drift,
-                          r.failed ? 1.0 : 0.0,
-                          r.unbalanced,
-                          static_cast<double>(broken),
-                          e.kinetic,
-                          e.strain,
-                          e.gravity};
-  row.insert(row.end(), e.work.by.begin(), e.work.by.end());
-  row.push_back(e.left_over);
-  return row;
-}
-
 Histories::~Histories() = default;
 
 Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::move(sink)) {
-  columns_ = {"t [s]", "dynamic_time [s]"};
+  columns_ = {{"", "t", "s"}, {"", "dynamic_time", "s"}};
   std::vector<size_t> means;
   const BlockSet& blocks = scene.blocks;
   for (const MonitorInput& m : scene.model.monitors) {
@@ -102,7 +55,7 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
         points_.push_back({block, m.point - blocks.centroid[static_cast<size_t>(block)],
                            Reference(scene, m, m.point.y), 0, nullptr});
         if (m.spectrum) points_.back().spectrum = &spectra_.emplace_back(Spectrum{m.name, {}, {}, {}});
-        add_columns(m.name, kMotionColumns);
+        add_columns(m.name, kMotion);
         break;
       }
       case MonitorKind::kCentroid: {
@@ -118,8 +71,8 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
         c.reference = Reference(scene, m, middle.y);
         if (m.spectrum) c.spectrum = &spectra_.emplace_back(Spectrum{m.name, {}, {}, {}});
         centroids_.push_back(std::move(c));
-        add_columns(m.name, kMotionColumns);
-        add_columns(m.name, {"rotation [rad]"});
+        add_columns(m.name, kMotion);
+        add_columns(m.name, {{"rotation", "rad"}});
         break;
       }
       case MonitorKind::kCrack: {
@@ -127,29 +80,30 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
         cracks_.push_back({a, b, m.point - blocks.centroid[static_cast<size_t>(a)],
                            m.other - blocks.centroid[static_cast<size_t>(b)],
                            (m.other - m.point) / norm(m.other - m.point)});
-        add_columns(m.name, {"opening [m]", "sliding [m]"});
+        add_columns(m.name, {{"opening", "m"}, {"sliding", "m"}});
         break;
       }
       case MonitorKind::kConvergence: {
         const int a = block_of_point(scene.layout, m.point), b = block_of_point(scene.layout, m.other);
         pairs_.push_back({a, b, m.point - blocks.centroid[static_cast<size_t>(a)],
                           m.other - blocks.centroid[static_cast<size_t>(b)], m.other - m.point});
-        add_columns(m.name, {"convergence [m]"});
+        add_columns(m.name, {{"convergence", "m"}});
         break;
       }
       case MonitorKind::kBlock:
         blocks_.push_back(scene.layout.blocks_called(m.target_a).front());
-        add_columns(m.name, {"stress_xx [Pa]", "stress_yy [Pa]", "stress_xy [Pa]"});
+        add_columns(m.name, {{"stress_xx", "Pa"}, {"stress_yy", "Pa"}, {"stress_xy", "Pa"}});
         break;
       case MonitorKind::kSupport: {
         int index = 0;
         while (scene.model.supports[static_cast<size_t>(index)].name != m.target_a) ++index;
         supports_.push_back(index);
-        add_columns(m.name, {"reaction_x [N]", "reaction_y [N]"});
+        add_columns(m.name, {{"reaction_x", "N"}, {"reaction_y", "N"}});
         break;
       }
       case MonitorKind::kBolt:
-        add_columns(m.name, {"axial_force [N]", "shear_force [N]", "elongation [m]", "ruptured"});
+        add_columns(m.name,
+                    {{"axial_force", "N"}, {"shear_force", "N"}, {"elongation", "m"}, {"ruptured", ""}});
         break;
       case MonitorKind::kContact:
         set_up_contact(m);
@@ -170,10 +124,15 @@ void Histories::set_up_contact(const MonitorInput& m) {
   for (const int b : scene_.layout.blocks_called(m.target_a)) c.in_a[static_cast<size_t>(b)] = 1;
   for (const int b : scene_.layout.blocks_called(m.target_b)) c.in_b[static_cast<size_t>(b)] = 1;
   c.window = m.window;
-  add_columns(m.name, {"force_x [N]", "force_y [N]", "normal_force [N]", "impulse_x [N s]", "impulse_y [N s]",
-                       "normal_impulse [N s]"});
+  add_columns(m.name, {{"force_x", "N"},
+                       {"force_y", "N"},
+                       {"normal_force", "N"},
+                       {"impulse_x", "N s"},
+                       {"impulse_y", "N s"},
+                       {"normal_impulse", "N s"}});
   c.first_mean = columns_.size();
-  if (m.window > 0) add_columns(m.name, {"mean_force_x [N]", "mean_force_y [N]", "mean_normal_force [N]"});
+  if (m.window > 0)
+    add_columns(m.name, {{"mean_force_x", "N"}, {"mean_force_y", "N"}, {"mean_normal_force", "N"}});
   widest_ = std::max(widest_, m.window);
   contacts_.push_back(std::move(c));
 }
@@ -201,8 +160,8 @@ double Histories::rotation_of(const State& s, int block) const {
   return std::atan2(E.yx - E.xy, 2 + E.xx + E.yy);
 }
 
-void Histories::add_columns(const std::string& name, const std::vector<std::string>& titles) {
-  for (const std::string& t : titles) columns_.push_back(name + "." + t);
+void Histories::add_columns(const std::string& monitor, const Quantities& quantities) {
+  for (const auto& [name, unit] : quantities) columns_.push_back({monitor, name, unit});
 }
 
 void Histories::sample_point(const Instant& instant, size_t index, std::vector<double>& row) {

@@ -5,18 +5,15 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "talus/output/archive.h"
+#include "talus/output/columns.h"
 #include "talus/results/answers.h"
 #include "talus/results/reference.h"
 
 namespace talus {
-
-/// Titles of steps.csv.
-std::vector<std::string> step_columns();
-/// Its values at an instant (worst values are filled in by the caller over an interval).
-std::vector<double> step_row(const Instant& instant);
 
 class Histories {
  public:
@@ -27,7 +24,7 @@ class Histories {
   ~Histories();
 
   /// "t [s]", "dynamic_time [s]" (spent in dynamic stages), then the monitors in the order of the model.
-  const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<ColumnTitle>& columns() const { return columns_; }
 
   /// To be called at every instant: impulses add up whether a row is kept or not.
   /// @param keep  whether this instant becomes a row
@@ -93,7 +90,9 @@ class Histories {
     double ready_at;
   };
 
-  void add_columns(const std::string& name, const std::vector<std::string>& titles);
+  // names and units
+  using Quantities = std::vector<std::pair<const char*, const char*>>;
+  void add_columns(const std::string& monitor, const Quantities& quantities);
   std::vector<double> sample(const Instant& instant);
   void keep_row(std::vector<double> row);
   void set_up_contact(const MonitorInput& m);
@@ -107,7 +106,7 @@ class Histories {
 
   const Scene& scene_;
   Sink sink_;
-  std::vector<std::string> columns_;
+  std::vector<ColumnTitle> columns_;
   // accelerations of a monitor in dynamic stages, step by step
   struct Spectrum {
     std::string name;

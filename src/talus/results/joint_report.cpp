@@ -12,6 +12,8 @@ namespace talus {
 
 namespace {
 
+static_assert(kJointStates.size() == static_cast<size_t>(last_of(JointState())) + 1);
+
 constexpr double kMoved = 0.1;  // of its size: a block that has gone so far is one that moved
 
 // What an edge of a block was cut along.
@@ -32,6 +34,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   out.joint = face.joint;
   out.set = set_of(scene, face.block_b, face.edge_b);
   out.length = 0.5 * face.length;
+  out.state = static_cast<int>(JointState::kIntact);
   out.opening = std::max(0.0, face_offset(scene.blocks, i.state, face).opening[owner % 2]);
   out.slip_signed = i.state.face[owner / 2].slip[owner % 2], out.slip = std::abs(out.slip_signed);
   return out;
@@ -48,9 +51,9 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   out.slip = c.slip, out.slip_signed = c.slip_signed;
   if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip);
   out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
-  out.state = joint_state(
-      c.touched, c.force[0], out.slip, out.opening,
-      noticeable(scene.blocks, static_cast<size_t>(c.key.block_a), static_cast<size_t>(c.key.block_b)));
+  const double noticed =
+      noticeable(scene.blocks, static_cast<size_t>(c.key.block_a), static_cast<size_t>(c.key.block_b));
+  out.state = static_cast<int>(joint_state(c.touched, c.force[0], out.slip, out.opening, noticed));
   return out;
 }
 
@@ -64,17 +67,64 @@ Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
   return scene.blocks.centroid[a] + state.displacement[a] + from_centroid;
 }
 
+namespace {
+
+// Number of a family in kPointKinds: ties are counted with the boundaries.
+int kind_of(Family family) {
+  constexpr int kKind[] = {1, 0, 2, 3, 3, 4};
+  static_assert(std::size(kKind) == kFamilies.size());
+  return kKind[static_cast<size_t>(family)];
+}
+
+// What any row tells of its point.
+void take_row(const Scene& scene, const Instant& i, size_t r, FramePoint& out) {
+  const RowSet& rows = i.work.rows;
+  const PointRows& p = rows.points[r];
+  out.point = point_now(scene, i.state, p);
+  out.force = impulse_on(p, rows.impulse[r], 1).f / i.work.clock.dt_kick;
+  out.normal_force = rows.impulse[r][0] / i.work.clock.dt_kick;
+  out.shear_force = rows.impulse[r][1] / i.work.clock.dt_kick;
+  out.block_a = p.block_a, out.block_b = p.block_b;
+  const RowOwner owner = rows.owner[r];
+  out.kind = kind_of(owner.family);
+  if (owner.family == Family::kFace) {
+    out.corner = owner.index;
+  } else if (owner.family == Family::kContact) {
+    const ContactKey& key = i.state.contacts[owner.at()].key;
+    out.corner = key.vertex, out.edge = key.edge, out.gap = i.work.places[owner.at()].gap;
+  } else {  // number among those of its kind that act
+    const Family first = owner.family == Family::kTie ? Family::kBoundary : owner.family;
+    out.corner = static_cast<int>(r - rows.range(first).begin);
+  }
+}
+
+}  // namespace
+
 std::optional<JointPoint> joint_point(const Scene& scene, const Instant& i, size_t row) {
   const RowOwner owner = i.work.rows.owner[row];
   if (!is_joint(owner.family)) return std::nullopt;
   std::optional<JointPoint> out =
       owner.family == Family::kFace ? face_point(scene, i, owner.at()) : contact_point(scene, i, owner.at());
-  if (!out) return out;
-  const PointRows& p = i.work.rows.points[row];
-  out->block_a = p.block_a, out->block_b = p.block_b;
-  out->point = point_now(scene, i.state, p);
-  out->normal_force = i.work.rows.impulse[row][0] / i.work.clock.dt_kick;
-  out->shear_force = i.work.rows.impulse[row][1] / i.work.clock.dt_kick;
+  if (out) take_row(scene, i, row, *out);
+  return out;
+}
+
+std::vector<FramePoint> frame_points(const Scene& scene, const Instant& i) {
+  std::vector<FramePoint> out;
+  const RowSet& rows = i.work.rows;
+  out.reserve(rows.points.size());
+  for (size_t r = 0; r < rows.points.size(); ++r) {
+    if (const auto joint = joint_point(scene, i, r)) {
+      out.push_back(*joint);
+      continue;
+    }
+    out.emplace_back();
+    take_row(scene, i, r, out.back());
+  }
+  for (const auto& [row, other] : joint_ends(i)) {
+    if (std::max(row, other) >= out.size()) continue;
+    out[row].partner = static_cast<int>(other), out[other].partner = static_cast<int>(row);
+  }
   return out;
 }
 
@@ -102,7 +152,7 @@ std::vector<JointLine> joint_lines(const Scene& scene, const Instant& i) {
     JointLine line;
     line.slip = std::max(p->residual_slip(), q->residual_slip());
     for (const auto& end : {*p, *q})
-      if (end.state == JointState::kOpen) line.opening = std::max(line.opening, end.opening);
+      if (end.is(JointState::kOpen)) line.opening = std::max(line.opening, end.opening);
     if (line.slip == 0 && line.opening == 0) return;
     const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
     line.between = fmt::format("{} - {}", name(p->block_a), name(p->block_b));
@@ -141,11 +191,11 @@ void JointSummary::add(const JointPoint& p) {
     else
       at->second = std::max(at->second, p.slip);
   }
-  intact += p.state == JointState::kIntact;
-  slipped += p.state == JointState::kSlipped;
-  open += p.state == JointState::kOpen;
+  intact += p.is(JointState::kIntact);
+  slipped += p.is(JointState::kSlipped);
+  open += p.is(JointState::kOpen);
   if (!p.face && p.slip > largest.slip) largest = p;  // faces have not slipped before they break
-  if (p.state == JointState::kOpen) widest = std::max(widest, p.opening);
+  if (p.is(JointState::kOpen)) widest = std::max(widest, p.opening);
 }
 
 namespace {
@@ -209,20 +259,29 @@ void JointSummary::load(Loader& from, const std::string& name, const Scene& scen
         fmt::format("\"{}\" of the saved state speaks of blocks or joints that there are not", name));
 }
 
-std::string joint_header() {
-  return "stage,time [s],id,block_a,block_b,joint,x [m],y [m],length [m],normal_force [N],shear_force "
-         "[N],slip [m],slip_signed [m],opening [m],dilation [m],state\n";
-}
-
-std::string joint_row(const Scene& scene, const JointPoint& p, const std::string& stage, double time) {
-  const auto block = [&scene](int i) { return scene.blocks.name[static_cast<size_t>(i)]; };
-  const std::string joint = p.joint < 0 ? "" : scene.model.joints[static_cast<size_t>(p.joint)].name;
-  // names of cells hold a comma
-  return fmt::format(
-      "\"{}\",{:.17g},\"{}\",\"{}\",\"{}\",\"{}\",{:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},"
-      "{:.9g},{:.9g},{}\n",
-      stage, time, p.id, block(p.block_a), block(p.block_b), joint, p.point.x, p.point.y, p.length,
-      p.normal_force, p.shear_force, p.slip, p.slip_signed, p.opening, p.rise, state_name(p.state));
+const Columns<JointRow, Cell>& joint_columns() {
+  static const Columns<JointRow, Cell> columns = [] {
+    const auto block = [](const JointRow& r, int b) { return r.scene.blocks.name[static_cast<size_t>(b)]; };
+    Columns<JointRow, Cell> out{
+        {"stage", "", [](const JointRow& r) { return r.stage; }},
+        {"time", "s", [](const JointRow& r) { return r.time; }},
+        {"id", "", [](const JointRow& r) { return r.point.id; }},
+        {"block_a", "", [block](const JointRow& r) { return block(r, r.point.block_a); }},
+        {"block_b", "", [block](const JointRow& r) { return block(r, r.point.block_b); }},
+        {"joint", "",
+         [](const JointRow& r) {
+           return r.point.joint < 0 ? "" : r.scene.model.joints[static_cast<size_t>(r.point.joint)].name;
+         }},
+        {"x", "m", [](const JointRow& r) { return r.point.point.x; }},
+        {"y", "m", [](const JointRow& r) { return r.point.point.y; }}};
+    for (const ContactColumn& c : contact_columns())
+      if (c.in_joints_csv)
+        out.push_back({c.name, c.unit, [&c](const JointRow& r) { return c.of(r.point); }, c.over, c.digits});
+    out.push_back(
+        {"state", "", [](const JointRow& r) { return kJointStates.at(static_cast<size_t>(r.point.state)); }});
+    return out;
+  }();
+  return columns;
 }
 
 std::string free_field_side(const Scene& scene, const JointSummary& joints) {

@@ -10,24 +10,21 @@
 
 #include "talus/contact/joint_state.h"
 #include "talus/output/archive.h"
+#include "talus/output/contact_points.h"
 #include "talus/output/joint_lines.h"
 #include "talus/run/instant.h"
 
 namespace talus {
 
 /// One point of a joint: an end of a glued face that may break, or a contact point.
-struct JointPoint {
+struct JointPoint : FramePoint {
   bool face = false;
   std::string id;  // "face 3 end 0", "0:2 on 1:4": corner 2 of block 0 on edge 4 of block 1
-  int block_a = -1, block_b = -1, joint = -1;
-  std::string set;    // what the edge was cut along (a joint set, a fault ...); "": a block that was not cut
-  Vec2 point;         // [m]
-  double length = 0;  // that it stands for, 0: a corner alone [m]
-  double normal_force = 0, shear_force = 0;                 // [N] normal > 0 pressing
-  double slip = 0, slip_signed = 0, opening = 0, rise = 0;  // [m]
-  JointState state = JointState::kIntact;
+  int joint = -1;
+  std::string set;  // what the edge was cut along (a joint set, a fault ...); "": a block that was not cut
 
   double residual_slip() const { return std::abs(slip_signed); }  // what is left of it [m]
+  bool is(JointState s) const { return state == static_cast<int>(s); }
 };
 
 /// The point of row `row`; none for supports, boundaries and bonds that never break.
@@ -35,6 +32,9 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant
 
 /// Where a point of rows is now [m].
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
+
+/// Every point of rows at the instant, in their order: what a frame of contact points holds.
+std::vector<FramePoint> frame_points(const Scene& scene, const Instant& instant);
 
 /// Rows of the two ends of everything that two blocks share: of glued faces, and of contacts that know their
 /// other end.
@@ -67,8 +67,14 @@ struct JointSummary {
   void load(Loader& from, const std::string& name, const Scene& scene);
 };
 
-std::string joint_header();
-std::string joint_row(const Scene& scene, const JointPoint& p, const std::string& stage, double time);
+/// A row of joints.csv.
+struct JointRow {
+  const Scene& scene;
+  const JointPoint& point;
+  const std::string& stage;
+  double time;  // [s]
+};
+const Columns<JointRow, Cell>& joint_columns();
 
 /// Name of the free-field side at which the joint with the largest slip ends; "" when it ends at none.
 std::string free_field_side(const Scene& scene, const JointSummary& joints);

@@ -144,20 +144,33 @@ ordered_json stages(const Model& model) {
 
 }  // namespace
 
+const Columns<BlockRow, Cell>& block_columns() {
+  using R = BlockRow;
+  static const Columns<BlockRow, Cell> columns{
+      {"id", "", [](const R& r) { return static_cast<int64_t>(r.block); }},
+      {"name", "", [](const R& r) { return r.scene.blocks.name[r.block]; }},
+      {"kind", "", [](const R& r) { return kind_name(r.scene.blocks.kind[r.block]); }},
+      {"material", "",
+       [](const R& r) {
+         const int material = r.scene.blocks.material[r.block];
+         return material < 0 ? "" : r.scene.model.materials[static_cast<size_t>(material)].name;
+       }},
+      {"group", "",
+       [](const R& r) {
+         const int group = r.scene.blocks.group[r.block];
+         return group < 0 ? "" : r.scene.layout.groups[static_cast<size_t>(group)];
+       }},
+      {"area", "m2", [](const R& r) { return r.scene.blocks.volume[r.block] / r.scene.blocks.thickness; },
+       Over::kLast, 9},
+      {"x", "m", [](const R& r) { return r.scene.blocks.centroid[r.block].x; }},
+      {"y", "m", [](const R& r) { return r.scene.blocks.centroid[r.block].y; }}};
+  return columns;
+}
+
 std::string blocks_table(const Scene& scene) {
-  const BlockSet& b = scene.blocks;
-  std::string out = "id,name,kind,material,group,area [m2],x [m],y [m]\n";
-  for (int i = 0; i < b.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    const auto& materials = scene.model.materials;
-    const std::string material =
-        b.material[k] < 0 ? std::string() : materials[static_cast<size_t>(b.material[k])].name;
-    const std::string group =
-        b.group[k] < 0 ? std::string() : scene.layout.groups[static_cast<size_t>(b.group[k])];
-    out += fmt::format("{},{},{},{},{},{:.9g},{:.17g},{:.17g}\n", i, table_cell(b.name[k]),
-                       kind_name(b.kind[k]), table_cell(material), table_cell(group),
-                       b.volume[k] / b.thickness, b.centroid[k].x, b.centroid[k].y);
-  }
+  std::string out = csv_head(block_columns());
+  for (size_t k = 0; k < static_cast<size_t>(scene.blocks.count); ++k)
+    out += csv_row(block_columns(), BlockRow{scene, k});
   return out;
 }
 

@@ -5,9 +5,17 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "talus/output/columns.h"
 #include "talus/step/scene.h"
 
 namespace talus {
+
+/// A row of blocks.csv.
+struct BlockRow {
+  const Scene& scene;
+  size_t block;
+};
+const Columns<BlockRow, Cell>& block_columns();
 
 /// blocks.csv: id, name, kind, material, group, area [m2], centroid at the start [m].
 std::string blocks_table(const Scene& scene);

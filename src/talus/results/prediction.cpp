@@ -5,6 +5,7 @@
 #include "talus/base/error.h"
 #include "talus/contact/pairs.h"
 #include "talus/results/histories.h"
+#include "talus/results/step_table.h"
 
 namespace talus {
 

@@ -16,6 +16,7 @@
 #include "talus/results/model_report.h"
 #include "talus/results/problem_file.h"
 #include "talus/results/slip_report.h"
+#include "talus/results/step_table.h"
 
 namespace talus {
 
@@ -27,48 +28,6 @@ bool is_due(double time, double dt, double interval, double& next) {
   if (time < next - 1e-6 * dt) return false;
   next = (std::floor((time + 1e-6 * dt) / interval) + 1) * interval;
   return true;
-}
-
-// Number of a family in frames: ties are counted with the boundaries.
-int kind_of(Family family) {
-  constexpr int kKind[] = {1, 0, 2, 3, 3, 4};
-  static_assert(std::size(kKind) == kFamilies.size());
-  return kKind[static_cast<size_t>(family)];
-}
-
-std::vector<ContactFrame> contact_frames(const Scene& scene, const Instant& i) {
-  std::vector<ContactFrame> frames;
-  const RowSet& rows = i.work.rows;
-  for (size_t r = 0; r < rows.points.size(); ++r) {
-    const PointRows& p = rows.points[r];
-    ContactFrame f;
-    f.point = point_now(scene, i.state, p);
-    f.force = impulse_on(p, rows.impulse[r], 1).f / i.work.clock.dt_kick;
-    f.normal_force = rows.impulse[r][0] / i.work.clock.dt_kick;
-    f.shear_force = rows.impulse[r][1] / i.work.clock.dt_kick;
-    const RowOwner owner = rows.owner[r];
-    f.kind = kind_of(owner.family);
-    f.block_a = p.block_a, f.block_b = p.block_b;
-    if (owner.family == Family::kFace) {
-      f.corner = owner.index;
-    } else if (owner.family == Family::kContact) {
-      const ContactKey& key = i.state.contacts[owner.at()].key;
-      f.corner = key.vertex, f.edge = key.edge, f.gap = i.work.places[owner.at()].gap;
-    } else {  // number among those of its kind that act
-      const Family first = owner.family == Family::kTie ? Family::kBoundary : owner.family;
-      f.corner = static_cast<int>(r - rows.range(first).begin);
-    }
-    if (const auto joint = joint_point(scene, i, r)) {
-      f.slip = joint->slip, f.opening = joint->opening;
-      f.state = static_cast<int>(joint->state);
-    }
-    frames.push_back(f);
-  }
-  for (const auto& [row, other] : joint_ends(i)) {
-    if (std::max(row, other) >= frames.size()) continue;
-    frames[row].partner = static_cast<int>(other), frames[other].partner = static_cast<int>(row);
-  }
-  return frames;
 }
 
 // The bolts at an instant, those of stages up to `stage`.
@@ -168,8 +127,8 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, RunNotes notes)
       folder_(begin_results(std::move(folder), scene)),
       notes_(std::move(notes)),
       model_(model_in_numbers(scene).dump()),
-      history_file_(folder_.note("histories.csv"), Histories(scene, nullptr).columns()),
-      steps_file_(folder_.note("steps.csv"), step_columns()),
+      history_file_(folder_.note("histories.csv"), texts_of(Histories(scene, nullptr).columns())),
+      steps_file_(folder_.note("steps.csv"), titles_of(step_columns())),
       histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
       block_frames_(folder_, "blocks", "vtu"),
       contact_frames_(folder_, "contacts", "vtp"),
@@ -425,14 +384,8 @@ std::string Recorder::write_dump(const Instant& i) {
 }
 
 void Recorder::record_step(const Instant& i) {
-  // columns in which the worst since the last row counts: islands, island size, iterations, error, drift;
-  // failures add up
-  constexpr size_t kFirstWorst = 4, kLastWorst = 8, kFailed = 9;
-  std::vector<double> row = step_row(i);
-  if (!due_.worst.empty()) {
-    for (size_t c = kFirstWorst; c <= kLastWorst; ++c) row[c] = std::max(row[c], due_.worst[c]);
-    row[kFailed] += due_.worst[kFailed];
-  }
+  std::vector<double> row = values_of(step_columns(), i);
+  if (!due_.worst.empty()) take_in(step_columns(), due_.worst, row);
   if (is_due(i.state.time, i.advance, scene_.model.output.steps_interval, due_.steps) || i.last ||
       i.report.failed) {
     steps_file_.append(row);
@@ -446,7 +399,7 @@ void Recorder::write_frame(const Instant& i) {
   std::vector<BlockRate> rates;
   for (size_t k = 0; k < i.state.rate.size(); ++k) rates.push_back(rate_now(i.work, i.state, k));
   block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, rates));
-  contact_frames_.add(i.state.time, contacts_vtp(contact_frames(scene_, i), i.state.time));
+  contact_frames_.add(i.state.time, contacts_vtp(frame_points(scene_, i), i.state.time));
   if (!scene_.model.bolts.empty())
     bolt_frames_.add(i.state.time, bolts_vtp(bolt_lines(scene_, i.state, i.stage), i.state.time));
 }
@@ -457,9 +410,10 @@ void Recorder::write_frame(const Instant& i) {
 void Recorder::write_bolts(const Instant& i) {
   if (scene_.model.bolts.empty()) return;
   const int stage = i.last ? i.stage : i.stage - 1;
-  if (bolt_table_.empty()) bolt_table_ = bolts_csv_head();
-  bolt_table_ += bolts_csv_rows(scene_.model.stages[static_cast<size_t>(stage)].name, i.state.time,
-                                bolt_lines(scene_, i.state, stage));
+  if (bolt_table_.empty()) bolt_table_ = csv_head(bolt_columns());
+  const std::string& name = scene_.model.stages[static_cast<size_t>(stage)].name;
+  for (const BoltLine& line : bolt_lines(scene_, i.state, stage))
+    bolt_table_ += csv_row(bolt_columns(), BoltRow{line, name, i.state.time});
   folder_.write("bolts.csv", bolt_table_, Reach::kDisk);
 }
 
@@ -467,21 +421,22 @@ void Recorder::write_joints(const Instant& i, int stage) {
   const std::string& name = scene_.model.stages[static_cast<size_t>(stage)].name;
   joint_summary_ = {};
   SlipList slipped;
-  if (joints_.empty()) joints_ = joint_header();
+  if (joints_.empty()) joints_ = csv_head(joint_columns());
   for (size_t r = 0; r < i.work.rows.range(Family::kContact).end; ++r) {
     const auto point = joint_point(scene_, i, r);
-    if (!point || point->state == JointState::kApart) continue;
+    if (!point || point->is(JointState::kApart)) continue;
     joint_summary_.add(*point);
     slipped.add(scene_, *point);
-    joints_ += joint_row(scene_, *point, name, i.state.time);
+    joints_ += csv_row(joint_columns(), JointRow{scene_, *point, name, i.state.time});
   }
   joint_summary_.time = i.state.time;
   joint_summary_.look(scene_, i.state);
   folder_.write("joints.csv", joints_, Reach::kDisk);
 
   const std::vector<SlippedJoint> list = slipped.sorted();
-  if (slips_.empty()) slips_ = slips_header();
-  for (const SlippedJoint& joint : list) slips_ += slips_row(scene_, joint, name, i.state.time);
+  if (slips_.empty()) slips_ = csv_head(slip_columns());
+  for (const SlippedJoint& joint : list)
+    slips_ += csv_row(slip_columns(), SlipRow{scene_, joint, name, i.state.time});
   joint_summary_.slipped_joints = static_cast<int>(list.size());
   if (!list.empty()) joint_summary_.most_residual = list[0].most;
   folder_.write("slips.csv", slips_, Reach::kDisk);

@@ -34,18 +34,27 @@ std::vector<SlippedJoint> SlipList::sorted() const {
   return out;
 }
 
-std::string slips_header() {
-  return "stage,time [s],block_a,block_b,set,joint,x [m],y [m],residual_slip [m],slip [m],opening [m],points,"
-         "state\n";
-}
-
-std::string slips_row(const Scene& scene, const SlippedJoint& joint, const std::string& stage, double time) {
-  const JointPoint& p = joint.most;
-  const std::string property = p.joint < 0 ? "" : scene.model.joints[static_cast<size_t>(p.joint)].name;
-  return fmt::format(
-      "\"{}\",{:.17g},\"{}\",\"{}\",\"{}\",\"{}\",{:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{},{}\n", stage, time,
-      block_name(scene, p.block_a), block_name(scene, p.block_b), p.set, property, p.point.x, p.point.y,
-      p.residual_slip(), p.slip, joint.opening, joint.points, state_name(p.state));
+const Columns<SlipRow, Cell>& slip_columns() {
+  using R = SlipRow;
+  static const Columns<SlipRow, Cell> columns{
+      {"stage", "", [](const R& r) { return r.stage; }},
+      {"time", "s", [](const R& r) { return r.time; }},
+      {"block_a", "", [](const R& r) { return block_name(r.scene, r.joint.most.block_a); }},
+      {"block_b", "", [](const R& r) { return block_name(r.scene, r.joint.most.block_b); }},
+      {"set", "", [](const R& r) { return r.joint.most.set; }},
+      {"joint", "",
+       [](const R& r) {
+         const int joint = r.joint.most.joint;
+         return joint < 0 ? "" : r.scene.model.joints[static_cast<size_t>(joint)].name;
+       }},
+      {"x", "m", [](const R& r) { return r.joint.most.point.x; }},
+      {"y", "m", [](const R& r) { return r.joint.most.point.y; }},
+      {"residual_slip", "m", [](const R& r) { return r.joint.most.residual_slip(); }, Over::kLast, 9},
+      {"accumulated_slip", "m", [](const R& r) { return r.joint.most.slip; }, Over::kLast, 9},
+      {"opening", "m", [](const R& r) { return r.joint.opening; }, Over::kLast, 9},
+      {"points", "", [](const R& r) { return int64_t{r.joint.points}; }},
+      {"state", "", [](const R& r) { return kJointStates.at(static_cast<size_t>(r.joint.most.state)); }}};
+  return columns;
 }
 
 std::string place_text(const Scene& scene, const JointPoint& p) {

@@ -33,8 +33,14 @@ class SlipList {
   std::map<Key, SlippedJoint> joints_;
 };
 
-std::string slips_header();
-std::string slips_row(const Scene& scene, const SlippedJoint& joint, const std::string& stage, double time);
+/// A row of slips.csv.
+struct SlipRow {
+  const Scene& scene;
+  const SlippedJoint& joint;
+  const std::string& stage;
+  double time;  // [s]
+};
+const Columns<SlipRow, Cell>& slip_columns();
 
 /// "wall[0,1] - wall[0,0], set "bed", at (2, 1.5)" of a point.
 std::string place_text(const Scene& scene, const JointPoint& point);

@@ -23,17 +23,16 @@ nlohmann::ordered_json monitor_numbers(const Scene& scene, const Histories& hist
   for (const Answers::Stage& s : answers.stages()) {
     const StageInput& stage = scene.model.stages[static_cast<size_t>(s.stage)];
     for (size_t k = 0; k < answers.titles().size(); ++k) {
-      const ColumnTitle title = parts_of_title(answers.titles()[k]);
+      const ColumnTitle& title = answers.titles()[k];
       const Answer& a = s.asked[k];
-      j[title.monitor]["stages"][stage.name]
-       [title.quantity + (title.unit.empty() ? "" : " [" + title.unit + "]")] = {
-           {"at_start", a.at_start},
-           {"at_end", a.at_end},
-           {"least", a.least},
-           {"time_of_least [s]", a.time_of_least},
-           {"greatest", a.greatest},
-           {"time_of_greatest [s]", a.time_of_greatest},
-           {"residual", a.residual(stage.kind == StageKind::kDynamic)}};
+      j[title.monitor]["stages"][stage.name][ColumnTitle{"", title.quantity, title.unit}.text()] = {
+          {"at_start", a.at_start},
+          {"at_end", a.at_end},
+          {"least", a.least},
+          {"time_of_least [s]", a.time_of_least},
+          {"greatest", a.greatest},
+          {"time_of_greatest [s]", a.time_of_greatest},
+          {"residual", a.residual(stage.kind == StageKind::kDynamic)}};
     }
   }
   return j;

@@ -6,6 +6,7 @@
 
 #include "talus/base/error.h"
 #include "talus/output/bolt_lines.h"
+#include "talus/output/contact_points.h"
 #include "talus/output/text_table.h"
 #include "talus/output/vtk.h"
 #include "talus/output/vtk_arrays.h"
@@ -17,7 +18,7 @@ using namespace talus;
 namespace {
 
 std::string two_contacts() {
-  ContactFrame a, b;
+  FramePoint a, b;
   a.point = {1.5, -2.25}, a.force = {1e6, 0.1}, a.normal_force = 3, a.state = 1, a.slip = 1e-17;
   a.block_a = 7, a.block_b = 123456, a.corner = 3, a.edge = 2;
   b.kind = 3, b.gap = -1e300;
@@ -31,7 +32,7 @@ TEST_CASE("output: a frame of contacts comes back to the last bit") {
   CHECK(f.time == 0.1 + 0.2);
   CHECK(f.at("Points", 3, 2).values == std::vector<double>{1.5, -2.25, 0, 0, 0, 0});
   CHECK(f.at("force [N]", 3, 2).values == std::vector<double>{1e6, 0.1, 0, 0, 0, 0});
-  CHECK(f.at("slip [m]", 1, 2).values == std::vector<double>{1e-17, 0});
+  CHECK(f.at("accumulated slip [m]", 1, 2).values == std::vector<double>{1e-17, 0});
   CHECK(f.at("gap [m]", 1, 2).values == std::vector<double>{0, -1e300});
   CHECK(f.at("state", 1, 2).values == std::vector<double>{1, -1});
   CHECK(f.at("block b", 1, 2).values == std::vector<double>{123456, -1});

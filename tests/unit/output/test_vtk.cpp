@@ -1,3 +1,4 @@
+#include "talus/output/contact_points.h"
 #include "talus/output/frame_series.h"
 #include "talus/output/vtk.h"
 
@@ -65,7 +66,8 @@ std::vector<double> doubles(const std::string& xml, const std::string& name, int
 }
 
 std::vector<int64_t> integers(const std::string& xml, const std::string& name) {
-  return values<int64_t>(xml, name, "Int64", 1);
+  const auto list = values<int32_t>(xml, name, "Int32", 1);
+  return {list.begin(), list.end()};
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -135,10 +137,36 @@ TEST_CASE("a frame of blocks holds place, displacement, velocity and stress") {
   }
 
   // poisson 0: c11 = young, stress = young x strain along x, and nothing else
-  const auto stress = doubles(xml, "stress xx yy xy [Pa]", 3);
-  REQUIRE(stress.size() == 6);
-  CHECK(stress[0] == relative(5, 1e-14));
-  for (size_t i = 1; i < 6; ++i) CHECK(stress[i] == 0);
+  CHECK(doubles(xml, "stress xx [Pa]", 1)[0] == relative(5, 1e-14));
+  CHECK(doubles(xml, "stress xx [Pa]", 1)[1] == 0);
+  for (const char* name : {"stress yy [Pa]", "stress xy [Pa]"})
+    CHECK(doubles(xml, name, 1) == std::vector<double>{0, 0});
+}
+
+TEST_CASE("a frame of blocks holds F - I and the rates of each block") {
+  Setup s;
+  const std::vector<BlockRate> rate{{{1, 2}, {4, 0, 8, 0}}, {{0, 0}, spin_matrix(2)}};
+  std::string xml = blocks_vtu(s.blocks, s.state, rate);
+  CHECK(doubles(xml, "centroid displacement [m]", 2) == std::vector<double>{0.5, -0.25, 0, 1});
+  CHECK(doubles(xml, "centroid velocity [m s-1]", 2) == std::vector<double>{1, 2, 0, 0});
+  std::vector<double> h = doubles(xml, "displacement gradient", 4),
+                      l = doubles(xml, "velocity gradient [s-1]", 4);
+  REQUIRE(h.size() == 8);
+  CHECK(std::vector<double>(h.begin(), h.begin() + 4) == std::vector<double>{0.5, 0, 0, 0});
+  CHECK(h[4] == relative(std::cos(1.0) - 1, 1e-15));
+  CHECK(h[6] == relative(std::sin(1.0), 1e-15));
+  // against places now: block a is half as long again; a rigid block's rate is against them already
+  const std::vector<double> expected{4 / 1.5, 0, 8 / 1.5, 0, 0, -2, 2, 0};
+  for (size_t i = 0; i < l.size(); ++i) CHECK(l[i] == doctest::Approx(expected[i]).epsilon(1e-15));
+
+  // displacements counted from a state in between: F F0^-1 - I
+  s.state.displacement_start = {{0.5, 0}, {0, 1}};
+  s.state.strain_part_start = {Mat2{0.25, 0, 0, 0}, s.state.strain_part[1]};
+  xml = blocks_vtu(s.blocks, s.state, rate);
+  h = doubles(xml, "displacement gradient", 4);
+  CHECK(doubles(xml, "centroid displacement [m]", 2) == std::vector<double>{0, -0.25, 0, 0});
+  CHECK(h[0] == relative(1.5 / 1.25 - 1, 1e-15));
+  for (size_t i = 1; i < h.size(); ++i) CHECK(std::abs(h[i]) < 1e-16);
 }
 
 TEST_CASE("cells of a frame name corners, block, kind, material and group") {
@@ -155,7 +183,11 @@ TEST_CASE("cells of a frame name corners, block, kind, material and group") {
 }
 
 TEST_CASE("a frame of contacts") {
-  const std::vector<ContactFrame> contacts{{{1, 2}, {3, 4}, 5, -6, 0.25, 0}, {{7, 8}, {9, 10}, 11, 12, 0, 2}};
+  std::vector<FramePoint> contacts(2);
+  contacts[0].point = {1, 2}, contacts[0].force = {3, 4}, contacts[0].gap = 0.25;
+  contacts[0].normal_force = 5, contacts[0].shear_force = -6;
+  contacts[1].point = {7, 8}, contacts[1].force = {9, 10}, contacts[1].kind = 2;
+  contacts[1].normal_force = 11, contacts[1].shear_force = 12;
   const std::string xml = contacts_vtp(contacts, 2);
   using Doubles = std::vector<double>;
   CHECK(doubles(xml, "Points", 3) == Doubles{1, 2, 0, 7, 8, 0});
@@ -164,7 +196,7 @@ TEST_CASE("a frame of contacts") {
   CHECK(doubles(xml, "shear force [N]", 1) == Doubles{-6, 12});
   CHECK(doubles(xml, "gap [m]", 1) == Doubles{0.25, 0});
   CHECK(integers(xml, "kind") == std::vector<int64_t>{0, 2});
-  CHECK(integers(xml, "offsets") == std::vector<int64_t>{1, 2});
+  CHECK(values<int64_t>(xml, "offsets", "Int64", 1) == std::vector<int64_t>{1, 2});
   CHECK(has(xml, "NumberOfPoints=\"2\" NumberOfVerts=\"2\""));
   CHECK(doubles(contacts_vtp({}, 0), "Points", 3).empty());
 }

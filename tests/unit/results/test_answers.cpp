@@ -30,7 +30,7 @@ const Answer& answer(const Histories& h, int stage, const std::string& title) {
   const Answers& all = h.answers();
   for (const Answers::Stage& s : all.stages())
     for (size_t k = 0; k < all.titles().size(); ++k)
-      if (s.stage == stage && all.titles()[k].rfind(title, 0) == 0) return s.asked[k];
+      if (s.stage == stage && all.titles()[k].text().rfind(title, 0) == 0) return s.asked[k];
   FAIL(title);
   std::abort();
 }

@@ -272,8 +272,8 @@ TEST_CASE("joints.csv, the summary and the frames tell slip, opening and state o
   // two ends of the face after "press", two contacts after "shear"
   const std::string joints = read_text_file((folder / "joints.csv").string());
   CHECK(std::count(joints.begin(), joints.end(), '\n') == 5);
-  CHECK(joints.find("\"press\",") != std::string::npos);
-  CHECK(joints.find("\"face 0 end 1\",\"lower\",\"upper\",\"rough\"") != std::string::npos);
+  CHECK(joints.find("\npress,") != std::string::npos);
+  CHECK(joints.find(",face 0 end 1,lower,upper,rough,") != std::string::npos);
   CHECK(joints.find(",intact\n") < joints.find(",slipped\n"));
   CHECK(joints.rfind(",slipped\n") == joints.size() - 9);
   const std::string summary = read_text_file((folder / "summary.json").string());
@@ -286,7 +286,8 @@ TEST_CASE("joints.csv, the summary and the frames tell slip, opening and state o
   for (const auto& e : std::filesystem::directory_iterator(folder / "fields"))
     if (e.path().extension() == ".vtp") last = std::max(last, e.path().string());
   const std::string frame = read_text_file(last);
-  for (const char* name : {"\"slip [m]\"", "\"opening [m]\"", "\"state\""})
+  for (const char* name :
+       {"\"accumulated slip [m]\"", "\"residual slip [m]\"", "\"opening [m]\"", "\"state\""})
     CHECK(frame.find(name) != std::string::npos);
   std::filesystem::remove_all(folder);
 }

@@ -1,19 +1,18 @@
-#include "talus/report/frames.h"
+#include "talus/output/read_frames.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
 #include "talus/base/error.h"
 #include "talus/geometry/polygon.h"
 #include "talus/output/block_quantity.h"
-#include "talus/report/pack.h"
+#include "talus/output/vtk.h"
 
-namespace talus::report {
+namespace talus {
 
 namespace {
 
@@ -22,47 +21,6 @@ using Array = VtkFrame::Array;
 std::vector<Vec2> points_of(const Array& array) {
   std::vector<Vec2> out(array.tuples());
   for (size_t i = 0; i < out.size(); ++i) out[i] = {array.values[3 * i], array.values[3 * i + 1]};
-  return out;
-}
-
-// A linear field over a block: its value at the centroid and its gradient.
-struct Linear {
-  Vec2 value;
-  Mat2 gradient;
-};
-
-// Through the values at the corners; exact, since every block is affine.
-Linear linear_through(const Vec2* corner, const Vec2* value, size_t count, Vec2 centre) {
-  Vec2 middle, mean;
-  for (size_t v = 0; v < count; ++v) middle += corner[v], mean += value[v];
-  middle = middle / static_cast<double>(count), mean = mean / static_cast<double>(count);
-  Mat2 spread, moment;
-  for (size_t v = 0; v < count; ++v) {
-    const Vec2 dx = corner[v] - middle, du = value[v] - mean;
-    spread.xx += dx.x * dx.x, spread.xy += dx.x * dx.y, spread.yy += dx.y * dx.y;
-    moment.xx += du.x * dx.x, moment.xy += du.x * dx.y, moment.yx += du.y * dx.x, moment.yy += du.y * dx.y;
-  }
-  const double det = spread.xx * spread.yy - spread.xy * spread.xy;
-  Linear out;
-  if (det > 0) {
-    const Mat2 inverse{spread.yy / det, -spread.xy / det, -spread.xy / det, spread.xx / det};
-    out.gradient = moment * inverse;
-  }
-  out.value = mean + out.gradient * (centre - middle);
-  return out;
-}
-
-std::vector<double> component(const std::vector<Vec2>& v, double Vec2::*c) {
-  std::vector<double> out;
-  out.reserve(v.size());
-  for (const Vec2& p : v) out.push_back(p.*c);
-  return out;
-}
-
-std::vector<double> component(const std::vector<Mat2>& v, double Mat2::*c) {
-  std::vector<double> out;
-  out.reserve(v.size());
-  for (const Mat2& m : v) out.push_back(m.*c);
   return out;
 }
 
@@ -95,29 +53,24 @@ bool same_place(Vec2 a, Vec2 b, double size) {
 
 }  // namespace
 
-std::string Shapes::packed() const {
-  Packer p;
-  std::vector<int> corners;
-  for (size_t i = 0; i + 1 < begin.size(); ++i) corners.push_back(begin[i + 1] - begin[i]);
-  std::vector<Vec2> arm(corner.size());
-  for (size_t i = 0; i + 1 < begin.size(); ++i)
-    for (auto v = static_cast<size_t>(begin[i]); v < static_cast<size_t>(begin[i + 1]); ++v)
-      arm[v] = corner[v] - centre[i];
-  p.integers(id), p.integers(corners);
-  p.doubles(component(centre, &Vec2::x)), p.doubles(component(centre, &Vec2::y));
-  p.floats(component(arm, &Vec2::x)), p.floats(component(arm, &Vec2::y));
-  return p.text();
-}
-
-std::string BlockFrame::packed() const {
-  Packer p;
-  p.bytes(present);
-  p.short_floats(component(displacement, &Vec2::x)), p.short_floats(component(displacement, &Vec2::y));
-  for (double Mat2::*c : {&Mat2::xx, &Mat2::xy, &Mat2::yx, &Mat2::yy})
-    p.coarse_halves(component(gradient, c));
-  p.halves(component(velocity, &Vec2::x)), p.halves(component(velocity, &Vec2::y));
-  for (double Mat2::*c : {&Mat2::xx, &Mat2::yy, &Mat2::xy}) p.halves(component(stress, c));
-  return p.text();
+LinearField field_through(const Vec2* corner, const Vec2* value, size_t count, Vec2 centre) {
+  Vec2 middle, mean;
+  for (size_t v = 0; v < count; ++v) middle += corner[v], mean += value[v];
+  middle = middle / static_cast<double>(count), mean = mean / static_cast<double>(count);
+  Mat2 spread, moment;
+  for (size_t v = 0; v < count; ++v) {
+    const Vec2 dx = corner[v] - middle, du = value[v] - mean;
+    spread.xx += dx.x * dx.x, spread.xy += dx.x * dx.y, spread.yy += dx.y * dx.y;
+    moment.xx += du.x * dx.x, moment.xy += du.x * dx.y, moment.yx += du.y * dx.x, moment.yy += du.y * dx.y;
+  }
+  const double det = spread.xx * spread.yy - spread.xy * spread.xy;
+  LinearField out;
+  if (det > 0) {
+    const Mat2 inverse{spread.yy / det, -spread.xy / det, -spread.xy / det, spread.xx / det};
+    out.gradient = moment * inverse;
+  }
+  out.value = mean + out.gradient * (centre - middle);
+  return out;
 }
 
 std::vector<Span> BlockFrame::spans() const {
@@ -141,6 +94,42 @@ std::vector<Span> BlockFrame::spans() const {
   return out;
 }
 
+namespace {
+
+// What frames hold of whole blocks; fields over them are missing in those of an older talus.
+class Fields {
+ public:
+  Fields(const VtkFrame& vtk, long blocks) {
+    if (vtk.has(kStressArrays[0])) {
+      for (const char* name : kStressArrays) stress_.push_back(&vtk.at(name, 1, blocks));
+    } else {
+      stress_.push_back(&vtk.at("stress xx yy xy [Pa]", 3, blocks));
+    }
+    if (!vtk.has(kGradientArray)) return;
+    displacement_ = &vtk.at(kCentroidArray, 2, blocks), gradient_ = &vtk.at(kGradientArray, 4, blocks);
+    velocity_ = &vtk.at(kVelocityArray, 2, blocks);
+  }
+
+  bool known() const { return gradient_ != nullptr; }
+  LinearField displacement(size_t k) const {
+    const double *u = &displacement_->values[2 * k], *h = &gradient_->values[4 * k];
+    return {{u[0], u[1]}, {h[0], h[1], h[2], h[3]}};
+  }
+  Vec2 velocity(size_t k) const { return {velocity_->values[2 * k], velocity_->values[2 * k + 1]}; }
+  Mat2 stress(size_t k) const {
+    const auto at = [&](size_t c) {
+      return stress_.size() == 1 ? stress_[0]->values[3 * k + c] : stress_[c]->values[k];
+    };
+    return {at(0), at(2), at(2), at(1)};
+  }
+
+ private:
+  std::vector<const Array*> stress_;
+  const Array *displacement_ = nullptr, *gradient_ = nullptr, *velocity_ = nullptr;
+};
+
+}  // namespace
+
 BlockFrame FrameReader::read(const std::filesystem::path& file) {
   const VtkFrame vtk = read_vtk(file);
   const std::vector<Vec2> now = points_of(vtk.at("Points", 3));
@@ -148,7 +137,7 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   const std::vector<Vec2> moved = points_of(vtk.at("displacement [m]", 3, corners));
   const std::vector<Vec2> velocity = points_of(vtk.at("velocity [m s-1]", 3, corners));
   const std::vector<int> id = whole(vtk.at("block", 1)), end = whole(vtk.at("offsets", 1));
-  const Array& stress = vtk.at("stress xx yy xy [Pa]", 3, static_cast<long>(id.size()));
+  const Fields fields(vtk, static_cast<long>(id.size()));
   if (end.size() != id.size() || (!end.empty() && end.back() != corners))
     refuse(file, "corners and blocks do not fit");
   std::vector<Vec2> zero(now.size());
@@ -168,12 +157,13 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   // do the shapes still hold?
   bool same = !shapes_.empty();
   for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
-    const auto it = place_.find(id[k]);
-    if (!same || it == place_.end()) {
-      same = false;
-      continue;
-    }
+    if (!same) break;
     const Shapes& s = shapes_.back();
+    const auto it = s.place.find(id[k]);
+    if (it == s.place.end()) {
+      same = false;
+      break;
+    }
     const auto first = static_cast<size_t>(s.begin[it->second]);
     const size_t count = static_cast<size_t>(s.begin[it->second + 1]) - first;
     if (count != static_cast<size_t>(end[k]) - begin) refuse(file, "a block has other corners than before");
@@ -183,10 +173,9 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   if (!same) {
     // those of this frame; blocks that are gone are not drawn any more, but keep their place
     Shapes next;
-    std::map<int, size_t> place;
     next.begin.push_back(0);
     const auto add = [&](int block, const Vec2* corner, size_t count) {
-      place[block] = next.id.size();
+      next.place[block] = next.id.size();
       next.id.push_back(block);
       next.corner.insert(next.corner.end(), corner, corner + count);
       next.begin.push_back(static_cast<int>(next.corner.size()));
@@ -194,18 +183,18 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
     };
     std::map<int, size_t> here;
     for (size_t k = 0; k < id.size(); ++k) here[id[k]] = k;
-    for (const auto& [block, at] : place_)
-      if (!here.count(block)) {
-        const Shapes& s = shapes_.back();
-        add(block, &s.corner[static_cast<size_t>(s.begin[at])],
-            static_cast<size_t>(s.begin[at + 1] - s.begin[at]));
-      }
+    if (!shapes_.empty())
+      for (const auto& [block, at] : shapes_.back().place)
+        if (!here.count(block)) {
+          const Shapes& s = shapes_.back();
+          add(block, &s.corner[static_cast<size_t>(s.begin[at])],
+              static_cast<size_t>(s.begin[at + 1] - s.begin[at]));
+        }
     for (size_t k = 0; k < id.size(); ++k) {
       const size_t begin = k == 0 ? 0 : static_cast<size_t>(end[k - 1]);
       add(id[k], &zero[begin], static_cast<size_t>(end[k]) - begin);
     }
     shapes_.push_back(std::move(next));
-    place_ = std::move(place);
   }
 
   const Shapes& s = shapes_.back();
@@ -215,16 +204,27 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
   out.displacement.resize(s.id.size()), out.gradient.resize(s.id.size());
   out.velocity.resize(s.id.size()), out.stress.resize(s.id.size());
   for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
-    const size_t at = place_.at(id[k]), count = static_cast<size_t>(end[k]) - begin;
+    const size_t at = s.place.at(id[k]), count = static_cast<size_t>(end[k]) - begin;
     const Vec2* corner = &s.corner[static_cast<size_t>(s.begin[at])];
-    const Linear u = linear_through(corner, &moved[begin], count, s.centre[at]);
+    LinearField u, v;
+    if (fields.known()) {
+      u = fields.displacement(k), v.value = fields.velocity(k);
+    } else {
+      u = field_through(corner, &moved[begin], count, s.centre[at]);
+      v = field_through(corner, &velocity[begin], count, s.centre[at]);
+    }
     out.present[at] = 1;
-    out.displacement[at] = u.value, out.gradient[at] = u.gradient;
-    out.velocity[at] = linear_through(corner, &velocity[begin], count, s.centre[at]).value;
-    const double* t = &stress.values[3 * k];
-    out.stress[at] = {t[0], t[2], t[2], t[1]};
+    out.displacement[at] = u.value, out.gradient[at] = u.gradient, out.velocity[at] = v.value;
+    out.stress[at] = fields.stress(k);
   }
   return out;
+}
+
+const std::vector<double>& ContactPoints::at(const std::string& name) const {
+  const auto it = columns.find(name);
+  if (it == columns.end())
+    throw FileError(fmt::format("the frame has no \"{}\": a talus older than that wrote it", name));
+  return it->second;
 }
 
 ContactPoints read_contacts(const std::filesystem::path& file) {
@@ -232,53 +232,51 @@ ContactPoints read_contacts(const std::filesystem::path& file) {
   const std::vector<Vec2> point = points_of(vtk.at("Points", 3));
   const auto n = static_cast<long>(point.size());
   const std::vector<Vec2> force = points_of(vtk.at("force [N]", 3, n));
-  const std::vector<double>&normal = vtk.at("normal force [N]", 1, n).values,
-        &shear = vtk.at("shear force [N]", 1, n).values, &slip = vtk.at("slip [m]", 1, n).values,
-        &opening = vtk.at("opening [m]", 1, n).values;
-  const std::vector<uint8_t> kind = small(vtk.at("kind", 1, n)), state = small(vtk.at("state", 1, n));
-  const auto numbers = [&](const char* name) {
-    return vtk.has(name) ? whole(vtk.at(name, 1, n)) : std::vector<int>(point.size(), -1);
-  };
-  const std::vector<int> a = numbers("block a"), b = numbers("block b"), corner = numbers("corner"),
-                         edge = numbers("edge"), partner = numbers("partner");
-  std::vector<int> place(point.size(), -1);  // of the points that are kept
+  ContactPoints all;
+  for (const ContactColumn& c : contact_columns()) {
+    const std::string array = vtk.has(c.array()) ? c.array() : c.older;
+    if (vtk.has(array))
+      all.columns[c.name] = vtk.at(array, 1, n).values;
+    else if (c.whole())
+      all.columns[c.name].assign(point.size(), -1);
+    if (c.whole())
+      for (double& v : all.columns[c.name])
+        v = v >= 0 && v <= std::numeric_limits<int>::max() ? std::floor(v) : -1;
+  }
+  const std::vector<double>&normal = all.at("normal_force"), &shear = all.at("shear_force"),
+        &state = all.at("state"), &partner = all.at("partner");
   const auto says_something = [&](size_t i) {
     const bool of_joint = state[i] == 1 || state[i] == 2;  // slipped, open
     return of_joint || !(force[i] == Vec2{}) || normal[i] != 0 || shear[i] != 0;
   };
-  ContactPoints out;
+  std::vector<size_t> kept;
+  std::vector<double> place(point.size(), -1);  // of the points that are kept
   for (size_t i = 0; i < point.size(); ++i) {
-    const bool other = partner[i] >= 0 && static_cast<size_t>(partner[i]) < point.size() &&
+    const bool other = partner[i] >= 0 && partner[i] < static_cast<double>(point.size()) &&
                        says_something(static_cast<size_t>(partner[i]));
     if (!says_something(i) && !other) continue;
-    place[i] = static_cast<int>(out.size());
-    out.partner.push_back(partner[i]);
-    out.block_a.push_back(a[i]), out.block_b.push_back(b[i]);
-    out.corner.push_back(corner[i]), out.edge.push_back(edge[i]);
-    out.kind.push_back(kind[i]), out.state.push_back(state[i]);
-    out.point.push_back(point[i]), out.force.push_back(force[i]);
-    out.normal_force.push_back(normal[i]), out.shear_force.push_back(shear[i]);
-    out.slip.push_back(slip[i]), out.opening.push_back(opening[i]);
+    place[i] = static_cast<double>(kept.size());
+    kept.push_back(i);
   }
-  for (int& other : out.partner)
-    other = other < 0 || static_cast<size_t>(other) >= place.size() ? -1 : place[static_cast<size_t>(other)];
+  ContactPoints out;
+  for (const size_t i : kept) out.point.push_back(point[i]), out.force.push_back(force[i]);
+  for (const auto& [name, values] : all.columns)
+    for (const size_t i : kept) out.columns[name].push_back(values[i]);
+  for (double& other : out.columns["partner"])
+    other = other < 0 || other >= static_cast<double>(place.size()) ? -1 : place[static_cast<size_t>(other)];
+  for (const auto& [name, values] : all.columns) out.columns[name];  // also where no point is kept
   return out;
 }
 
-std::string ContactPoints::packed(Vec2 origin) const {
-  Packer p;
-  std::vector<Vec2> at;
-  for (const Vec2& q : point) at.push_back(q - origin);
-  p.bytes(kind), p.bytes(state);
-  p.integers(block_a), p.integers(block_b), p.integers(corner), p.integers(edge), p.integers(partner);
-  p.short_floats(component(at, &Vec2::x)), p.short_floats(component(at, &Vec2::y));
-  // normal and shear force give its size
-  std::vector<int> direction;
-  for (const Vec2& v : force)
-    direction.push_back(static_cast<int>(std::lround(std::atan2(v.y, v.x) / std::numbers::pi * 32767)));
-  p.short_integers(direction);
-  p.halves(normal_force), p.halves(shear_force), p.halves(slip), p.halves(opening);
-  return p.text();
+Vec2 displacement_of(const Shapes& shapes, const BlockFrame& frame, int block, Vec2 now) {
+  const auto at = shapes.place.find(block);
+  if (at == shapes.place.end() || !frame.present[at->second]) return {};
+  const size_t k = at->second;
+  // x = zero + u(zero), u(zero) = d + H (zero - centre)
+  const Mat2& h = frame.gradient[k];
+  if (det(kIdentity + h) == 0) return frame.displacement[k];
+  const Vec2 zero = inverse(kIdentity + h) * (now - shapes.centre[k] - frame.displacement[k]);
+  return frame.displacement[k] + h * zero;
 }
 
 BoltPieces read_bolts(const std::filesystem::path& file) {
@@ -296,16 +294,4 @@ BoltPieces read_bolts(const std::filesystem::path& file) {
   return out;
 }
 
-std::string BoltPieces::packed(Vec2 origin) const {
-  Packer p;
-  p.bytes(condition), p.bytes(crossing);
-  for (const auto* v : {&from, &to}) {
-    std::vector<Vec2> at;
-    for (const Vec2& q : *v) at.push_back(q - origin);
-    p.floats(component(at, &Vec2::x)), p.floats(component(at, &Vec2::y));
-  }
-  p.floats(axial_force), p.floats(shear_force), p.floats(elongation);
-  return p.text();
-}
-
-}  // namespace talus::report
+}  // namespace talus

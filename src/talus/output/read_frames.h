@@ -1,7 +1,8 @@
 #pragma once
-// The frames of a run in the form that the page draws: shapes of the blocks in the state from which
-// displacements count, and for each frame how every block has moved, its velocity and its stress; contact
-// points and bolts. Every block is affine (theory section 1), so that a frame needs ten numbers a block.
+// The frames of a run read back, in the form in which pictures and reports want them: shapes of the blocks in
+// the state from which displacements count, and for each frame how every block has moved, its velocity and its
+// stress; contact points and bolts. Every block is affine (theory section 1), so that a frame needs ten numbers
+// a block.
 
 #include <filesystem>
 #include <map>
@@ -9,24 +10,33 @@
 #include <vector>
 
 #include "talus/base/vec2.h"
+#include "talus/output/contact_points.h"
 #include "talus/output/read_vtk.h"
 
-namespace talus::report {
+namespace talus {
 
 /// Blocks as they lie when their displacement is zero.
 struct Shapes {
-  std::vector<int> id;       // [n] as in blocks.csv
-  std::vector<int> begin;    // [n + 1]
-  std::vector<Vec2> corner;  // [m]
-  std::vector<Vec2> centre;  // [n] centroid [m]
-
-  std::string packed() const;  // read again, in the same order, by web/src/run.js
+  std::vector<int> id;          // [n] as in blocks.csv
+  std::vector<int> begin;       // [n + 1]
+  std::vector<Vec2> corner;     // [m]
+  std::vector<Vec2> centre;     // [n] centroid [m]
+  std::map<int, size_t> place;  // index of the block with an id
 };
 
 /// A quantity that colours blocks, over the blocks of one frame.
 struct Span {
   double least = 0, low = 0, high = 0, most = 0;  // low, high: of all but 2 % at either end
 };
+
+/// A linear field over a block: its value at the centroid and its gradient.
+struct LinearField {
+  Vec2 value;
+  Mat2 gradient;
+};
+/// Through the values at the corners, by least squares: exact, since every block is affine. For frames of a talus
+/// that did not write the field itself.
+LinearField field_through(const Vec2* corner, const Vec2* value, size_t count, Vec2 centre);
 
 /// How the blocks of one frame have moved from the shapes of `shapes`.
 struct BlockFrame {
@@ -37,7 +47,6 @@ struct BlockFrame {
   std::vector<Vec2> velocity;      // [n] of the centroid [m/s]
   std::vector<Mat2> stress;        // [n] Cauchy [Pa], tension > 0
 
-  std::string packed() const;
   /// One for each of kBlockQuantities.
   std::vector<Span> spans() const;
 };
@@ -52,23 +61,24 @@ class FrameReader {
 
  private:
   std::vector<Shapes> shapes_;
-  std::map<int, size_t> place_;  // of a block in the last shapes
 };
 
 /// Contact points of one frame: those that carry a force, have slipped or stand open, and their other ends.
 struct ContactPoints {
-  std::vector<int> block_a, block_b, corner, edge;
-  std::vector<int> partner;          // the other end of a joint, -1: none
-  std::vector<uint8_t> kind, state;  // as in contacts_*.vtp; state 255: no joint
-  std::vector<Vec2> point, force;    // [m], [N]
-  std::vector<double> normal_force, shear_force, slip, opening;
+  std::vector<Vec2> point, force;  // [m], [N]
+  std::map<std::string, std::vector<double>>
+      columns;  // of contact_columns(), by name, as far as the frame has them
 
-  size_t size() const { return kind.size(); }
-  /// @param origin  that points count from [m], so that single precision is enough
-  std::string packed(Vec2 origin) const;
+  size_t size() const { return point.size(); }
+  bool has(const std::string& name) const { return columns.count(name) > 0; }
+  /// Throws FileError when the frame, of an older talus, does not have the column.
+  const std::vector<double>& at(const std::string& name) const;
 };
 /// Frames written before contacts had the numbers of their blocks have -1 in their place.
 ContactPoints read_contacts(const std::filesystem::path& file);
+
+/// Displacement of a point of a block that moves with it [m]; {} for a block that the frame does not have.
+Vec2 displacement_of(const Shapes& shapes, const BlockFrame& frame, int block, Vec2 point_now);
 
 /// Pieces of bolts of one frame.
 struct BoltPieces {
@@ -77,8 +87,7 @@ struct BoltPieces {
   std::vector<uint8_t> condition, crossing;
 
   size_t size() const { return condition.size(); }
-  std::string packed(Vec2 origin) const;
 };
 BoltPieces read_bolts(const std::filesystem::path& file);
 
-}  // namespace talus::report
+}  // namespace talus

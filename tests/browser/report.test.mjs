@@ -1,12 +1,12 @@
-// Drives the report in a real browser, from a file, with the network watched: node report.test.mjs REPORT FOLDER
-// where FOLDER is the result folder of examples/bolted_slope that REPORT was made from. Exit 77: no browser.
+// Drives the report in a real browser, from a file, with the network watched: node report.test.mjs REPORT FOLDER MANY
+// where FOLDER is the result folder of examples/bolted_slope that REPORT was made from, and MANY a report of six runs. Exit 77: no browser.
 
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { test, before, after } from "node:test";
 
-const [report, folder] = process.argv.slice(2);
+const [report, folder, many] = process.argv.slice(2);
 const browserPath = process.env.TALUS_BROWSER || "/usr/bin/chromium";
 if (!existsSync(browserPath)) {
   console.log(`skipped: there is no browser at ${browserPath} (package chromium)`);
@@ -59,6 +59,23 @@ test("opens with the last frame, the title and the cards", async () => {
   assert.equal(s.frame, Number(await page.locator("#slider").getAttribute("max")));
   assert.match(await page.locator("#cards").innerText(), /finished/);
   assert.match(await page.locator("#clock").innerText(), /t = /);
+});
+
+test("opens with the answer: what summary.json says of joints, bolts and monitors", async () => {
+  const summary = JSON.parse(readFileSync(`${folder}/summary.json`, "utf8")), text = await page.locator("#answer").innerText();
+  assert.ok((await page.locator("#answer").boundingBox()).y < (await page.locator("#picture").boundingBox()).y);
+  assert.match(text, new RegExp(`result\\s+${summary.valid ? "valid" : "NOT VALID"}`));
+  assert.ok(text.includes(`${summary.joints.slipped_joints} joint`), text);
+  assert.match(text, /residual slip at most .* accumulated slip at most/);
+  assert.match(text, /largest tension .*N in /);
+  const stage = summary.stages.at(-1).name, told = summary.monitors.middle.stages[stage]["displacement_x [m]"];
+  const peak = Math.abs(told.least) > Math.abs(told.greatest) ? told.least : told.greatest;
+  const row = await page.locator("#answer tr", { hasText: "middle" }).filter({ hasText: "displacement x" }).locator("td").allInnerTexts();
+  const factor = { m: 1, mm: 1e-3, "µm": 1e-6 }[row[5]];
+  assert.ok(Math.abs(Number(row[2]) * factor - peak) <= 6e-3 * Math.abs(peak), `${row} of ${peak}`);
+  const stages = await page.locator("#answer-stage option").allInnerTexts();
+  await page.locator("#answer-stage").selectOption(stages[0]);
+  assert.match(await page.locator("#answer caption").innerText(), new RegExp(stages[0]));
 });
 
 test("the slider seeks", async () => {
@@ -133,6 +150,50 @@ test("every colouring and range draws", async () => {
   await page.locator("#deformation").fill("1");
 });
 
+test("displacements are told against a block, a group, a support", async () => {
+  await clickBlock(2);
+  const value = async (key) => Number(await shown(key).getAttribute("data-value"));
+  const own = await value("displacement_x");
+  assert.ok(Math.abs(own) > 0);
+  await page.locator("#against").selectOption("selected");
+  await until("document.querySelector('#legend').innerText.includes('relative to slab[1,0]')");
+  assert.equal(await value("displacement_x"), 0);
+  await clickBlock(3);
+  const other = await value("displacement_x");
+  await page.locator("#against").selectOption("");
+  await until("!document.querySelector('#legend').innerText.includes('relative to')");
+  const absolute = await value("displacement_x");
+  assert.ok(Math.abs(absolute - own - other) <= 1e-5 * Math.abs(absolute) + 1e-12, `${absolute} - ${own} is ${other}`);
+  const choices = await page.locator("#against option").evaluateAll((list) => list.map((o) => o.value));
+  assert.ok(choices.some((c) => c.startsWith("group:")), choices.join());
+  for (const choice of choices.slice(1, -1)) {
+    await page.locator("#against").selectOption(choice);
+    await until("document.querySelector('#legend').innerText.includes('relative to')");
+  }
+  await page.locator("#against").selectOption("");
+  await until("!document.querySelector('#legend').innerText.includes('relative to')");
+});
+
+test("the colour bar has round marks at their places", async () => {
+  const marks = await page.locator("#legend .tick").evaluateAll((list) => list.map((t) => [Number(t.textContent), parseFloat(t.style.left)]));
+  assert.ok(marks.length >= 3, marks.join());
+  const slope = (marks.at(-1)[0] - marks[0][0]) / (marks.at(-1)[1] - marks[0][1]);
+  for (const [v, left] of marks) assert.ok(Math.abs(v - marks[0][0] - slope * (left - marks[0][1])) < 1e-2 * Math.abs(marks.at(-1)[0]), marks.join());
+});
+
+test("charts count the time of a stage", async () => {
+  const stage = (await page.locator("#clock-of option").evaluateAll((list) => list.map((o) => o.value))).at(-1);
+  await page.locator("#clock-of").selectOption(stage);
+  const chart = page.locator('#charts figure.chart[data-title="displacement x"]').first();
+  await chart.scrollIntoViewIfNeeded();
+  const [download] = await Promise.all([page.waitForEvent("download"), chart.getByText("CSV").click()]);
+  const summary = JSON.parse(readFileSync(`${folder}/summary.json`, "utf8")), begin = summary.stages.find((s) => s.name === stage)["begin [s]"];
+  const saved = readCsv(await download.path()), csv = readCsv(`${folder}/histories.csv`);
+  const t = csv["t [s]"].filter((v) => v > begin);
+  assert.deepEqual(saved["t [s]"], t.map((v) => v - begin));
+  await page.locator("#clock-of").selectOption("");
+});
+
 test("a chart saves the numbers of histories.csv", async () => {
   const chart = page.locator('figure.chart[data-title="displacement x"]').first();
   await chart.scrollIntoViewIfNeeded();
@@ -163,14 +224,45 @@ test("dark, print and narrow", async () => {
   await page.locator("#theme").selectOption("light");
   assert.notEqual(await page.evaluate("getComputedStyle(document.body).backgroundColor"), dark);
   await page.emulateMedia({ media: "print" });
-  assert.equal(await page.locator(".controls").isVisible(), false);
+  assert.equal(await page.locator("#picture .controls").isVisible(), false);
   await page.emulateMedia({ media: "screen" });
-  await page.setViewportSize({ width: 600, height: 900 });
-  // canvas and charts follow a little after the window
-  await until("document.documentElement.scrollWidth <= window.innerWidth");
+  for (const width of [1400, 800, 400]) {
+    await page.setViewportSize({ width, height: 900 });
+    // canvas and charts follow a little after the window
+    await until("document.documentElement.scrollWidth <= window.innerWidth");
+    for (const id of ["against", "clock-of", "answer-stage"]) {
+      const box = await page.locator(`#${id}`).boundingBox();
+      assert.ok(box.x >= 0 && box.x + box.width <= width, `${id} at ${width} px: ${JSON.stringify(box)}`);
+    }
+  }
+  // every new control is reached and used by keys alone
+  for (const id of ["against", "clock-of", "answer-stage"]) {
+    await page.locator(`#${id}`).focus();
+    await page.keyboard.press("ArrowDown");
+    await page.keyboard.press("ArrowUp");
+    assert.equal(await page.evaluate("document.activeElement.id"), id);
+  }
+});
+
+test("six runs: a row and a small chart each, in colours of their own; told against a support", async () => {
+  await page.setViewportSize({ width: 1300, height: 900 });
+  await page.goto(`file://${many}`);
+  await until("window.talus && window.talus.ready");
+  assert.equal(await page.locator("#compare tbody tr").count(), 6);
+  await page.locator("#compare tbody button").nth(4).click();
+  await until("document.title && document.querySelector('#subtitle').textContent.endsWith('wave_5')");
+  const grid = page.locator("#charts .multiples").first();
+  assert.equal(await grid.locator("figure.chart").count(), 6);
+  await grid.scrollIntoViewIfNeeded();
+  await grid.locator("canvas").first().waitFor();
+  const tints = await grid.locator("figure.chart").first().locator(".u-marker").evaluateAll((list) => list.map((m) => m.style.borderColor || m.style.borderTopColor).filter(Boolean));
+  assert.equal(new Set(tints).size, tints.length, tints.join());
+  const ground = await page.locator('#against option[value^="ground:"]').first().getAttribute("value");
+  await page.locator("#against").selectOption(ground);
+  await until("document.querySelector('#legend').innerText.includes('relative to')");
 });
 
 test("no page error, no request", () => {
   assert.deepEqual(errors, []);
-  assert.deepEqual(requests, [`file://${report}`]);
+  assert.deepEqual(requests, [`file://${report}`, `file://${many}`]);
 });

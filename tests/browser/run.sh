@@ -39,4 +39,11 @@ mkdir -p "$out"
 } >"$out/model.toml"
 "$build/app/talus" run "$out/model.toml" -o "$out/run" --quiet --set output.field_interval=0.02
 "$build/app/talus" report "$out/run" -o "$out/report.html"
-NODE_PATH=$build/browser/node_modules exec node "$here/report.test.mjs" "$out/report.html" "$out/run"
+# several runs on one page: of a column that a support drives
+runs=()
+for k in 1 2 3 4 5 6; do
+  "$build/app/talus" run "$here/../../examples/wave_column/wave_column.toml" -o "$out/wave_$k" --quiet
+  runs+=("$out/wave_$k")
+done
+"$build/app/talus" report "${runs[@]}" -o "$out/many.html"
+NODE_PATH=$build/browser/node_modules exec node "$here/report.test.mjs" "$out/report.html" "$out/run" "$out/many.html"

@@ -2,10 +2,12 @@
 // export as PNG and CSV.
 
 import uPlot from "uplot";
-import { number } from "./quantities.js";
+import { number, readableUnit } from "./quantities.js";
 
 // apart for colour-blind readers; with the dashes, apart in grey too
 const kColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7f6000", "#56b4e9", "#5e3c99", "#8c8c8c"];
+// more curves than colours: further hues, none twice
+const colourOf = (i) => (i < kColours.length ? kColours[i] : `hsl(${Math.round(i * 137.508) % 360}, 70%, ${30 + 8 * (Math.floor(i / 3) % 3)}%)`);
 const kDashes = [[], [8, 4], [2, 3], [10, 3, 2, 3], [14, 4]];
 
 const live = new Set();  // charts that are drawn
@@ -21,8 +23,16 @@ function join(series) {
   return uPlot.join(series.map((s) => [Array.from(s.time), Array.from(s.value)]));
 }
 
+/** The largest size of any value. */
+export function largestOf(series) {
+  let most = 0;
+  for (const s of series) for (const v of s.value) if (Math.abs(v) > most) most = Math.abs(v);
+  return most;
+}
+
 /**
- * A chart in `parent`. `spec`: {title, unit, series: [{label, time, value}], log, onTime(t)}.
+ * A chart in `parent`. `spec`: {title, unit, series: [{label, time, value}], log, height, range, onTime(t)}; drawn in a
+ * prefix of the unit that suits the largest value, saved without.
  * Drawn when it comes into sight.
  */
 export function addChart(parent, spec) {
@@ -33,7 +43,8 @@ export function addChart(parent, spec) {
   head.textContent = spec.title;
   const tools = document.createElement("span");
   tools.className = "tools";
-  const chart = { figure, spec, plot: null, data: null };
+  const chart = { figure, spec, plot: null, data: null, scale: readableUnit(spec.largest || largestOf(spec.series), spec.log ? "" : spec.unit || "") };
+  if (spec.log) chart.scale.unit = spec.unit || "";
   for (const [text, title, action] of [["Whole", "show the whole time again", () => whole(chart)],
     ["PNG", "save this chart as a picture", () => savePng(chart)],
     ["CSV", "save the numbers of this chart", () => saveCsv(chart)]]) {
@@ -67,18 +78,18 @@ function options(chart) {
   const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: "12px sans-serif", labelFont: "12px sans-serif" };
   const digits = (u, values) => values.map((v) => (v === null ? "" : spec.log ? v.toExponential(0) : number(v, 6)));
   return {
-    width: Math.max(280, chart.box.clientWidth), height: 260,
+    width: Math.max(spec.height ? 160 : 280, chart.box.clientWidth), height: spec.height || 260,
     cursor: { drag: { x: true, y: false }, sync: { key: "time" } },
-    scales: { x: { time: false }, y: { distr: spec.log ? 3 : 1 } },
+    scales: { x: { time: false }, y: { distr: spec.log ? 3 : 1, ...(spec.range ? { range: spec.range.map((v) => v / chart.scale.factor) } : {}) } },
     series: [{ label: "t [s]", value: (u, v) => (v === null ? "–" : number(v, 6)) }, ...spec.series.map((s, i) => ({
-      label: s.label, stroke: kColours[i % kColours.length], width: 1.6, spanGaps: true,
+      label: s.label, stroke: colourOf(i), width: 1.6, spanGaps: true,
       dash: kDashes[Math.floor(i / kColours.length) % kDashes.length].length ? kDashes[Math.floor(i / kColours.length) % kDashes.length]
         : kDashes[i % kDashes.length],
       value: (u, v) => (v === null || v === undefined ? "–" : number(v, 6)),
       points: { show: s.time.length < 40 },
     }))],
     axes: [{ ...axis, label: spec.xLabel || "t [s]", values: (u, v) => v.map((x) => number(x, 6)) },
-      { ...axis, label: `${spec.quantity || spec.title}${spec.unit ? ` [${spec.unit}]` : ""}`, values: digits,
+      { ...axis, label: `${spec.quantity || spec.title}${chart.scale.unit ? ` [${chart.scale.unit}]` : ""}`, values: digits,
         size: (u, values) => 26 + 7 * Math.max(4, ...(values || []).map((v) => v.length)), ...(spec.log ? { splits: decades } : {}) }],
     legend: { markers: { dash: (u, i) => (u.series[i].dash && u.series[i].dash.length ? "dashed" : "solid") } },
     hooks: { draw: [drawNow(chart)] },
@@ -139,7 +150,8 @@ function drawNow(chart) {
 
 function draw(chart) {
   if (chart.plot) return;
-  chart.data = join(chart.spec.series);
+  const { factor } = chart.scale;
+  chart.data = join(factor === 1 ? chart.spec.series : chart.spec.series.map((s) => ({ ...s, value: Array.from(s.value, (v) => v / factor) })));
   if (chart.spec.log) chart.data = chart.data.map((v, k) => (k === 0 ? v : Array.from(v, (y) => (y > 0 ? y : null))));
   chart.plot = new uPlot(options(chart), chart.data, chart.box);
   if (chart.spec.onTime) chart.plot.over.addEventListener("dblclick", () => {
@@ -191,7 +203,7 @@ export function csvOf(chart) {
   const cell = (text) => (/[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
   const unit = chart.spec.unit ? ` [${chart.spec.unit}]` : "";
   const lines = [["t [s]", ...chart.spec.series.map((s) => cell(s.label + unit))].join(",")];
-  const data = chart.data;
+  const data = join(chart.spec.series);
   for (let i = 0; i < data[0].length; ++i)
     lines.push(data.map((v) => (v[i] === null || v[i] === undefined ? "" : String(v[i]))).join(","));
   return lines.join("\n") + "\n";

@@ -3,8 +3,10 @@
 import { chunkJson } from "./decode.js";
 import { Run } from "./run.js";
 import { View, contactKey } from "./view.js";
-import { addChart, drawCharts, moveTime, redrawCharts, save } from "./charts.js";
-import { colours, learn, number, quantities, readableUnit, withUnit, words } from "./quantities.js";
+import { answeredStages, monitorTable, verdictsOf } from "./answer.js";
+import { addChart, drawCharts, largestOf, moveTime, redrawCharts, save } from "./charts.js";
+import { comparison } from "./compare.js";
+import { colours, learn, number, quantities, readableUnit, ticks, withUnit, words } from "./quantities.js";
 import { element, tableOf } from "./dom.js";
 import { cardsOf, energyOf, listOf, modelOf, stagesOf, warningsOf, worstSteps } from "./words.js";
 
@@ -14,6 +16,7 @@ const contactColumn = (key) => words.contact_columns.find((c) => c.key === key);
 
 let runs = [], run = null, view = null;
 let frameIndex = 0, playing = false, wanted = 0;
+let against = "";    // what displacements are told against, a key of run.references() or "block:ID"
 let history = null;  // the chart of what is selected
 const times = [];    // of frames drawn while playing [ms], for the benchmark
 
@@ -30,8 +33,11 @@ async function start() {
     runs.forEach((r, i) => $("run").append(element("option", { value: String(i) }, r.name)));
   }
   listen();
+  const table = comparison(runs, (i) => { $("run").value = String(i); return showRun(i); });
+  section("compare", [table]);
   await showRun(0);
-  addMonitors();
+  offerClocks();
+  await addMonitors();
   window.talus.ready = true;
 }
 
@@ -42,13 +48,16 @@ async function showRun(i) {
   run = runs[i];
   view.run = run;
   view.selected = null;
+  against = "";
   $("title").textContent = run.title();
   document.title = `${run.title()} - talus report`;
   $("subtitle").textContent = run.title() === run.name ? "" : run.name;
   fill("warnings", warningsOf(run).map((w) => element("p", { class: "warning" }, w)));
   fill("cards", cardsOf(run).map(([title, value, note]) =>
     element("div", { class: "card" }, element("span", { class: "name" }, title), element("span", { class: "value" }, value), element("span", { class: "note" }, note))));
+  showAnswer();
   offerQuantities();
+  offerReferences();
   $("picture").hidden = run.frames.length === 0;
   resize();
   if (run.frames.length) {
@@ -69,6 +78,16 @@ async function showRun(i) {
     addSteps(steps);
     $("health").append(worstSteps(steps, run.frames.length ? goToTime : null) || "");
   }
+}
+
+// What the run says, in words and as the table of a stage.
+function showAnswer(stage) {
+  const stages = answeredStages(run), chosen = stage || stages[stages.length - 1];
+  const list = element("dl", { class: "verdicts" }, ...verdictsOf(run).flatMap(([name, text]) => [element("dt", {}, name), element("dd", { class: /NOT VALID|failed/.test(text) ? "bad" : undefined }, text)]));
+  const choice = stages.length > 1 ? element("p", { class: "controls" }, element("label", {}, "stage ",
+    element("select", { id: "answer-stage", onchange: (e) => { showAnswer(e.target.value); $("answer-stage").focus(); } },
+      ...stages.map((name) => element("option", { value: name, selected: name === chosen }, name))))) : "";
+  fill("answer", [list, choice, chosen ? monitorTable(run, chosen, run.frames.length ? goToTime : null) || "" : ""].filter(Boolean));
 }
 
 function fill(id, children) {
@@ -96,23 +115,60 @@ function offerQuantities() {
   view.quantity = select.value;
 }
 
+function offerReferences() {
+  const groups = new Map();
+  for (const r of run.references()) {
+    if (!groups.has(r.group)) groups.set(r.group, []);
+    groups.get(r.group).push(r);
+  }
+  $("against").replaceChildren(element("option", { value: "" }, "its place at the start"),
+    ...[...groups].map(([label, list]) => element("optgroup", { label }, ...list.map((r) => element("option", { value: r.key }, r.title)))),
+    element("option", { value: "selected" }, "the selected block"));
+  $("against").value = "";
+}
+
+async function setAgainst() {
+  const value = $("against").value;
+  if (value === "selected") {
+    if (!view.selected || view.selected.block === undefined) {
+      $("against").value = "";
+      $("joint-note").textContent = "Click a block first: displacements are then told against it.";
+      against = "";
+      return showFrame(frameIndex);
+    }
+    against = `block:${view.selected.block}`;
+  } else against = value;
+  if (history) history.chart.remove(), history = null;
+  await showFrame(frameIndex);
+}
+
+const againstText = () => {
+  if (!against) return "";
+  const name = against.slice(against.indexOf(":") + 1);
+  return ` relative to ${against.startsWith("block:") ? run.block(Number(name)).name : name}`;
+};
+
+const isMotion = (key) => /^(displacement|velocity)/.test(key);
+
 // ---- frames ----
 
 async function showFrame(i, fit = false) {
   wanted = i;
   const of = run;
-  const [frame, contacts, bolts] = await Promise.all([run.frame(i), run.contactsAt(i), run.boltsAt(i)]);
+  const [frame, contacts, bolts] = await Promise.all([run.frameAgainst(i, against), run.contactsAt(i), run.boltsAt(i)]);
   if (wanted !== i || of !== run) return;  // the reader has moved on
+  const range = await rangeOf(i);
+  if (wanted !== i || of !== run) return;
   frameIndex = i;
   view.frame = frame;
   view.contacts = contacts;
   view.bolts = bolts;
   if (fit) view.fit();
-  setRange();
+  if (range) view.range = range;
   view.draw();
   $("slider").value = String(i);
   const entry = run.frames[i], stage = (run.summary.stages || [])[entry.stage];
-  $("clock").textContent = `t = ${entry.t.toFixed(timeDigits())} s · frame ${i + 1} of ${run.frames.length}${stage ? ` · ${stage.name}` : ""}`;
+  $("clock").textContent = `t = ${entry.t.toFixed(timeDigits())} s · frame ${i + 1} of ${run.frames.length}${stage ? ` · ${stage.name}${stage["begin [s]"] > 0 ? `, its ${(entry.t - stage["begin [s]"]).toFixed(timeDigits())} s` : ""}` : ""}`;
   $("slider").setAttribute("aria-valuetext", $("clock").textContent);
   if (!playing) afterFrame();
   else legend();
@@ -130,25 +186,29 @@ function afterFrame() {
   moveTime();
 }
 
-function setRange() {
-  const q = words.quantities.findIndex((one) => one.key === view.quantity);
-  if (q < 0) return;
-  const span = (entry) => entry.spans.slice(4 * q, 4 * q + 4), mode = $("range").value;
+// The range of the colours, null where they are those of names.
+async function rangeOf(i) {
+  const q = quantities[view.quantity];
+  if (!q) return null;
+  const mode = $("range").value, key = isMotion(q.key) ? against : "", n = run.frames.length;
+  // against something every frame has to be decoded: some of a long run are enough for its colours
+  const every = key ? Math.max(1, Math.ceil(n / 40)) : 1;
+  const chosen = mode === "frame" ? [i] : [...Array(n).keys()].filter((k) => k % every === 0 || k === n - 1 || k === i);
   let least = Infinity, low = Infinity, high = -Infinity, most = -Infinity;
-  for (const entry of mode === "frame" ? [run.frames[frameIndex]] : run.frames) {
-    const s = span(entry);
+  for (const k of chosen) {
+    const s = key ? await run.span(k, key, q) : run.frames[k].spans.slice(4 * q.index, 4 * q.index + 4);
     least = Math.min(least, s[0]), low = Math.min(low, s[1]), high = Math.max(high, s[2]), most = Math.max(most, s[3]);
   }
   const trimmed = mode === "run";
   let from = trimmed ? low : least, to = trimmed ? high : most;
   if (!(to > from)) from = least, to = most;
   let side = 0;
-  if (quantities[view.quantity].signed) {
+  if (q.signed) {
     const size = Math.max(Math.abs(from), Math.abs(to));
     side = most <= 0 ? -1 : least >= 0 ? 1 : 0;
     from = side > 0 ? 0 : -size, to = side < 0 ? 0 : size;
   } else from = Math.min(0, from);
-  view.range = { low: from, high: to, least, most, side };
+  return { low: from, high: to, least, most, side };
 }
 
 function legend() {
@@ -159,18 +219,24 @@ function legend() {
   } else {
     const { low, high, least, most } = view.range, unit = readableUnit(Math.max(Math.abs(low), Math.abs(high)), q.unit);
     const text = (v) => number(v / unit.factor, 3);
+    const marks = ticks(low / unit.factor, high / unit.factor).map((v) => {
+      const share = (100 * (v * unit.factor - low)) / (high - low);
+      return element("span", { class: "tick", style: `left:${share.toFixed(2)}%` }, number(v, 3));
+    });
     const beyond = [least < low ? `least ${text(least)}` : "", most > high ? `largest ${text(most)}` : ""].filter(Boolean).join(", ");
-    fill("legend", [element("span", { class: "legend-title" }, `${q.title} [${unit.unit}]`), element("span", {}, text(low)),
-      element("span", { class: "bar", style: `background:linear-gradient(90deg,${colours(q.signed, view.range.side).join(",")})`, role: "img", "aria-label": "colours from low to high" }),
-      element("span", {}, text(high)), element("span", { class: "note" }, beyond ? `beyond the colours: ${beyond}` : "")]);
+    fill("legend", [element("span", { class: "legend-title" }, `${q.title}${isMotion(q.key) ? againstText() : ""} [${unit.unit}]`),
+      element("span", { class: "scale" },
+        element("span", { class: "bar", style: `background:linear-gradient(90deg,${colours(q.signed, view.range.side).join(",")})`, role: "img", "aria-label": `colours from ${text(low)} to ${text(high)} ${unit.unit}` }), ...marks),
+      element("span", { class: "note" }, beyond ? `beyond the colours: ${beyond}` : "")]);
   }
   const notes = [], c = view.contacts;
   if (c && (view.show.joints || view.show.forces)) {
-    if (view.show.joints && c.lines.length) notes.push(view.largestSlip > 0 ? `${c.residual ? "Residual" : "Accumulated"} slip of joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}.` : "No joint has slipped.");
+    if (view.show.joints && c.lines.length + c.alone.length) notes.push(view.largestSlip > 0 ? `${c.residual ? "Residual" : "Accumulated"} slip slip of joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}${c.residual && view.largestAccumulated > 0 ? ` (accumulated, to and fro: ${withUnit(view.largestAccumulated, "m")})` : ""}.` : "No joint has slipped.");
     if (view.show.joints && view.largestOpening > 0) notes.push(`Open joints of blocks still near each other dashed, at most ${withUnit(view.largestOpening, "m")}.`);
     if (view.show.forces && view.largestForce > 0) notes.push(`Longest arrow: ${withUnit(view.largestForce, "N")}, on the first of the two blocks.`);
     if (!c.exact) notes.push(`Contacts are those of t = ${number(c.time, 5)} s: this page has them for ${run.contacts.length} frames.`);
   }
+  if (against) notes.push(`Displacements and velocities${againstText()}.`);
   if (view.bolts && view.show.bolts) notes.push(`Bolts: tension, dark green ${withUnit(view.largestTension, "N")}, grey in compression, black ruptured.`);
   $("joint-note").textContent = notes.join(" ");
 }
@@ -197,7 +263,7 @@ async function play() {
   for (; playing && show < run.frames.length; ++show) {
     const begin = performance.now();
     await showFrame(show);
-    if (show + 1 < run.frames.length) run.frame(show + 1);  // decoded while this one is looked at
+    if (show + 1 < run.frames.length) run.frameAgainst(show + 1, against);  // decoded while this one is looked at
     next = Math.max(next + 1000 / Math.max(1, Number($("speed").value) || 30), performance.now() - 100);
     await new Promise((resolve) => {
       const look = () => (performance.now() + 2 >= next || !playing ? resolve() : requestAnimationFrame(look));
@@ -247,7 +313,7 @@ function blockNumbers(id) {
     rows.push(["rotation", `${number((Math.atan2(f.hyx[i] - f.hxy[i], 2 + f.hxx[i] + f.hyy[i]) * 180) / Math.PI, 2)}°`]);
     for (const key of Object.keys(quantities)) {
       const q = quantities[key];
-      rows.push([q.title, element("span", { "data-quantity": key, "data-value": String(q.of(f, i)) }, withUnit(q.of(f, i), q.unit, 3))]);
+      rows.push([q.title + (isMotion(key) ? againstText() : ""), element("span", { "data-quantity": key, "data-value": String(q.of(f, i)) }, withUnit(q.of(f, i), q.unit, 3))]);
     }
   }
   return tableOf(b.name, ["at the centroid", `t = ${number(f.time, 5)} s`], rows);
@@ -285,9 +351,9 @@ async function drawHistory(chosen, what) {
   let title, unit;
   if (chosen.block !== undefined) {
     const q = quantities[what];
-    title = `${run.block(chosen.block).name}: ${q.title}`, unit = q.unit;
+    title = `${run.block(chosen.block).name}: ${q.title}${isMotion(what) ? againstText() : ""}`, unit = q.unit;
     for (let k = 0; k < run.frames.length; ++k) {
-      const f = await run.frame(k), i = f.shapes.place.get(chosen.block);
+      const f = await run.frameAgainst(k, isMotion(what) ? against : ""), i = f.shapes.place.get(chosen.block);
       if (of !== run) return;
       if (i === undefined || !f.present[i]) continue;
       time.push(f.time), value.push(q.of(f, i));
@@ -323,24 +389,61 @@ function find(text) {
 
 // ---- charts ----
 
-// A chart for each quantity, with all monitors of all runs.
+// Stages by which the times of charts may count, those that all runs have.
+function offerClocks() {
+  const names = (runs[0].summary.stages || []).map((s) => s.name).filter((name) => runs.every((r) => (r.summary.stages || []).some((s) => s.name === name)));
+  $("clock-of").replaceChildren(element("option", { value: "" }, "of the run"), ...names.map((name) => element("option", { value: name }, `of stage "${name}", from its beginning`)));
+}
+
+const kManyRuns = 4;  // more than these have a small chart each
+
+// A chart for each quantity, with all monitors of all runs; of many runs one for each, side by side.
 async function addMonitors() {
+  const place = $("charts"), stage = $("clock-of").value;
+  for (const chart of place.charts || []) chart.remove();
+  for (const old of place.querySelectorAll(".multiples, .none")) old.remove();
+  place.charts = [];
   const tables = await Promise.all(runs.map((r) => r.table("histories"))), groups = new Map();
   tables.forEach((table, r) => {
     if (!table) return;
+    const rows = rowsOf(table.values[0], runs[r], stage);
     table.about.forEach(({ monitor, quantity: name, unit }, c) => {
       if (!monitor) return;  // clocks
       const quantity = name.replace(/_/g, " "), key = `${quantity} [${unit}]`;
       if (!groups.has(key)) groups.set(key, { quantity, unit, series: [] });
-      groups.get(key).series.push({ label: runs.length > 1 ? `${runs[r].name}: ${monitor}` : monitor, time: table.values[0], value: table.values[c] });
+      const part = (v) => (rows ? v.slice(rows.from, rows.to) : v);
+      const time = rows ? part(table.values[0]).map((t) => t - rows.begin) : table.values[0];
+      groups.get(key).series.push({ run: r, monitor, label: runs.length > 1 ? `${runs[r].name}: ${monitor}` : monitor, time, value: part(table.values[c]) });
     });
   });
   if (!groups.size) {
-    $("charts").append(element("p", {}, "The model has no monitors: give it [[monitor]] to see histories here."));
+    place.append(element("p", { class: "none" }, "The model has no monitors: give it [[monitor]] to see histories here."));
     return;
   }
-  for (const { quantity, unit, series } of groups.values())
-    addChart($("charts"), { title: quantity, quantity, unit, series, timeNow, stages: stagesNow, onTime: goToTime });
+  const common = stage ? { xLabel: `t of stage "${stage}" [s]` } : { timeNow, stages: stagesNow, onTime: goToTime };
+  for (const { quantity, unit, series } of groups.values()) {
+    if (runs.length <= kManyRuns) {
+      place.charts.push(addChart(place, { title: quantity, quantity, unit, series, ...common }));
+      continue;
+    }
+    // one small chart for each run, all with the same axes
+    let low = Infinity, high = -Infinity;
+    for (const s of series) for (const v of s.value) low = Math.min(low, v), high = Math.max(high, v);
+    const room = 0.05 * (high - low) || 1, grid = element("div", { class: "multiples" }, element("h3", {}, quantity));
+    place.append(grid);
+    runs.forEach((r, k) => {
+      const own = series.filter((s) => s.run === k).map((s) => ({ ...s, label: s.monitor }));
+      if (own.length) place.charts.push(addChart(grid, { title: r.name, quantity, unit, series: own, height: 170, largest: largestOf(series), range: [low - room, high + room], ...common, onTime: undefined, timeNow: undefined }));
+    });
+  }
+}
+
+// The rows of a stage: after its beginning, whose row counts displacements from before they were reset.
+function rowsOf(time, of, name) {
+  const stage = (of.summary.stages || []).find((s) => s.name === name);
+  if (!stage) return null;
+  const begin = stage["begin [s]"], end = stage["end [s]"], first = time.findIndex((t) => t > begin), after = time.findIndex((t) => t > end);
+  return { begin, from: first < 0 ? time.length : first, to: after < 0 ? time.length : after };
 }
 
 // of the run that is shown
@@ -379,9 +482,10 @@ function resize() {
   if (canvas.width !== w || canvas.height !== h) canvas.width = w, canvas.height = h;
 }
 
-function redraw() {
+async function redraw() {
   if (!view.frame) return;
-  setRange();
+  const range = await rangeOf(frameIndex);
+  if (range) view.range = range;
   view.draw();
   if (!playing) legend();
 }
@@ -406,9 +510,14 @@ function listen() {
   systemDark.addEventListener("change", applyTheme);
   $("quantity").addEventListener("change", () => { view.quantity = $("quantity").value; redraw(); });
   $("range").addEventListener("change", redraw);
+  $("against").addEventListener("change", setAgainst);
+  $("clock-of").addEventListener("change", addMonitors);
   $("deformation").addEventListener("input", () => {
     const v = Number($("deformation").value);
-    if (Number.isFinite(v) && v >= 0) view.deformation = v, redraw();
+    if (!Number.isFinite(v) || v < 0) return;
+    view.deformation = v;
+    if (view.fitted) view.fit();
+    redraw();
   });
   for (const key of ["joints", "forces", "bolts", "outlines"])
     $(`show-${key}`).addEventListener("change", (e) => { view.show[key] = e.target.checked; redraw(); });
@@ -477,7 +586,7 @@ function savePicture() {
   context.fillText(`${run.title()}: ${$("clock").textContent}`, 10 * ratio, y + 20 * ratio);
   if (q) {
     const unit = readableUnit(Math.max(Math.abs(view.range.low), Math.abs(view.range.high)), q.unit);
-    const head = `${q.title} [${unit.unit}]   ${number(view.range.low / unit.factor, 3)} `;
+    const head = `${q.title}${isMotion(q.key) ? againstText() : ""} [${unit.unit}]   ${number(view.range.low / unit.factor, 3)} `;
     context.fillText(head, 10 * ratio, y);
     const from = 10 * ratio + context.measureText(head).width, list = colours(q.signed, view.range.side), step = (200 * ratio) / list.length;
     list.forEach((colour, k) => { context.fillStyle = colour; context.fillRect(from + k * step, y - 7 * ratio, step + 1, 14 * ratio); });
@@ -492,8 +601,7 @@ window.talus = {
   ready: false, firstPicture: NaN, times,
   state: () => ({ frame: frameIndex, time: run.frames[frameIndex].t, playing, selected: view.selected, drawTime: view.drawTime }),
   screenOf: (id) => {
-    const s = view.frame.shapes, i = s.place.get(id);
-    return view.toScreen(s.cx[i] + view.deformation * view.frame.ux[i], s.cy[i] + view.deformation * view.frame.uy[i]);
+    return view.blockPlace(view.frame.shapes.place.get(id));
   },
   contactPlaces: () => Array.from({ length: view.contacts ? view.contacts.n : 0 }, (_, i) => ({ key: contactKey(view.contacts, i), at: view.contactPlace(i) })),
 };

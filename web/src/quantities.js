@@ -8,12 +8,12 @@ export const quantities = {};
 export const words = { contact_columns: [], bolt_conditions: [], colours: {}, least_drawn: 0 };
 
 const formulas = {
-  displacement: (f, i) => Math.hypot(f.ux[i], f.uy[i]),
-  displacement_x: (f, i) => f.ux[i],
-  displacement_y: (f, i) => f.uy[i],
-  velocity: (f, i) => Math.hypot(f.vx[i], f.vy[i]),
-  velocity_x: (f, i) => f.vx[i],
-  velocity_y: (f, i) => f.vy[i],
+  displacement: (f, i) => Math.hypot(f.dx[i], f.dy[i]),
+  displacement_x: (f, i) => f.dx[i],
+  displacement_y: (f, i) => f.dy[i],
+  velocity: (f, i) => Math.hypot(f.dvx[i], f.dvy[i]),
+  velocity_x: (f, i) => f.dvx[i],
+  velocity_y: (f, i) => f.dvy[i],
   stress_xx: (f, i) => f.sxx[i],
   stress_yy: (f, i) => f.syy[i],
   stress_xy: (f, i) => f.sxy[i],
@@ -25,7 +25,7 @@ const formulas = {
 /** Takes what the data say of results in general. */
 export function learn(told) {
   Object.assign(words, told);
-  for (const { key, ...q } of told.quantities) if (formulas[key]) quantities[key] = { ...q, of: formulas[key] };
+  told.quantities.forEach((q, index) => { if (formulas[q.key]) quantities[q.key] = { ...q, index, of: formulas[q.key] }; });
 }
 
 function mean(f, i) {
@@ -54,7 +54,7 @@ const prefixes = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-
 
 /** A prefix that suits the largest value: {factor, unit}, value / factor is in the unit. Kilograms etc. stay. */
 export function readableUnit(most, unit) {
-  if (!["m", "Pa", "N", "J", "m/s"].includes(unit) || !(most > 0)) return { factor: 1, unit };
+  if (!["m", "Pa", "N", "J", "m/s"].includes(unit) || !(most > 0)) return { factor: 1, unit: unit.replace(/([a-z])([23])\b/g, (_, u, n) => u + (n === "2" ? "²" : "³")) };
   const usable = unit === "m" ? prefixes.slice(3) : unit === "m/s" ? prefixes.slice(3) : prefixes;
   const found = usable.find(([factor]) => most >= factor) || usable[usable.length - 1];
   return { factor: found[0], unit: found[1] + unit };
@@ -65,6 +65,16 @@ export function withUnit(value, unit, digits = 3) {
   if (!Number.isFinite(value)) return "not a number";
   const r = readableUnit(Math.abs(value), unit);
   return `${number(value / r.factor, digits)} ${r.unit}`.trim();
+}
+
+/** A few round values from low to high. */
+export function ticks(low, high, most = 5) {
+  const span = high - low;
+  if (!(span > 0)) return [];
+  const decade = 10 ** Math.floor(Math.log10(span / most)), step = [1, 2, 2.5, 5, 10].map((f) => f * decade).find((v) => span / v <= most);
+  const out = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * span; ++k) out.push(k * step);
+  return out;
 }
 
 /** Few digits, no trailing noise. */

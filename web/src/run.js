@@ -79,12 +79,75 @@ export class Run {
       const entry = this.frames[i], n = this.shapesList[entry.shapes].blocks;
       const shapes = await this.shapes(entry.shapes);
       const u = new Unpacker(await chunk(entry.data));
-      return {
+      const frame = {
         index: i, time: entry.t, shapes, present: u.bytes(n),
         ux: u.shortFloats(n), uy: u.shortFloats(n),
         hxx: u.plainHalves(n), hxy: u.plainHalves(n), hyx: u.plainHalves(n), hyy: u.plainHalves(n),
         vx: u.halves(n), vy: u.halves(n), sxx: u.halves(n), syy: u.halves(n), sxy: u.halves(n),
       };
+      return absolute(frame);
+    });
+  }
+
+  /** What displacements may be told against: [{key, title, group}]. */
+  references() {
+    const out = [], grounds = (this.frames[0] && this.frames[0].grounds) || [];
+    for (const g of grounds) out.push({ key: `ground:${g.name}`, title: g.name, group: g.heights > 1 ? "free field at the same height" : "support" });
+    if (this.blocks) for (const name of new Set(this.blocks.group)) if (name) out.push({ key: `group:${name}`, title: name, group: "mean of a group" });
+    return out;
+  }
+
+  /** Frame i with displacements and velocities (dx, dy, dvx, dvy) told against a reference, "": absolute. */
+  async frameAgainst(i, key) {
+    const f = await this.frame(i);
+    if (f.against === key) return f;
+    if (!key) return absolute(f);
+    const of = await this.motion_(f, key), n = f.shapes.n;
+    for (const name of ["dx", "dy", "dvx", "dvy"]) f[name] = new Float32Array(n);
+    for (let b = 0; b < n; ++b) {
+      const m = of(f.shapes.cy[b]);
+      f.dx[b] = f.ux[b] - m[0], f.dy[b] = f.uy[b] - m[1], f.dvx[b] = f.vx[b] - m[2], f.dvy[b] = f.vy[b] - m[3];
+    }
+    f.against = key;
+    return f;
+  }
+
+  // the motion of a reference in a frame, by height: [ux, uy, vx, vy]
+  async motion_(f, key) {
+    const name = key.slice(key.indexOf(":") + 1);
+    if (key.startsWith("ground:")) {
+      const entry = (this.frames[f.index].grounds || []).find((g) => g.name === name);
+      if (!entry) return () => [0, 0, 0, 0];
+      const u = new Unpacker(await chunk(entry.data)), n = entry.heights, [h, ...rest] = Array.from({ length: 5 }, () => u.floats(n));
+      return (y) => {
+        let k = 0;
+        while (k + 1 < n && h[k + 1] <= y) ++k;
+        const last = k + 1 >= n || y <= h[k], share = last ? 0 : (y - h[k]) / (h[k + 1] - h[k]);
+        return rest.map((v) => v[k] + (last ? 0 : share * (v[k + 1] - v[k])));
+      };
+    }
+    const sum = [0, 0, 0, 0];
+    let weight = 0;
+    for (let b = 0; b < f.shapes.n; ++b) {
+      if (!f.present[b]) continue;
+      const about = this.block(f.shapes.id[b]), here = key.startsWith("group:") ? about.group === name : String(about.id) === name;
+      if (!here) continue;
+      const w = about.area || 1;
+      weight += w;
+      [f.ux[b], f.uy[b], f.vx[b], f.vy[b]].forEach((v, c) => { sum[c] += w * v; });
+    }
+    const mean = sum.map((v) => (weight > 0 ? v / weight : 0));
+    return () => mean;
+  }
+
+  /** [least, low, high, most] of a quantity in frame i against a reference, as report/page.cpp has them of absolute ones. */
+  async span(i, key, q) {
+    if (!key) return this.frames[i].spans.slice(4 * q.index, 4 * q.index + 4);
+    return this.once_(`span ${i} ${key} ${q.key}`, async () => {
+      const f = await this.frameAgainst(i, key), values = [];
+      for (let b = 0; b < f.shapes.n; ++b) if (f.present[b]) values.push(q.of(f, b));
+      const v = Float64Array.from(values).sort(), cut = Math.floor(v.length / 50);
+      return v.length ? [v[0], v[cut], v[v.length - 1 - cut], v[v.length - 1]] : [0, 0, 0, 0];
     });
   }
 
@@ -148,4 +211,9 @@ export class Run {
       return { columns: t.columns.map((c) => c.title), about: t.columns, values, rows: t.rows, rowsThere: t.rows_there };
     });
   }
+}
+
+function absolute(f) {
+  f.dx = f.ux, f.dy = f.uy, f.dvx = f.vx, f.dvy = f.vy, f.against = "";
+  return f;
 }

@@ -44,7 +44,8 @@ export class View {
     for (let i = 0; i < s.n; ++i) {
       this.visible[i] = 0;
       if (!f.present[i]) continue;
-      const cx = x0 + k * (s.cx[i] + e * f.ux[i]), cy = y0 - k * (s.cy[i] + e * f.uy[i]);
+      // what is told against something moves with that; the rest of it is drawn e times
+      const cx = x0 + k * (s.cx[i] + f.ux[i] + (e - 1) * f.dx[i]), cy = y0 - k * (s.cy[i] + f.uy[i] + (e - 1) * f.dy[i]);
       const axx = k * (1 + e * f.hxx[i]), axy = k * e * f.hxy[i];
       const ayx = k * e * f.hyx[i], ayy = k * (1 + e * f.hyy[i]);
       let left = Infinity, right = -Infinity, top = Infinity, bottom = -Infinity;
@@ -162,7 +163,7 @@ export class View {
   shift_(p, i, axis) {
     const f = this.frame, k = f.shapes.place.get(p.block_a[i]);
     if (k === undefined || this.deformation === 1) return 0;
-    return (this.deformation - 1) * (axis === "x" ? f.ux[k] : f.uy[k]);
+    return (this.deformation - 1) * (axis === "x" ? f.dx[k] : f.dy[k]);
   }
 
   // Joints in sight that slipped or stand open: ends, share of the largest slip and of the largest opening.
@@ -172,6 +173,8 @@ export class View {
     let slip = 0, opening = 0;
     for (const list of [p.lines, p.alone]) for (const i of list) slip = Math.max(slip, slipOf(i)), opening = Math.max(opening, openOf(i));
     this.largestSlip = slip, this.largestOpening = opening;
+    this.largestAccumulated = 0;
+    for (const list of [p.lines, p.alone]) for (const i of list) if (p.state[i] === 1 || p.state[i] === 2) this.largestAccumulated = Math.max(this.largestAccumulated, p.accumulated_slip[i]);
     const one = (i, j) => {
       const s = Math.max(slipOf(i), slipOf(j)), o = Math.max(openOf(i), openOf(j));
       if (s === 0 && o === 0) return;
@@ -264,7 +267,13 @@ export class View {
     context.fillText(text, 14 + width + 7, h - 18);
   }
 
-  /** Brings all blocks of the frame into sight. */
+  /** Where the centroid of block i of the frame is drawn. */
+  blockPlace(i) {
+    const f = this.frame, s = f.shapes, more = this.deformation - 1;
+    return this.toScreen(s.cx[i] + f.ux[i] + more * f.dx[i], s.cy[i] + f.uy[i] + more * f.dy[i]);
+  }
+
+  /** Brings all blocks of the frame into sight, as they are drawn. */
   fit() {
     const f = this.frame;
     if (!f) return;
@@ -273,7 +282,7 @@ export class View {
     for (let i = 0; i < s.n; ++i) {
       if (!f.present[i]) continue;
       for (let v = s.begin[i]; v < s.begin[i + 1]; ++v) {
-        const x = s.cx[i] + s.x[v] + f.ux[i], y = s.cy[i] + s.y[v] + f.uy[i];
+        const e = this.deformation, x = s.cx[i] + s.x[v] + f.ux[i] + (e - 1) * f.dx[i], y = s.cy[i] + s.y[v] + f.uy[i] + (e - 1) * f.dy[i];
         left = Math.min(left, x), right = Math.max(right, x), low = Math.min(low, y), high = Math.max(high, y);
       }
     }

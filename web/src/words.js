@@ -1,9 +1,9 @@
 // The run in words and tables: what happened, how far to trust it, what the model is.
 
 import { element, tableOf } from "./dom.js";
-import { number, withUnit } from "./quantities.js";
+import { number, readableUnit, withUnit } from "./quantities.js";
 
-const count = (n, one, many = `${one}s`) => `${Number(n).toLocaleString("en")} ${n === 1 ? one : many}`;
+export const count = (n, one, many = `${one}s`) => `${Number(n).toLocaleString("en")} ${n === 1 ? one : many}`;
 
 function duration(s) {
   if (!(s >= 0)) return "?";
@@ -115,8 +115,8 @@ export function stagesOf(run) {
   const s = run.summary, model = (s.model && s.model.stages) || [];
   const damping = (x) => (x ? [["mass", x["damping_mass [1/s]"], "1/s"], ["stiffness", x["damping_stiffness [s]"], "s"], ["local", x.damping_local, ""]]
     .filter(([, v]) => v > 0).map(([name, v, unit]) => `${name} ${number(v)} ${unit}`.trim()).join(", ") || "none" : "");
-  return tableOf("", ["stage", "kind", "from [s]", "to [s]", "steps", "step [s]", "damping", "dug out", "at its end"],
-    (s.stages || []).map((x, i) => [x.name, x.kind, number(x["begin [s]"], 6), number(x["end [s]"], 6), String(x.steps), number(x["dt [s]"], 4), damping(model[i]),
+  return tableOf("", ["stage", "kind", "from [s]", "to [s]", "lasts [s]", "steps", "step [s]", "damping", "dug out", "at its end"],
+    (s.stages || []).map((x, i) => [x.name, x.kind, number(x["begin [s]"], 6), number(x["end [s]"], 6), number(x["end [s]"] - x["begin [s]"], 4), String(x.steps), number(x["dt [s]"], 4), damping(model[i]),
       model[i] ? (model[i].excavate || []).join(", ") : "", x.kind === "static" ? (x.at_rest ? `at rest, unbalanced ${number(x.unbalanced, 2)}` : "not at rest") : ""]));
 }
 
@@ -141,12 +141,17 @@ export function worstSteps(table, onTime) {
   return tableOf("Worst steps, by the contact error (each row of steps.csv keeps the worst since the row before)", ["time", "contact error", "iterations", "drift", "steps above the tolerance"], rows);
 }
 
-/** A table of texts, numbers with fewer digits. */
+/** A table of texts, numbers with fewer digits; columns of one unit in a prefix that suits the largest. */
 export function listOf(caption, table, leaveOut = []) {
   if (!table || !table.rows.length) return null;
   const kept = table.columns.map((c, i) => i).filter((i) => !leaveOut.includes(table.columns[i].title));
-  const short = (text) => (text !== "" && /[.e]/.test(text) && Number.isFinite(Number(text)) ? number(Number(text), 5) : text);
+  const units = table.columns.map((c, k) => {
+    const most = Math.max(0, ...table.rows.map((row) => Math.abs(Number(row[k])) || 0));
+    return c.unit ? readableUnit(most, c.unit) : { factor: 1, unit: "" };
+  });
+  const short = (text, k) => (text !== "" && (table.columns[k].unit || /[.e]/.test(text)) && Number.isFinite(Number(text))
+    ? number(Number(text) / units[k].factor, 4) : text);
   const more = table.rows_there > table.rows.length ? ` (the first ${table.rows.length} of ${table.rows_there})` : "";
-  const title = (c) => (c.unit ? `${c.quantity} [${c.unit}]` : c.quantity).replace(/_/g, " ");
-  return tableOf(caption + more, kept.map((i) => title(table.columns[i])), table.rows.map((row) => kept.map((i) => short(row[i]))));
+  const title = (k) => table.columns[k].quantity.replace(/_/g, " ") + (units[k].unit ? ` [${units[k].unit}]` : "");
+  return tableOf(caption + more, kept.map(title), table.rows.map((row) => kept.map((i) => short(row[i], i))));
 }

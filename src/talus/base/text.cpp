@@ -91,6 +91,22 @@ std::string in_markup(std::string text) {
   return out;
 }
 
+std::string from_markup(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    bool known = false;
+    for (const auto& [name, c] : {std::pair<std::string_view, char>("&lt;", '<'), {"&gt;", '>'}, {"&quot;", '"'}, {"&amp;", '&'}}) {
+      if (text.substr(0, name.size()) != name) continue;
+      out += c, text.remove_prefix(name.size());
+      known = true;
+      break;
+    }
+    if (known) continue;
+    out += text.front(), text.remove_prefix(1);
+  }
+  return out;
+}
+
 std::string readable_bytes(double bytes) {
   const char* unit[] = {"B", "kB", "MB", "GB", "TB"};
   int i = 0;

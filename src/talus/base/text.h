@@ -23,6 +23,8 @@ std::string in_quotes(std::string_view text);
 /// The text within XML or HTML: < > & and double quotes by name, and what XML knows no sign for as blanks (control
 /// characters, U+FFFE, U+FFFF).
 std::string in_markup(std::string text);
+/// A text that in_markup() made, as it was.
+std::string from_markup(std::string_view text);
 
 /// "950 B", "12.3 kB", "4.5 MB"
 std::string readable_bytes(double bytes);

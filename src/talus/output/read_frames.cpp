@@ -199,6 +199,18 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
 
   const Shapes& s = shapes_.back();
   BlockFrame out;
+  for (const auto& [name, array] : vtk.arrays) {
+    if (name.rfind(kMotionArray, 0) != 0 || array.components != 5) continue;
+    GroundMotion g;
+    g.name = name.substr(std::string_view(kMotionArray).size());
+    for (size_t i = 0; i < array.tuples(); ++i) {
+      const double* v = &array.values[5 * i];
+      if (array.tuples() > 1) g.height.push_back(v[0]);
+      g.displacement.push_back({v[1], v[2]}), g.velocity.push_back({v[3], v[4]});
+    }
+    if (!std::is_sorted(g.height.begin(), g.height.end())) refuse(file, "heights of a free field are not in order");
+    out.grounds.push_back(std::move(g));
+  }
   out.shapes = shapes_.size() - 1;
   out.present.assign(s.id.size(), 0);
   out.displacement.resize(s.id.size()), out.gradient.resize(s.id.size());
@@ -225,6 +237,45 @@ const std::vector<double>& ContactPoints::at(const std::string& name) const {
   if (it == columns.end())
     throw FileError(fmt::format("the frame has no \"{}\": a talus older than that wrote it", name));
   return it->second;
+}
+
+std::optional<FrameMotion> motion_at(const Against& against, const Shapes& shapes, const BlockFrame& f,
+                                     double height) {
+  FrameMotion out;
+  if (!against.blocks.empty()) {
+    double sum = 0;
+    for (const auto& [id, weight] : against.blocks) {
+      const auto at = shapes.place.find(id);
+      if (at == shapes.place.end() || !f.present[at->second]) continue;
+      out.displacement += weight * f.displacement[at->second];
+      out.velocity += weight * f.velocity[at->second];
+      sum += weight;
+    }
+    if (sum == 0) return std::nullopt;
+    return FrameMotion{out.displacement / sum, out.velocity / sum};
+  }
+  const auto g = std::find_if(f.grounds.begin(), f.grounds.end(),
+                              [&](const GroundMotion& one) { return one.name == against.ground; });
+  if (g == f.grounds.end() || g->displacement.empty()) return std::nullopt;
+  const auto above = std::upper_bound(g->height.begin(), g->height.end(), height);
+  if (above == g->height.begin()) return FrameMotion{g->displacement.front(), g->velocity.front()};
+  if (above == g->height.end()) return FrameMotion{g->displacement.back(), g->velocity.back()};
+  const auto k = static_cast<size_t>(above - g->height.begin());
+  const double share = (height - g->height[k - 1]) / (g->height[k] - g->height[k - 1]);
+  const auto between = [share, k](const std::vector<Vec2>& v) { return v[k - 1] + share * (v[k] - v[k - 1]); };
+  return FrameMotion{between(g->displacement), between(g->velocity)};
+}
+
+BlockFrame told_against(const Against& against, const Shapes& shapes, BlockFrame frame) {
+  const BlockFrame absolute = frame;
+  for (size_t k = 0; k < frame.present.size(); ++k) {
+    const auto motion = motion_at(against, shapes, absolute, shapes.centre[k].y);
+    if (!motion)
+      throw FileError("the frame does not have what displacements are to be told against: a block that is dug out, or "
+                      "a talus that did not write motions of supports and free fields");
+    frame.displacement[k] += -1 * motion->displacement, frame.velocity[k] += -1 * motion->velocity;
+  }
+  return frame;
 }
 
 ContactPoints read_contacts(const std::filesystem::path& file) {

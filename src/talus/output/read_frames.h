@@ -6,12 +6,15 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "talus/base/vec2.h"
 #include "talus/output/contact_points.h"
 #include "talus/output/read_vtk.h"
+#include "talus/output/vtk.h"
 
 namespace talus {
 
@@ -46,10 +49,26 @@ struct BlockFrame {
   std::vector<Mat2> gradient;      // [n] of the displacement [-]
   std::vector<Vec2> velocity;      // [n] of the centroid [m/s]
   std::vector<Mat2> stress;        // [n] Cauchy [Pa], tension > 0
+  std::vector<GroundMotion> grounds;
 
   /// One for each of kBlockQuantities.
   std::vector<Span> spans() const;
 };
+
+/// What displacements and velocities of a picture are told against.
+struct Against {
+  std::vector<std::pair<int, double>> blocks;  // id, weight; empty: `ground`
+  std::string ground;                          // support or free field
+};
+/// Its motion in a frame, at the height of a block; none where the frame does not have it.
+struct FrameMotion {
+  Vec2 displacement, velocity;
+};
+std::optional<FrameMotion> motion_at(const Against& against, const Shapes& shapes, const BlockFrame& frame,
+                                     double height);
+/// The frame with displacement and velocity of each block told against something; gradients stay.
+/// Throws FileError when the frame does not have it.
+BlockFrame told_against(const Against& against, const Shapes& shapes, BlockFrame frame);
 
 /// Reads frames in the order of time. Where displacements were set to zero in between, or blocks appear, the
 /// frames from there on have shapes of their own.

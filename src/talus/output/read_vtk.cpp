@@ -132,7 +132,7 @@ VtkFrame parse_vtk(const std::string& name, const std::string& text) {
     const size_t end = all.find(kEnd, close);
     if (end == std::string_view::npos) refuse(name, "has an array without end");
     const std::string_view content = all.substr(close + 1, end - close - 1);
-    const std::string title(attribute(head, "Name"));
+    const std::string title = from_markup(attribute(head, "Name"));
     if (title == "TimeValue") {
       if (!parse_number(content, frame.time) || !std::isfinite(frame.time)) refuse(name, "has no time");
     } else {

@@ -9,7 +9,8 @@
 
 namespace talus {
 
-std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate) {
+std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate,
+                       const std::vector<GroundMotion>& grounds) {
   TALUS_ASSERT(rate.size() == static_cast<size_t>(blocks.count));
   std::vector<double> points, displacement, velocity, centroid, gradient, centroid_rate, rate_gradient;
   std::array<std::vector<double>, 3> stress;
@@ -41,7 +42,15 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
     id.push_back(i), kind.push_back(static_cast<int>(blocks.kind[k]));
     material.push_back(blocks.material[k]), group.push_back(blocks.group[k]);
   }
-  std::string out = file_begin("UnstructuredGrid") + time_field(state.time);
+  std::string motions;
+  for (const GroundMotion& g : grounds) {
+    std::vector<double> rows;
+    for (size_t i = 0; i < g.displacement.size(); ++i)
+      rows.insert(rows.end(), {g.height.empty() ? 0 : g.height[i], g.displacement[i].x, g.displacement[i].y,
+                               g.velocity[i].x, g.velocity[i].y});
+    motions += field_array(kMotionArray + g.name, 5, rows);
+  }
+  std::string out = file_begin("UnstructuredGrid") + time_field(state.time, motions);
   out += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", connectivity.size(), id.size());
   const auto integers = [](const char* name, const std::vector<int32_t>& v) {
     return data_array("Int32", name, 1, v);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/text.h"
 #include "talus/base/vec2.h"
 
 namespace talus {
@@ -42,6 +43,14 @@ std::string data_array(const std::string& type, const std::string& name, int com
       name, components, base64(bytes));
 }
 
+// The same as an array of a field, which has to say how long it is.
+inline std::string field_array(const std::string& name, int components, const std::vector<double>& values) {
+  std::string out = data_array("Float64", in_markup(name), components, values);
+  const std::string place = " format=";
+  return out.insert(out.find(place), fmt::format(" NumberOfTuples=\"{}\"",
+                                                 values.size() / static_cast<size_t>(components)));
+}
+
 inline std::string doubles(const std::string& name, int components, const std::vector<double>& v) {
   return data_array("Float64", name, components, v);
 }
@@ -55,10 +64,11 @@ inline std::string file_begin(const char* type) {
       "header_type=\"UInt64\">\n<{}>\n",
       type, type);
 }
-inline std::string time_field(double time) {
+/// @param more  arrays of a field
+inline std::string time_field(double time, const std::string& more = "") {
   return "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
          "format=\"ascii\">" +
-         fmt::format("{:.17g}", time) + "</DataArray>\n</FieldData>\n";
+         fmt::format("{:.17g}", time) + "</DataArray>\n" + more + "</FieldData>\n";
 }
 
 inline void push3(std::vector<double>& v, Vec2 p) { v.insert(v.end(), {p.x, p.y, 0.0}); }

@@ -91,6 +91,14 @@ std::string packed(const ContactPoints& c, Vec2 origin) {
   return p.text();
 }
 
+std::string packed(const GroundMotion& g) {
+  Packer p;
+  p.floats(g.height.empty() ? std::vector<double>(1, 0) : g.height);
+  for (const auto* v : {&g.displacement, &g.velocity})
+    p.floats(component(*v, &Vec2::x)), p.floats(component(*v, &Vec2::y));
+  return p.text();
+}
+
 std::string packed(const BoltPieces& b, Vec2 origin) {
   Packer p;
   p.bytes(b.condition), p.bytes(b.crossing);

@@ -200,6 +200,9 @@ FramesData pack_frames(const RunFolder& run, const std::vector<size_t>& chosen, 
       const BoltPieces bolts = read_bolts(run.bolt_frames[i].file);
       j["bolts"] = {{"count", bolts.size()}, {"data", add(packed(bolts, origin))}};
     }
+    for (const GroundMotion& g : frame.grounds)
+      j["grounds"].push_back(
+          {{"name", g.name}, {"heights", g.displacement.size()}, {"data", add(packed(g))}});
     data.lists["blocks"].push_back(j);
   }
   for (const Shapes& s : reader.shapes())
@@ -269,6 +272,9 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
       entry["data"] = chunks.add(data.texts[entry["data"].get<size_t>()]);
       if (entry.contains("bolts"))
         entry["bolts"]["data"] = chunks.add(data.texts[entry["bolts"]["data"].get<size_t>()]);
+      if (entry.contains("grounds"))
+        for (json& ground : entry["grounds"])
+          ground["data"] = chunks.add(data.texts[ground["data"].get<size_t>()]);
     }
     out[list] = data.lists[list];
   }

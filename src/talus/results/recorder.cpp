@@ -15,6 +15,7 @@
 #include "talus/output/vtk.h"
 #include "talus/results/model_report.h"
 #include "talus/results/problem_file.h"
+#include "talus/results/reference.h"
 #include "talus/results/slip_report.h"
 #include "talus/results/step_table.h"
 
@@ -398,7 +399,7 @@ void Recorder::record_step(const Instant& i) {
 void Recorder::write_frame(const Instant& i) {
   std::vector<BlockRate> rates;
   for (size_t k = 0; k < i.state.rate.size(); ++k) rates.push_back(rate_now(i.work, i.state, k));
-  block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, rates));
+  block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, rates, ground_motions(i)));
   contact_frames_.add(i.state.time, contacts_vtp(frame_points(scene_, i), i.state.time));
   if (!scene_.model.bolts.empty())
     bolt_frames_.add(i.state.time, bolts_vtp(bolt_lines(scene_, i.state, i.stage), i.state.time));

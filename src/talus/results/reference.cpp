@@ -8,6 +8,35 @@ PointMotion motion_of(const Instant& i, int block, Vec2 arm) {
           velocity_at(rate_now(i.work, i.state, k), acting_arm(i.scene.blocks, i.state, k, arm))};
 }
 
+std::vector<GroundMotion> ground_motions(const Instant& i) {
+  std::vector<GroundMotion> out;
+  const Model& model = i.scene.model;
+  for (size_t s = 0; s < model.supports.size(); ++s) {
+    PointMotion mean;
+    double count = 0;
+    for (const SupportedPoint& p : i.scene.supported) {
+      if (p.support != static_cast<int>(s)) continue;
+      const PointMotion motion = motion_of(i, p.block, p.arm);
+      mean.displacement += motion.displacement, mean.velocity += motion.velocity, count += 1;
+    }
+    if (count > 0)
+      out.push_back({model.supports[s].name, {}, {mean.displacement / count}, {mean.velocity / count}});
+  }
+  const FreeField& field = i.scene.boundaries.free_field;
+  for (const GroundColumn& c : field.columns) {
+    GroundMotion g;
+    g.name = model.boundaries[static_cast<size_t>(c.boundary)].name;
+    for (int n = c.first_node; n <= c.first_node + c.elements; ++n) {
+      const auto node = static_cast<size_t>(n);
+      g.height.push_back(field.height[node]);
+      g.displacement.push_back(i.state.column_displacement[node]);
+      g.velocity.push_back(i.work.columns.velocity[node]);
+    }
+    out.push_back(std::move(g));
+  }
+  return out;
+}
+
 Reference::Reference(const Scene& scene, const MonitorInput& m, double height) : height_(height) {
   const BlockSet& blocks = scene.blocks;
   for (const Vec2 point : m.relative_to_points) {

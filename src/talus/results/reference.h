@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/output/vtk.h"
 #include "talus/run/instant.h"
 
 namespace talus {
@@ -15,6 +16,9 @@ struct PointMotion {
 
 /// Motion of the material point at `arm` of a block, displacements since they were last reset.
 PointMotion motion_of(const Instant& instant, int block, Vec2 arm);
+
+/// Supports and free fields as frames hold them.
+std::vector<GroundMotion> ground_motions(const Instant& instant);
 
 class Reference {
  public:

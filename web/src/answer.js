@@ -1,0 +1,95 @@
+// The answer of a run: whether it is valid, what its joints, bolts and blocks did, and what every monitor came to.
+
+import { element, tableOf } from "./dom.js";
+import { number, readableUnit, withUnit, words } from "./quantities.js";
+import { count } from "./words.js";
+
+/** What is said first, a line each. */
+export function verdictsOf(run) {
+  const s = run.summary, j = s.joints || {}, out = [];
+  out.push(validityOf(s));
+  if (j.points > 0) {
+    const slipped = j.slipped_joints ?? j.slipped;
+    if (slipped > 0) {
+      const at = j["residual_slip_largest_at"];
+      const left = j["residual_slip_largest [m]"] !== undefined
+        ? `residual slip at most ${withUnit(j["residual_slip_largest [m]"], "m")}${at ? ` between ${at.blocks.join(" and ")}${at.set ? ` along "${at.set}"` : ""}` : ""}, ` : "";
+      out.push(["joints", `${count(slipped, "joint")} slipped: ${left}accumulated slip at most ${withUnit(j["slip_largest [m]"], "m")}`]);
+    } else out.push(["joints", "no joint slipped"]);
+    const broken = j["broken_length [m]"], open = j["opening_largest [m]"], more = [];
+    if (broken > 0) more.push(`${withUnit(broken, "m")} of glued faces broke`);
+    if (open > 0) more.push(`the widest open joint stands ${withUnit(open, "m")} open`);
+    if (more.length) out.push(["cracks", more.join("; ")]);
+  }
+  const bolts = boltsOf(run);
+  if (bolts) out.push(["bolts", bolts]);
+  if (s.moved && s.moved.blocks > 0)
+    out.push(["moved", `${count(s.moved.blocks, "block")} moved by a tenth of their size or more, ${number(s.moved["area [m2]"], 3)} m² together`]);
+  return out;
+}
+
+// The audit's word.
+function validityOf(s) {
+  if (s.status === "failed") return ["result", `the run failed: ${s.failure}`];
+  if (s.status === "running") return ["result", "none yet: the run goes on, or was killed"];
+  const how = s.status === "interrupted" ? ", interrupted" : "";
+  if (s.valid === undefined || s.valid === null) return ["result", `not audited${how}: nothing says that the forces are right`];
+  const defects = ((s.audit && s.audit.defects) || []).map((d) => d.kind.replace(/_/g, " "));
+  if (!s.valid) return ["result", `NOT VALID${how}: ${defects.join(", ")}`];
+  return ["result", `valid${how}${defects.length ? `, with warnings: ${defects.join(", ")}` : ""}`];
+}
+
+function boltsOf(run) {
+  const t = run.bolts;
+  if (!t || !t.rows.length) return "";
+  const at = (quantity) => t.columns.findIndex((c) => c.quantity === quantity);
+  const bolt = at("bolt"), state = at("state"), axial = at("axial_force");
+  const names = new Set(), worst = new Map();
+  let most = -Infinity, where = "";
+  for (const row of t.rows) {
+    names.add(row[bolt]);
+    const rank = words.bolt_conditions.indexOf(row[state]);
+    worst.set(row[bolt], Math.max(rank, worst.get(row[bolt]) ?? 0));
+    if (Number(row[axial]) > most) most = Number(row[axial]), where = row[bolt];
+  }
+  const having = (k) => [...worst.values()].filter((v) => v === k).length, parts = [];
+  words.bolt_conditions.forEach((name, k) => { if (k > 0 && having(k)) parts.push(`${having(k)} ${name}`); });
+  const of = t.rows_there > t.rows.length ? ` (of the first ${t.rows.length} of ${t.rows_there} pieces)` : "";
+  return `${parts.length ? parts.join(", ") : "none yielded"} of ${names.size}${of}; largest tension ${withUnit(most, "N")} in ${where}`;
+}
+
+/** Stages that monitors tell of, in order. */
+export function answeredStages(run) {
+  const names = new Set();
+  for (const m of Object.values(run.summary.monitors || {})) for (const name of Object.keys(m.stages || {})) names.add(name);
+  return (run.summary.stages || []).map((s) => s.name).filter((name) => names.has(name));
+}
+
+/** [{monitor, quantity, unit, peak, when, left, end}] of a stage, in the order of the model. */
+export function answersOf(run, stage) {
+  const out = [];
+  for (const [monitor, m] of Object.entries(run.summary.monitors || {}))
+    for (const [title, a] of Object.entries((m.stages || {})[stage] || {})) {
+      const [, quantity, unit] = /^(.*?)(?: \[(.*)\])?$/.exec(title);
+      const low = Math.abs(a.least) > Math.abs(a.greatest);
+      out.push({ monitor, quantity: quantity.replace(/_/g, " "), unit: unit || "", peak: low ? a.least : a.greatest,
+        when: low ? a["time_of_least [s]"] : a["time_of_greatest [s]"], left: a.residual, end: a.at_end });
+    }
+  return out;
+}
+
+/** The table of a stage; times also from its beginning. */
+export function monitorTable(run, stage, onTime) {
+  const about = (run.summary.stages || []).find((s) => s.name === stage) || {}, begin = about["begin [s]"] || 0;
+  const dynamic = about.kind === "dynamic";
+  const rows = answersOf(run, stage).map((a) => {
+    const r = readableUnit(Math.max(Math.abs(a.peak), Math.abs(a.left ?? 0)), a.unit);
+    const text = (v) => (v === null || v === undefined || !Number.isFinite(v) ? "" : number(v / r.factor, 3));
+    const when = begin > 0 ? `${number(a.when, 4)} (${number(a.when - begin, 4)})` : number(a.when, 4);
+    const link = onTime ? element("button", { type: "button", class: "link", onclick: () => onTime(a.when) }, when) : when;
+    return [a.monitor, a.quantity, text(a.peak), link, text(dynamic ? a.left : a.end), r.unit];
+  });
+  if (!rows.length) return null;
+  return tableOf(`Monitors in stage "${stage}"`, ["monitor", "quantity", "peak", begin > 0 ? "at t [s] (of the stage)" : "at t [s]",
+    dynamic ? "residual (mean of the last tenth)" : "at its end", "unit"], rows);
+}

@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
+#include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/read_vtk.h"
 #include "talus/output/result_folder.h"
+#include "talus/output/text_table.h"
 #include "talus/plot/block_picture.h"
 
 namespace talus::app {
@@ -70,6 +74,60 @@ plot::BlockPicture picture_of(const Series& s, size_t frame, const std::string& 
   return picture;
 }
 
+// What the name of a support, a free field, a group or a block stands for.
+Against against_of(const fs::path& folder, const plot::BlockPicture& picture, const std::string& name) {
+  std::vector<std::string> names;
+  for (const GroundMotion& g : picture.blocks.grounds) {
+    if (g.name == name) return {{}, name};
+    names.push_back(g.name);
+  }
+  Against out;
+  std::set<std::string> groups;
+  std::error_code ec;
+  if (fs::exists(folder / "blocks.csv", ec)) {
+    const TextTable table = read_text_table(folder / "blocks.csv");
+    const int id = table.find("id"), block = table.find("name"), group = table.find("group"),
+              area = table.find("area [m2]");
+    if (id < 0 || block < 0 || group < 0 || area < 0)
+      throw FileError(
+          fmt::format("{}: has no columns id, name, group and area", (folder / "blocks.csv").string()));
+    for (const auto& row : table.rows) {
+      const auto cell = [&row](int c) -> const std::string& { return row[static_cast<size_t>(c)]; };
+      if (!cell(group).empty()) groups.insert(cell(group));
+      if (cell(block) != name && cell(group) != name) continue;
+      int number = 0;
+      double weight = 0;
+      const auto whole = [&cell](int c, auto& value) {
+        const std::string& text = cell(c);
+        const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return status == std::errc{} && end == text.data() + text.size();
+      };
+      if (!whole(id, number) || !whole(area, weight))
+        throw FileError(fmt::format("{}: has a row without numbers", (folder / "blocks.csv").string()));
+      out.blocks.emplace_back(number, weight);
+    }
+  }
+  if (!out.blocks.empty()) return out;
+  names.insert(names.end(), groups.begin(), groups.end());
+  throw Error(
+      kExitUsage,
+      fmt::format("--relative: there is no support, free field, group or block \"{}\"; there is {}{}", name,
+                  join_or(names), names.empty() ? "no name at all" : ", or the name of a block"));
+}
+
+void dress(const fs::path& folder, const BlockPlotArguments& args, plot::BlockPicture& picture) {
+  picture.deformation = args.deformation;
+  if (!args.against.empty())
+    picture.against = against_of(folder, picture, args.against), picture.against_name = args.against;
+  for (size_t k = 0; k < plot::overlay_names().size(); ++k)
+    for (const std::string& name : args.overlays)
+      if (name == plot::overlay_names()[k]) picture.overlays.push_back(static_cast<plot::Overlay>(k));
+  if (args.window.size() != 4) return;
+  const auto [x0, x1] = std::minmax(args.window[0], args.window[2]);
+  const auto [y0, y1] = std::minmax(args.window[1], args.window[3]);
+  picture.window = Box{{x0, y0}, {x1, y1}};
+}
+
 void write(const fs::path& folder, const plot::BlockPicture& picture, const fs::path& stem) {
   note_figure(folder, stem);
   plot::write_block_picture(picture, stem);
@@ -86,12 +144,7 @@ void plot_blocks(const fs::path& folder, const BlockPlotArguments& args, const f
   const std::string title = args.title.empty() ? title_of(folder) : args.title;
   for (const size_t frame : frames) {
     plot::BlockPicture picture = picture_of(series, frame, title);
-    picture.deformation = args.deformation;
-    if (args.window.size() == 4) {
-      const auto [x0, x1] = std::minmax(args.window[0], args.window[2]);
-      const auto [y0, y1] = std::minmax(args.window[1], args.window[3]);
-      picture.window = Box{{x0, y0}, {x1, y1}};
-    }
+    dress(folder, args, picture);
     for (const std::string& quantity : args.quantities) {
       picture.quantity = quantity == "none" ? "" : quantity;
       const bool single = exact && frames.size() == 1 && args.quantities.size() == 1;
@@ -102,6 +155,39 @@ void plot_blocks(const fs::path& folder, const BlockPlotArguments& args, const f
                                        quantity == "none" ? "joints" : quantity, series.blocks[frame].time)));
     }
   }
+}
+
+void animate_blocks(const fs::path& folder, const BlockPlotArguments& args, const fs::path& path) {
+  const Series series = series_of(folder);
+  const std::string title = args.title.empty() ? title_of(folder) : args.title;
+  const size_t there = series.blocks.size(), count = std::min(there, static_cast<size_t>(args.frames));
+  const auto frame = [&](size_t k) {
+    return count < 2 ? there - 1 : (k * (there - 1) + (count - 1) / 2) / (count - 1);
+  };
+  const auto make = [&](size_t k) {
+    plot::BlockPicture picture = picture_of(series, frame(k), title);
+    dress(folder, args, picture);
+    picture.quantity = args.quantities[0] == "none" ? "" : args.quantities[0];
+    return picture;
+  };
+  // one window and one range for all
+  plot::Extent all = plot::extent_of(make(0));
+  for (size_t k = 1; k < count; ++k) {
+    const plot::Extent one = plot::extent_of(make(k));
+    all.box.min = {std::min(all.box.min.x, one.box.min.x), std::min(all.box.min.y, one.box.min.y)};
+    all.box.max = {std::max(all.box.max.x, one.box.max.x), std::max(all.box.max.y, one.box.max.y)};
+    all.values = {std::min(all.values.lo, one.values.lo), std::max(all.values.hi, one.values.hi)};
+  }
+  plot::write_animation(
+      [&](size_t k) {
+        plot::BlockPicture picture = make(k);
+        if (!picture.window) picture.window = all.box;
+        picture.colours = all.values;
+        return picture;
+      },
+      count, args.seconds, path);
+  note_result(folder, path);
+  fmt::print("{}: {} frames\n", path.string(), count);
 }
 
 void plot_blocks_at_end(const fs::path& folder, const fs::path& plots) {

@@ -168,6 +168,19 @@ int plot_frames(const PlotArguments& args) {
   if (args.folders.size() > 1) throw Error(kExitUsage, "--blocks draws one folder at a time");
   BlockPlotArguments blocks = args.blocks;
   blocks.title = args.title;
+  if (!args.animation.empty()) {
+    const fs::path file = args.animation;
+    if (file.extension() != ".png" && file.extension() != ".mp4" && file.extension() != ".apng")
+      throw Error(kExitUsage,
+                  fmt::format("--animate: \"{}\" ends neither in .png nor in .mp4", args.animation));
+    if (blocks.quantities.size() > 1 || !blocks.times.empty() || !args.output.empty())
+      throw Error(
+          kExitUsage,
+          "--animate draws one quantity over the whole run: leave out -o, --time and further --blocks");
+    if (file.has_parent_path()) fs::create_directories(file.parent_path());
+    animate_blocks(args.folders[0], blocks, file);
+    return kExitOk;
+  }
   const fs::path folder = args.folders[0];
   const fs::path stem = args.output.empty() ? folder / "plots" / "blocks" : fs::path(args.output);
   if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
@@ -207,7 +220,7 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
   quantities.push_back("none");
   verb.add_option(
           "--blocks", args.blocks.quantities,
-          "picture of the blocks, coloured by this (repeatable), with joints and bolts; none: pale blocks")
+          "picture of the blocks, coloured by this (repeatable), with joints and bolts; none: by kind")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(quantities));
   verb.add_option(
@@ -220,6 +233,24 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
                   "with --blocks: displacements are drawn so many times")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  verb.add_option(
+      "--relative", args.blocks.against,
+      "with --blocks: displacements and velocities are told against this support, free field (at the "
+      "height of each block), group or block");
+  verb.add_option(
+          "--overlay", args.blocks.overlays,
+          "with --blocks, repeatable: principal: crosses of principal stresses; forces: chains of contact "
+          "forces; slip: arrows along joints")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(plot::overlay_names()));
+  verb.add_option("--animate", args.animation,
+                  "with --blocks: the run as this file, a moving .png, or .mp4 where there is ffmpeg");
+  verb.add_option("--frames", args.blocks.frames, "with --animate: frames, spread over the run")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  verb.add_option("--frame-time", args.blocks.seconds, "with --animate: seconds that each is shown")
+      ->check(CLI::Range(0.001, 60.0))
+      ->capture_default_str();
   verb.footer(
       "Without -c and --blocks: all histories, and the blocks at the end.\n"
       "Example: talus plot out/bar -c impact.mean_normal_force --raw impact.normal_force -o out/force");
@@ -227,8 +258,9 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
 
 int plot_command(const PlotArguments& args) {
   if (!args.blocks.quantities.empty()) return plot_frames(args);
-  if (!args.blocks.times.empty() || !args.blocks.window.empty())
-    throw Error(kExitUsage, "--time and --window need --blocks");
+  if (!args.blocks.times.empty() || !args.blocks.window.empty() || !args.blocks.against.empty() ||
+      !args.blocks.overlays.empty() || !args.animation.empty())
+    throw Error(kExitUsage, "--time, --window, --relative, --overlay and --animate need --blocks");
   std::vector<CsvTable> tables;
   for (const std::string& folder : args.folders) {
     tables.push_back(histories_of(folder));

@@ -14,6 +14,7 @@ struct PlotArguments {
   std::string output, title, raw, reference_label, time_unit, stage;
   std::vector<double> limit_y, limit_t;
   BlockPlotArguments blocks;
+  std::string animation;
 };
 
 void add_plot_arguments(CLI::App& verb, PlotArguments& args);

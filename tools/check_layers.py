@@ -26,7 +26,7 @@ ALLOWED = {
     "output": "base geometry model cut blocks",
     "audit": "base geometry output",
     "run": "base geometry record model cut blocks rows contact supports solve step output",
-    "results": "base geometry record model cut blocks rows contact supports solve step output audit run",
+    "results": "base geometry record model cut blocks rows contact supports solve step output audit plot run",
     "plot": "base geometry record model maps cut output",
     "report": "base geometry output",
     "study": "base geometry model record output plot",

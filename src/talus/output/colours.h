@@ -40,6 +40,13 @@ inline constexpr std::array<Rgb, 8> kPalette{{{158, 202, 225},
                                               {169, 214, 210},
                                               {217, 217, 139}}};
 
+/// Of kinds of blocks, in the order of kBlockKinds.
+inline constexpr std::array<Rgb, 4> kKindColours{
+    {{158, 202, 225}, {240, 217, 168}, {140, 140, 140}, {184, 176, 200}}};
+
+/// Principal stresses: pressed, pulled.
+inline constexpr Rgb kPressedColour{33, 71, 140}, kPulledColour{178, 24, 43};
+
 inline constexpr Rgb kSlippedColour{230, 85, 13}, kOpenColour{8, 48, 107}, kForceColour{122, 1, 119};
 
 /// Bolts by the share of the largest tension, from pale to dark; in compression; ruptured.

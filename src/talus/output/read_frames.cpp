@@ -130,14 +130,18 @@ class Fields {
 
 }  // namespace
 
-BlockFrame FrameReader::read(const std::filesystem::path& file) {
-  const VtkFrame vtk = read_vtk(file);
+BlockFrame FrameReader::read(const std::filesystem::path& file) { return read(read_vtk(file)); }
+
+BlockFrame FrameReader::read(const VtkFrame& vtk) {
+  const std::filesystem::path file = vtk.file;
   const std::vector<Vec2> now = points_of(vtk.at("Points", 3));
   const auto corners = static_cast<long>(now.size());
   const std::vector<Vec2> moved = points_of(vtk.at("displacement [m]", 3, corners));
   const std::vector<Vec2> velocity = points_of(vtk.at("velocity [m s-1]", 3, corners));
   const std::vector<int> id = whole(vtk.at("block", 1)), end = whole(vtk.at("offsets", 1));
   const Fields fields(vtk, static_cast<long>(id.size()));
+  const std::vector<uint8_t> kind = vtk.has("kind") ? small(vtk.at("kind", 1, static_cast<long>(id.size())))
+                                                    : std::vector<uint8_t>(id.size(), 0);
   if (end.size() != id.size() || (!end.empty() && end.back() != corners))
     refuse(file, "corners and blocks do not fit");
   std::vector<Vec2> zero(now.size());
@@ -208,11 +212,12 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
       if (array.tuples() > 1) g.height.push_back(v[0]);
       g.displacement.push_back({v[1], v[2]}), g.velocity.push_back({v[3], v[4]});
     }
-    if (!std::is_sorted(g.height.begin(), g.height.end())) refuse(file, "heights of a free field are not in order");
+    if (!std::is_sorted(g.height.begin(), g.height.end()))
+      refuse(file, "heights of a free field are not in order");
     out.grounds.push_back(std::move(g));
   }
   out.shapes = shapes_.size() - 1;
-  out.present.assign(s.id.size(), 0);
+  out.present.assign(s.id.size(), 0), out.kind.assign(s.id.size(), 0);
   out.displacement.resize(s.id.size()), out.gradient.resize(s.id.size());
   out.velocity.resize(s.id.size()), out.stress.resize(s.id.size());
   for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
@@ -225,7 +230,7 @@ BlockFrame FrameReader::read(const std::filesystem::path& file) {
       u = field_through(corner, &moved[begin], count, s.centre[at]);
       v = field_through(corner, &velocity[begin], count, s.centre[at]);
     }
-    out.present[at] = 1;
+    out.present[at] = 1, out.kind[at] = kind[k];
     out.displacement[at] = u.value, out.gradient[at] = u.gradient, out.velocity[at] = v.value;
     out.stress[at] = fields.stress(k);
   }
@@ -262,7 +267,9 @@ std::optional<FrameMotion> motion_at(const Against& against, const Shapes& shape
   if (above == g->height.end()) return FrameMotion{g->displacement.back(), g->velocity.back()};
   const auto k = static_cast<size_t>(above - g->height.begin());
   const double share = (height - g->height[k - 1]) / (g->height[k] - g->height[k - 1]);
-  const auto between = [share, k](const std::vector<Vec2>& v) { return v[k - 1] + share * (v[k] - v[k - 1]); };
+  const auto between = [share, k](const std::vector<Vec2>& v) {
+    return v[k - 1] + share * (v[k] - v[k - 1]);
+  };
   return FrameMotion{between(g->displacement), between(g->velocity)};
 }
 
@@ -271,15 +278,17 @@ BlockFrame told_against(const Against& against, const Shapes& shapes, BlockFrame
   for (size_t k = 0; k < frame.present.size(); ++k) {
     const auto motion = motion_at(against, shapes, absolute, shapes.centre[k].y);
     if (!motion)
-      throw FileError("the frame does not have what displacements are to be told against: a block that is dug out, or "
-                      "a talus that did not write motions of supports and free fields");
+      throw FileError(
+          "the frame does not have what displacements are to be told against: a block that is dug out, or "
+          "a talus that did not write motions of supports and free fields");
     frame.displacement[k] += -1 * motion->displacement, frame.velocity[k] += -1 * motion->velocity;
   }
   return frame;
 }
 
-ContactPoints read_contacts(const std::filesystem::path& file) {
-  const VtkFrame vtk = read_vtk(file);
+ContactPoints read_contacts(const std::filesystem::path& file) { return contacts_in(read_vtk(file)); }
+
+ContactPoints contacts_in(const VtkFrame& vtk) {
   const std::vector<Vec2> point = points_of(vtk.at("Points", 3));
   const auto n = static_cast<long>(point.size());
   const std::vector<Vec2> force = points_of(vtk.at("force [N]", 3, n));
@@ -330,8 +339,9 @@ Vec2 displacement_of(const Shapes& shapes, const BlockFrame& frame, int block, V
   return frame.displacement[k] + h * zero;
 }
 
-BoltPieces read_bolts(const std::filesystem::path& file) {
-  const VtkFrame vtk = read_vtk(file);
+BoltPieces read_bolts(const std::filesystem::path& file) { return bolts_in(read_vtk(file)); }
+
+BoltPieces bolts_in(const VtkFrame& vtk) {
   const std::vector<Vec2> point = points_of(vtk.at("Points", 3));
   const auto n = static_cast<long>(point.size() / 2);
   BoltPieces out;

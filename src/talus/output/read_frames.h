@@ -45,6 +45,7 @@ LinearField field_through(const Vec2* corner, const Vec2* value, size_t count, V
 struct BlockFrame {
   size_t shapes = 0;               // index
   std::vector<uint8_t> present;    // [n] 0: dug out
+  std::vector<uint8_t> kind;       // [n] index in kBlockKinds
   std::vector<Vec2> displacement;  // [n] of the centroid [m]
   std::vector<Mat2> gradient;      // [n] of the displacement [-]
   std::vector<Vec2> velocity;      // [n] of the centroid [m/s]
@@ -76,6 +77,7 @@ class FrameReader {
  public:
   /// Throws FileError.
   BlockFrame read(const std::filesystem::path& file);
+  BlockFrame read(const VtkFrame& vtk);
   const std::vector<Shapes>& shapes() const { return shapes_; }
 
  private:
@@ -95,6 +97,7 @@ struct ContactPoints {
 };
 /// Frames written before contacts had the numbers of their blocks have -1 in their place.
 ContactPoints read_contacts(const std::filesystem::path& file);
+ContactPoints contacts_in(const VtkFrame& vtk);
 
 /// Displacement of a point of a block that moves with it [m]; {} for a block that the frame does not have.
 Vec2 displacement_of(const Shapes& shapes, const BlockFrame& frame, int block, Vec2 point_now);
@@ -108,5 +111,6 @@ struct BoltPieces {
   size_t size() const { return condition.size(); }
 };
 BoltPieces read_bolts(const std::filesystem::path& file);
+BoltPieces bolts_in(const VtkFrame& vtk);
 
 }  // namespace talus

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "talus/base/error.h"
+#include "talus/base/text.h"
 #include "talus/base/text_file.h"
 
 namespace talus {

@@ -475,14 +475,14 @@ void note_result(const fs::path& folder, const fs::path& file) {
 void note_figure(const fs::path& folder, const fs::path& stem) {
   check_no_figure_of_results(stem);
   std::error_code ec;
-  const fs::path inside = fs::absolute(stem.parent_path())
-                              .lexically_normal()
-                              .lexically_relative(fs::absolute(folder).lexically_normal());
-  if (is_inside(inside.string()) && fs::is_symlink(fs::symlink_status(stem.parent_path(), ec)))
+  const fs::path place = fs::absolute(stem).parent_path();
+  const fs::path inside =
+      place.lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
+  if (is_inside(inside.string()) && fs::is_symlink(fs::symlink_status(place, ec)))
     throw FileError(
         fmt::format("{}: is a link, and nothing of the results is written behind links. Remove it, "
                     "or give -o",
-                    stem.parent_path().string()));
+                    place.string()));
   for (const char* end : {".svg", ".png"}) {
     fs::path file = stem;
     note_result(folder, file += end);

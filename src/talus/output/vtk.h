@@ -17,10 +17,13 @@ inline constexpr const char *kCentroidArray = "centroid displacement [m]",
                                 *kVelocityArray = "centroid velocity [m s-1]",
                             *kRateArray = "velocity gradient [s-1]";
 
+/// Kinds of blocks as frames number them.
+inline constexpr std::array<const char*, 4> kBlockKinds{"deformable", "rigid", "fixed", "driven"};
+
 /// What displacements in a picture may be told against, beside blocks: a support, level ground at each height.
 struct GroundMotion {
   std::string name;
-  std::vector<double> height;           // upwards [m]; none: the same at any
+  std::vector<double> height;                // upwards [m]; none: the same at any
   std::vector<Vec2> displacement, velocity;  // one, or one for each height [m], [m/s]
 };
 /// Array of one: height, displacement x, y, velocity x, y.

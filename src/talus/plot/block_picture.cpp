@@ -8,9 +8,12 @@
 #include <numbers>
 
 #include "talus/base/error.h"
-#include "talus/output/block_quantity.h"
 #include "talus/output/colours.h"
+#include "talus/output/files.h"
+#include "talus/plot/animated_png.h"
 #include "talus/plot/axes.h"
+#include "talus/plot/block_scenery.h"
+#include "talus/plot/film.h"
 #include "talus/plot/sheet.h"
 
 namespace talus::plot {
@@ -23,7 +26,7 @@ constexpr double kBarWidth = 260, kBarHeight = 14;
 constexpr double kThinOutline = 7;  // blocks smaller than this have no outline
 
 constexpr Color of(const Rgb& c) { return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}; }
-constexpr Color kPale{0.86, 0.88, 0.90}, kSlipped = of(kSlippedColour), kOpen = of(kOpenColour);
+constexpr Color kSlipped = of(kSlippedColour), kOpen = of(kOpenColour);
 
 using Anchors = std::array<Rgb, 9>;
 
@@ -51,129 +54,60 @@ Prefix readable(double most, const std::string& unit) {
   return {1, unit};
 }
 
-struct Shape {
-  Polygon polygon;  // [m] as drawn
-  double value = 0;
-};
-
-// A point without another end has one place.
-struct JointSegment {
-  Vec2 from, to;
-  double slip = 0, opening = 0;  // [m]
-};
-
-struct BoltSegment {
-  Vec2 from, to;
-  double axial = 0;
-  bool ruptured = false;
-};
-
-struct Scenery {
-  std::vector<Shape> shapes;
-  std::vector<JointSegment> joints;
-  std::vector<BoltSegment> bolts;
-  double slip = 0, opening = 0, tension = 0, pressed = 0;
-  bool residual = true;                           // the slip is what is left of it, not all of it to and fro
-  double low = 0, high = 1, least = 0, most = 0;  // of the colours; of all values
-  int side = 0;  // -1: all values are negative, 1: positive, and have one half of the two-sided colours
-  const BlockQuantity* quantity = nullptr;
-};
-
-void take_blocks(const BlockPicture& picture, size_t quantity, Scenery& s) {
-  const Shapes& shapes = picture.shapes;
-  const BlockFrame& f = picture.blocks;
-  for (size_t k = 0; k < shapes.id.size(); ++k) {
-    if (!f.present[k]) continue;
-    Shape shape;
-    const Vec2 centre = shapes.centre[k];
-    for (auto v = static_cast<size_t>(shapes.begin[k]); v < static_cast<size_t>(shapes.begin[k + 1]); ++v) {
-      const Vec2 u = f.displacement[k] + f.gradient[k] * (shapes.corner[v] - centre);
-      shape.polygon.push_back(shapes.corner[v] + picture.deformation * u);
-    }
-    if (s.quantity)
-      shape.value = block_quantities_of(f.displacement[k], f.velocity[k], f.stress[k])[quantity];
-    s.shapes.push_back(std::move(shape));
-  }
-}
-
-// Where a point is drawn that moves with a block.
-Vec2 place_of(const BlockPicture& picture, int block, Vec2 now) {
-  if (picture.deformation == 1) return now;
-  return now + (picture.deformation - 1) * displacement_of(picture.shapes, picture.blocks, block, now);
-}
-
-// Joints from end to end, and points that have no other end.
-void take_joints(const BlockPicture& picture, Scenery& s) {
-  const ContactPoints& c = *picture.contacts;
-  s.residual = c.has("residual_slip");
-  const std::vector<double>&partner = c.at("partner"), &state = c.at("state"), &opening = c.at("opening"),
-        &block = c.at("block_a"), &slip = c.at(s.residual ? "residual_slip" : "accumulated_slip");
-  for (size_t i = 0; i < c.size(); ++i) {
-    if (partner[i] >= 0 && partner[i] < static_cast<double>(i)) continue;  // seen from its other end
-    const auto j =
-        partner[i] < 0 || partner[i] >= static_cast<double>(c.size()) ? i : static_cast<size_t>(partner[i]);
-    const auto place = [&](size_t e) { return place_of(picture, static_cast<int>(block[e]), c.point[e]); };
-    JointSegment joint{place(i), place(j), 0, 0};
-    for (const size_t e : {i, j}) {
-      if (state[e] == 1 || state[e] == 2) joint.slip = std::max(joint.slip, std::abs(slip[e]));
-      if (state[e] == 2) joint.opening = std::max(joint.opening, opening[e]);
-    }
-    if (joint.slip == 0 && joint.opening == 0) continue;
-    s.slip = std::max(s.slip, joint.slip), s.opening = std::max(s.opening, joint.opening);
-    s.joints.push_back(joint);
-  }
-}
-
-void take_bolts(const BlockPicture& picture, Scenery& s) {
-  const BoltPieces& b = *picture.bolts;
-  for (size_t i = 0; i < b.size(); ++i) {
-    s.bolts.push_back({b.from[i], b.to[i], b.axial_force[i], b.condition[i] == 2});
-    s.tension = std::max(s.tension, b.axial_force[i]), s.pressed = std::max(s.pressed, -b.axial_force[i]);
-  }
-}
-
 bool in_window(const Polygon& polygon, const Box& box) {
   const Box own = bounding_box(polygon);
   return own.max.x >= box.min.x && own.min.x <= box.max.x && own.max.y >= box.min.y && own.min.y <= box.max.y;
 }
 
-// The range of the colours: 2 % of the blocks in sight at either end lie beyond it.
-void set_range(const Box& box, Scenery& s) {
+// The range of the colours. @param side  of two-sided ones: -1 where all values are negative, 1: positive; these have one
+// half of the colours
+struct Colouring {
+  double low = 0, high = 1, least = 0, most = 0;
+  int side = 0;
+};
+
+// 2 % of the blocks in sight at either end lie beyond it.
+Colouring colouring_of(const Box& box, const Scenery& s, const std::optional<Range>& given) {
+  Colouring c;
   std::vector<double> values;
-  for (const Shape& shape : s.shapes)
+  for (const Scenery::Shape& shape : s.shapes)
     if (in_window(shape.polygon, box) && is_drawable(shape.value)) values.push_back(shape.value);
-  if (values.empty()) return;
+  if (values.empty() || !s.quantity) return c;
   std::sort(values.begin(), values.end());
   const size_t cut = values.size() / 50;
-  s.least = values.front(), s.most = values.back();
-  s.low = values[cut], s.high = values[values.size() - 1 - cut];
+  c.least = values.front(), c.most = values.back();
+  c.low = given ? given->lo : values[cut], c.high = given ? given->hi : values[values.size() - 1 - cut];
   if (s.quantity->signed_values) {
-    s.side = s.most <= 0 ? -1 : s.least >= 0 ? 1 : 0;
-    const double size = std::max(std::abs(s.low), std::abs(s.high));
-    s.low = s.side > 0 ? 0 : -size, s.high = s.side < 0 ? 0 : size;
+    const double below = given ? given->lo : c.least, above = given ? given->hi : c.most;
+    c.side = above <= 0 ? -1 : below >= 0 ? 1 : 0;
+    const double size = std::max(std::abs(c.low), std::abs(c.high));
+    c.low = c.side > 0 ? 0 : -size, c.high = c.side < 0 ? 0 : size;
   } else {
-    s.low = std::min(0.0, s.low);
+    c.low = std::min(0.0, c.low);
   }
-  if (!(s.high > s.low)) s.high = s.low + 1;
+  if (!(c.high > c.low)) c.high = c.low + 1;
+  return c;
 }
 
 struct Sheet {
   View view;
   Axis x, y;
   double width = 0, height = 0;
-  std::vector<std::string> notes;  // rows below the frame, behind their sign
+  Colouring colouring;
 };
 
 Box box_of(const BlockPicture& picture, const Scenery& s) {
   if (picture.window) return *picture.window;
   std::vector<Vec2> all;
-  for (const Shape& shape : s.shapes) all.insert(all.end(), shape.polygon.begin(), shape.polygon.end());
+  for (const Scenery::Shape& shape : s.shapes)
+    all.insert(all.end(), shape.polygon.begin(), shape.polygon.end());
   if (all.empty()) all = {{0, 0}, {1, 1}};
   return bounding_box(all);
 }
 
 int foot_rows(const Scenery& s) {
-  return (s.quantity ? 2 : 0) + (s.slip > 0 ? 1 : 0) + (s.opening > 0 ? 1 : 0) + (s.bolts.empty() ? 0 : 1);
+  return (s.quantity ? 3 : 1) + (s.slip > 0) + (s.opening > 0) + !s.bolts.empty() + !s.crosses.empty() +
+         !s.chains.empty() + (s.slip_arrows && s.slip > 0);
 }
 
 Sheet make_sheet(cairo_t* cr, const Box& box, const Scenery& scenery) {
@@ -201,14 +135,16 @@ void trace(cairo_t* cr, const View& view, const Polygon& polygon) {
 }
 
 // @param share  of the range of the colours
-Color color_at(const Scenery& s, double share) {
+Color color_at(const Scenery& s, const Colouring& c, double share) {
   if (!s.quantity->signed_values) return mix(kOneSided, share);
   const double t = std::clamp(share, 0.0, 1.0);
-  return mix(kTwoSided, s.side == 0 ? t : s.side < 0 ? 0.5 * t : 0.5 + 0.5 * t);
+  return mix(kTwoSided, c.side == 0 ? t : c.side < 0 ? 0.5 * t : 0.5 + 0.5 * t);
 }
 
-Color color_of(const Scenery& s, double value) {
-  return s.quantity ? color_at(s, (value - s.low) / (s.high - s.low)) : kPale;
+Color color_of(const Scenery& s, const Colouring& c, const Scenery::Shape& shape) {
+  if (!s.quantity)
+    return of(kKindColours.at(std::min<size_t>(static_cast<size_t>(shape.kind), kKindColours.size() - 1)));
+  return is_drawable(shape.value) ? color_at(s, c, (shape.value - c.low) / (c.high - c.low)) : Color{1, 0, 1};
 }
 
 // A joint from end to end; a point alone as a dot, which is never too small to be seen.
@@ -229,7 +165,7 @@ void segment(cairo_t* cr, const View& view, Vec2 from, Vec2 to, const Pen& pen) 
 Pen slip_pen(double share) { return {kSlipped, 1 + 3 * share, {}}; }
 Pen open_pen() { return {kOpen, 2, {4, 3}}; }
 
-Pen bolt_pen(const Scenery& s, const BoltSegment& b) {
+Pen bolt_pen(const Scenery& s, const Scenery::Bolt& b) {
   if (b.ruptured) return {of(kBoltRuptured), 2.5, {3, 2}};
   if (b.axial < 0 || s.tension <= 0) return {of(kBoltPressed), 1.5, {}};
   const double share = b.axial / s.tension;
@@ -238,13 +174,78 @@ Pen bolt_pen(const Scenery& s, const BoltSegment& b) {
   return {{mixed(pale.r, dark.r), mixed(pale.g, dark.g), mixed(pale.b, dark.b)}, 1.4 + 2.3 * share, {}};
 }
 
-void draw_scene(cairo_t* cr, const View& view, const Box& box, const Scenery& s) {
+void arrow(cairo_t* cr, Vec2 from, Vec2 along, const Pen& pen) {
+  const double length = norm(along), head = std::min(5.0, 0.4 * length);
+  if (length < 1) return;
+  const Vec2 tip = from + along, d = along / length;
+  set_pen(cr, pen);
+  cairo_move_to(cr, from.x, from.y);
+  cairo_line_to(cr, tip.x, tip.y);
+  for (const double side : {-0.5, 0.5}) {
+    cairo_move_to(cr, tip.x, tip.y);
+    cairo_line_to(cr, tip.x - head * (d.x + side * d.y), tip.y - head * (d.y - side * d.x));
+  }
+  cairo_stroke(cr);
+}
+
+constexpr double kSlipArrow = 34, kBeside = 6;  // [px] the longest arrow; from its joint
+
+// Half the longest cross [px]: it fits into most blocks.
+double cross_size(const View& view, const Box& box, const Scenery& s) {
+  std::vector<double> sizes;
+  for (const Scenery::Shape& shape : s.shapes)
+    if (in_window(shape.polygon, box)) sizes.push_back(std::sqrt(std::abs(signed_area(shape.polygon))));
+  if (sizes.empty()) return 0;
+  std::nth_element(sizes.begin(), sizes.begin() + static_cast<long>(sizes.size() / 2), sizes.end());
+  return std::clamp(0.45 * view.scale * sizes[sizes.size() / 2], 4.0, 45.0);
+}
+
+bool inside(Vec2 p, const Box& box) {
+  return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y;
+}
+
+void draw_overlays(cairo_t* cr, const View& view, const Box& box, const Scenery& s) {
+  for (const Scenery::Chain& c : s.chains) {
+    if (c.force <= kLeastDrawn * s.force) continue;
+    for (size_t k = 0; k + 1 < c.places.size(); ++k)
+      segment(cr, view, c.places[k], c.places[k + 1], {of(kForceColour), 0.4 + 4 * c.force / s.force, {}});
+  }
+  const double longest = s.crosses.empty() ? 0 : cross_size(view, box, s);
+  double stress = 0;  // the largest in sight
+  for (const Scenery::Cross& c : s.crosses)
+    if (inside(c.centre, box)) stress = std::max({stress, std::abs(c.first), std::abs(c.second)});
+  for (const Scenery::Cross& c : s.crosses) {
+    if (!inside(c.centre, box) || stress == 0) continue;
+    const Vec2 middle = view.to_sheet(c.centre), x{c.axis.x, -c.axis.y}, y{c.axis.y, c.axis.x};
+    for (const bool ground : {true, false})  // a pale rim tells it from any colour below
+      for (const auto& [axis, value] : {std::pair(x, c.first), std::pair(y, c.second)}) {
+        const Vec2 half = longest * std::abs(value) / stress * axis;
+        set_pen(cr,
+                ground ? Pen{kWhite, 3, {}} : Pen{of(value < 0 ? kPressedColour : kPulledColour), 1.4, {}});
+        cairo_move_to(cr, middle.x - half.x, middle.y - half.y);
+        cairo_line_to(cr, middle.x + half.x, middle.y + half.y);
+        cairo_stroke(cr);
+      }
+  }
+  if (!s.slip_arrows) return;
+  for (const Scenery::Joint& j : s.joints) {
+    if (j.slip <= kLeastDrawn * s.slip || norm(j.moved) == 0) continue;
+    const Vec2 along = kSlipArrow * j.slip / s.slip / norm(j.moved) * Vec2{j.moved.x, -j.moved.y};
+    const Vec2 middle = view.to_sheet(0.5 * (j.from + j.to)) + kBeside * Vec2{j.inward.x, -j.inward.y};
+    arrow(cr, middle - 0.5 * along, along, {{0.1, 0.1, 0.1}, 1.3, {}});
+  }
+}
+
+void draw_scene(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
+  const View& view = sheet.view;
+  // all that the frame shows, which may be wider than what was asked for
+  const Box box{{view.x_range().lo, view.y_range().lo}, {view.x_range().hi, view.y_range().hi}};
   cairo_save(cr);
   cairo_rectangle(cr, view.frame.x, view.frame.y, view.frame.w, view.frame.h);
   cairo_clip(cr);
-  for (const Shape& shape : s.shapes) {
+  for (const Scenery::Shape& shape : s.shapes) {
     if (!in_window(shape.polygon, box)) continue;
-    const Color fill = is_drawable(shape.value) ? color_of(s, shape.value) : Color{1, 0, 1};
+    const Color fill = color_of(s, sheet.colouring, shape);
     trace(cr, view, shape.polygon);
     set_color(cr, fill);
     cairo_fill_preserve(cr);
@@ -254,11 +255,14 @@ void draw_scene(cairo_t* cr, const View& view, const Box& box, const Scenery& s)
     set_pen(cr, size > kThinOutline ? Pen{{0.2, 0.2, 0.2}, 0.5, {}} : Pen{fill, 0.4, {}});
     cairo_stroke(cr);
   }
-  for (const JointSegment& j : s.joints)
+  for (const Scenery::Joint& j : s.joints)
     if (j.slip > kLeastDrawn * s.slip) segment(cr, view, j.from, j.to, slip_pen(j.slip / s.slip));
-  for (const JointSegment& j : s.joints)
+  for (const Scenery::Joint& j : s.joints)
     if (j.opening > kLeastDrawn * s.opening) segment(cr, view, j.from, j.to, open_pen());
-  for (const BoltSegment& b : s.bolts) segment(cr, view, b.from, b.to, bolt_pen(s, b));
+  for (const Scenery::Bolt& b : s.bolts)
+    if (view.scale * norm(b.to - b.from) > 0.5)  // across a closed joint there is nothing to see
+      segment(cr, view, b.from, b.to, bolt_pen(s, b));
+  draw_overlays(cr, view, box, s);
   cairo_restore(cr);
 }
 
@@ -276,25 +280,47 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
     draw_text(cr, words, at, y, anchor);
   };
   if (s.quantity) {
-    const Prefix p = readable(std::max(std::abs(s.low), std::abs(s.high)), s.quantity->unit);
-    text(fmt::format("{} [{}]", s.quantity->title, p.unit), x);
+    const Colouring& c = sheet.colouring;
+    const Prefix p = readable(std::max(std::abs(c.low), std::abs(c.high)), s.quantity->unit);
+    text(fmt::format("{}{} [{}]", s.quantity->title, s.against.empty() ? "" : ", relative to " + s.against,
+                     p.unit),
+         x);
     std::string beyond;
-    if (s.most > s.high) beyond = fmt::format("largest {:.3g}", s.most / p.factor);
-    if (s.least < s.low)
-      beyond += fmt::format("{}least {:.3g}", beyond.empty() ? "" : ", ", s.least / p.factor);
+    if (c.most > c.high) beyond = fmt::format("largest {:.3g}", c.most / p.factor);
+    if (c.least < c.low)
+      beyond += fmt::format("{}least {:.3g}", beyond.empty() ? "" : ", ", c.least / p.factor);
     y += kRow;
-    const std::string low = fmt::format("{:.3g}", s.low / p.factor),
-                      high = fmt::format("{:.3g}", s.high / p.factor);
-    text(low, x);
-    const double from = x + text_width(cr, low) + 8;
     constexpr int kSteps = 64;
     for (int k = 0; k < kSteps; ++k) {
-      set_color(cr, color_at(s, (k + 0.5) / kSteps));
-      cairo_rectangle(cr, from + k * kBarWidth / kSteps, y - kBarHeight / 2, kBarWidth / kSteps + 0.5,
+      set_color(cr, color_at(s, c, (k + 0.5) / kSteps));
+      cairo_rectangle(cr, x + k * kBarWidth / kSteps, y - kBarHeight / 2, kBarWidth / kSteps + 0.5,
                       kBarHeight);
       cairo_fill(cr);
     }
-    text(high + (beyond.empty() ? "" : "    beyond the colours: " + beyond), from + kBarWidth + 8);
+    if (!beyond.empty()) text("beyond the colours: " + beyond, x + kBarWidth + 24);
+    y += kRow;
+    const Ticks ticks = nice_ticks(c.low / p.factor, c.high / p.factor, 5);
+    for (const double tick : ticks.values) {
+      const double at = x + kBarWidth * (tick - c.low / p.factor) / ((c.high - c.low) / p.factor);
+      set_pen(cr, {kText, 1, {}});
+      cairo_move_to(cr, crisp(at - 0.5), y - kRow + kBarHeight / 2);
+      cairo_line_to(cr, crisp(at - 0.5), y - kRow + kBarHeight / 2 + 4);
+      cairo_stroke(cr);
+      text(fmt::format("{:.4g}", std::abs(tick) < 1e-9 * ticks.step ? 0 : tick), at, 0.5);
+    }
+    y += kRow;
+  } else {
+    double at = x;
+    for (size_t k = 0; k < kBlockKinds.size(); ++k) {
+      if (std::none_of(s.shapes.begin(), s.shapes.end(),
+                       [k](const auto& one) { return one.kind == static_cast<int>(k); }))
+        continue;
+      set_color(cr, of(kKindColours[k]));
+      cairo_rectangle(cr, at, y - 6, 12, 12);
+      cairo_fill(cr);
+      text(kBlockKinds[k], at + 18);
+      at += 34 + text_width(cr, kBlockKinds[k]);
+    }
     y += kRow;
   }
   const auto line = [&](const Pen& pen) {
@@ -320,7 +346,58 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
     text(fmt::format("bolts: tension, dark green {}{}; grey in compression", with_unit(s.tension, "N"),
                      s.pressed > 0 ? ", pressed by at most " + with_unit(s.pressed, "N") : ""),
          x + sample);
+    y += kRow;
   }
+  if (!s.crosses.empty()) {
+    line({of(kPressedColour), 1.1, {}});
+    text("principal stresses, blue pressed, red pulled, of all blocks at most " + with_unit(s.stress, "Pa"),
+         x + sample);
+    y += kRow;
+  }
+  if (!s.chains.empty()) {
+    line({of(kForceColour), 4.4, {}});
+    text("contact forces, the wider the more, at most " + with_unit(s.force, "N"), x + sample);
+    y += kRow;
+  }
+  if (s.slip_arrows && s.slip > 0) {
+    arrow(cr, {x, y}, {sample - 7, 0}, {{0.1, 0.1, 0.1}, 1.3, {}});
+    text("slip: the way of the block in which the arrow lies against the one beyond the joint", x + sample);
+  }
+}
+
+// A picture ready to be drawn.
+struct Prepared {
+  Scenery scenery;
+  Sheet sheet;
+};
+
+Prepared prepared(const BlockPicture& picture) {
+  Prepared out{scenery_of(picture), {}};
+  const Box box = box_of(picture, out.scenery);
+  const auto seen = [&box](const Scenery::Shape& shape) { return in_window(shape.polygon, box); };
+  if (!out.scenery.shapes.empty() && std::none_of(out.scenery.shapes.begin(), out.scenery.shapes.end(), seen))
+    throw Error(kExitUsage, fmt::format("no block lies in the window ({:g}, {:g}) to ({:g}, {:g})", box.min.x,
+                                        box.min.y, box.max.x, box.max.y));
+  out.sheet = make_sheet(make_measuring_context().get(), box, out.scenery);
+  out.sheet.colouring = colouring_of(box, out.scenery, picture.colours);
+  return out;
+}
+
+void draw(cairo_t* cr, const BlockPicture& picture, const Prepared& p) {
+  const View& view = p.sheet.view;
+  draw_scene(cr, p.sheet, p.scenery);
+  draw_axes(cr, view, p.sheet.x, p.sheet.y);
+  const double title_y = kMargin + kTitleSize / 2;
+  set_color(cr, kText);
+  set_font(cr, kFontSize);
+  const std::string time = fmt::format(
+      "t = {:.6g} s{}", picture.time,
+      picture.deformation == 1 ? "" : fmt::format(", displacements {:g} times", picture.deformation));
+  const double time_width = text_width(cr, time);
+  draw_text(cr, time, view.frame.right(), title_y, 1);
+  set_font(cr, kTitleSize, true);
+  draw_text(cr, fitted(cr, picture.title, view.frame.w - time_width - 20), view.frame.x, title_y, 0);
+  draw_foot(cr, p.sheet, p.scenery);
 }
 
 }  // namespace
@@ -334,38 +411,52 @@ const std::vector<std::string>& block_quantities() {
   return names;
 }
 
+const std::vector<std::string>& overlay_names() {
+  static const std::vector<std::string> names{"principal", "forces", "slip"};
+  return names;
+}
+
 void write_block_picture(const BlockPicture& picture, const std::filesystem::path& stem) {
-  Scenery scenery;
-  size_t quantity = 0;
-  for (size_t q = 0; q < kBlockQuantities.size(); ++q)
-    if (picture.quantity == kBlockQuantities[q].name) scenery.quantity = &kBlockQuantities[quantity = q];
-  take_blocks(picture, quantity, scenery);
-  if (picture.contacts) take_joints(picture, scenery);
-  if (picture.bolts) take_bolts(picture, scenery);
-  const Box box = box_of(picture, scenery);
-  if (std::none_of(scenery.shapes.begin(), scenery.shapes.end(),
-                   [&box](const Shape& shape) { return in_window(shape.polygon, box); }))
-    throw Error(kExitUsage, fmt::format("no block lies in the window ({:g}, {:g}) to ({:g}, {:g})", box.min.x,
-                                        box.min.y, box.max.x, box.max.y));
-  if (scenery.quantity) set_range(box, scenery);
-  const Sheet sheet = make_sheet(make_measuring_context().get(), box, scenery);
-  const auto draw_all = [&](cairo_t* cr) {
-    draw_scene(cr, sheet.view, box, scenery);
-    draw_axes(cr, sheet.view, sheet.x, sheet.y);
-    const double title_y = kMargin + kTitleSize / 2;
-    set_color(cr, kText);
-    set_font(cr, kFontSize);
-    const std::string time = fmt::format(
-        "t = {:.6g} s{}", picture.time,
-        picture.deformation == 1 ? "" : fmt::format(", displacements {:g} times", picture.deformation));
-    const double time_width = text_width(cr, time);
-    draw_text(cr, time, sheet.view.frame.right(), title_y, 1);
-    set_font(cr, kTitleSize, true);
-    draw_text(cr, fitted(cr, picture.title, sheet.view.frame.w - time_width - 20), sheet.view.frame.x,
-              title_y, 0);
-    draw_foot(cr, sheet, scenery);
-  };
-  write_picture(stem, sheet.width, sheet.height, draw_all);
+  const Prepared p = prepared(picture);
+  write_picture(stem, p.sheet.width, p.sheet.height, [&](cairo_t* cr) { draw(cr, picture, p); });
+}
+
+std::string block_picture_svg(const BlockPicture& picture) {
+  const Prepared p = prepared(picture);
+  return picture_svg(p.sheet.width, p.sheet.height, [&](cairo_t* cr) { draw(cr, picture, p); });
+}
+
+Extent extent_of(const BlockPicture& picture) {
+  const Scenery s = scenery_of(picture);
+  Extent out{box_of(picture, s), {0, 0}};
+  std::vector<double> values;
+  for (const Scenery::Shape& shape : s.shapes)
+    if (is_drawable(shape.value)) values.push_back(shape.value);
+  std::sort(values.begin(), values.end());
+  if (!values.empty())
+    out.values = {values[values.size() / 50], values[values.size() - 1 - values.size() / 50]};
+  return out;
+}
+
+void write_animation(const std::function<BlockPicture(size_t)>& make, size_t count, double seconds,
+                     const std::filesystem::path& path) {
+  std::vector<std::string> frames;
+  double width = 0, height = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const BlockPicture picture = make(k);
+    const Prepared p = prepared(picture);
+    // frames of one size: legends grow as joints slip
+    width = std::max(width, p.sheet.width), height = std::max(height, p.sheet.height);
+  }
+  for (size_t k = 0; k < count; ++k) {
+    const BlockPicture picture = make(k);
+    const Prepared p = prepared(picture);
+    frames.push_back(picture_png(width, height, 1, [&](cairo_t* cr) { draw(cr, picture, p); }));
+  }
+  if (path.extension() == ".mp4")
+    write_film(frames, seconds, path);
+  else
+    write_file(path, animated_png(frames, seconds));
 }
 
 }  // namespace talus::plot

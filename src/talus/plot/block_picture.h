@@ -1,35 +1,39 @@
 #pragma once
-// Pictures of the blocks of one frame of a run: coloured by a quantity, with joints that slipped or stand
-// open and bolts over them. Made from the files in fields/ alone.
+// Pictures of the blocks of one frame of a run: coloured by a quantity or by kind, with joints that slipped or stand
+// open, bolts, and what else is asked for over them. The one drawer of blocks: of `talus plot`, of what a run leaves and
+// of the mechanism of a collapse.
 
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "talus/base/vec2.h"
-#include "talus/geometry/polygon.h"
-#include "talus/output/read_frames.h"
+#include "talus/plot/block_picture_spec.h"
 
 namespace talus::plot {
 
-struct BlockPicture {
-  std::string title;
-  double time = 0;  // [s]
-  Shapes shapes;
-  BlockFrame blocks;  // of these shapes
-  std::optional<ContactPoints> contacts;
-  std::optional<BoltPieces> bolts;        // of the same time
-  std::string quantity = "displacement";  // one of block_quantities(), "" : none, blocks are pale
-  double deformation = 1;                 // displacements are drawn so many times
-  std::optional<Box> window;              // what is shown [m]; none: all blocks
-};
+/// "principal", "forces", "slip"; in the order of the enumerators.
+const std::vector<std::string>& overlay_names();
 
 /// Names of what may colour blocks: displacement, velocity, stress_xx ...
 const std::vector<std::string>& block_quantities();
 
-/// Draws the picture in true proportion and writes `stem` + ".svg" and ".png". Throws FileError when an array
-/// is missing or a file cannot be written, std::runtime_error when it cannot be drawn.
+/// Draws the picture in true proportion and writes `stem` + ".svg" and ".png". Throws FileError when a file cannot
+/// be written or it cannot be drawn.
 void write_block_picture(const BlockPicture& picture, const std::filesystem::path& stem);
+/// The same as the text of an SVG.
+std::string block_picture_svg(const BlockPicture& picture);
+
+/// Where all blocks lie as drawn, and the range of their values but for 2 % at either end.
+struct Extent {
+  Box box;
+  Range values;
+};
+Extent extent_of(const BlockPicture& picture);
+
+/// One picture after the other, `seconds` each, as `path`: a moving PNG, or where it ends in .mp4 a film by ffmpeg.
+/// Throws FileError. @param make  the picture with a number, below `count`; of one window and range of colours
+void write_animation(const std::function<BlockPicture(size_t)>& make, size_t count, double seconds,
+                     const std::filesystem::path& path);
 
 }  // namespace talus::plot

@@ -113,16 +113,34 @@ std::string svg_bytes(double width, double height, const std::function<void(cair
   return bytes;
 }
 
-std::string png_bytes(double width, double height, const std::function<void(cairo_t*)>& draw) {
-  const auto pixels = [](double length) { return static_cast<int>(std::ceil(kPixelDensity * length)); };
+std::string png_bytes(double width, double height, double density,
+                      const std::function<void(cairo_t*)>& draw) {
+  const auto pixels = [density](double length) { return static_cast<int>(std::ceil(density * length)); };
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(width), pixels(height)));
-  draw_on(surface.get(), kPixelDensity, draw);
+  draw_on(surface.get(), density, draw);
   std::string bytes;
   check(cairo_surface_write_to_png_stream(surface.get(), append_bytes, &bytes));
   return bytes;
 }
 
 }  // namespace
+
+std::string picture_svg(double width, double height, const std::function<void(cairo_t*)>& draw) {
+  try {
+    return svg_bytes(width, height, draw);
+  } catch (const std::runtime_error& error) {
+    throw FileError(fmt::format("a picture cannot be drawn: {}", error.what()));
+  }
+}
+
+std::string picture_png(double width, double height, double density,
+                        const std::function<void(cairo_t*)>& draw) {
+  try {
+    return png_bytes(width, height, density, draw);
+  } catch (const std::runtime_error& error) {
+    throw FileError(fmt::format("a picture cannot be drawn: {}", error.what()));
+  }
+}
 
 void write_picture(const std::filesystem::path& stem, double width, double height,
                    const std::function<void(cairo_t*)>& draw) {
@@ -131,7 +149,7 @@ void write_picture(const std::filesystem::path& stem, double width, double heigh
   std::string svg_content, png_content;
   try {
     svg_content = svg_bytes(width, height, draw);
-    png_content = png_bytes(width, height, draw);
+    png_content = png_bytes(width, height, kPixelDensity, draw);
   } catch (const std::runtime_error& error) {
     throw FileError(fmt::format("{}: cannot be drawn: {}", stem.string(), error.what()));
   }

@@ -43,4 +43,10 @@ std::string fit_text(cairo_t* cr, const std::string& text, double available);
 void write_picture(const std::filesystem::path& stem, double width, double height,
                    const std::function<void(cairo_t*)>& draw);
 
+/// The text of the SVG, the bytes of the PNG. Throws FileError when it cannot be drawn.
+std::string picture_svg(double width, double height, const std::function<void(cairo_t*)>& draw);
+/// @param density  device pixels per px
+std::string picture_png(double width, double height, double density,
+                        const std::function<void(cairo_t*)>& draw);
+
 }  // namespace talus::plot

@@ -21,7 +21,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr size_t kContactFrames = 20;     // at most
+constexpr size_t kContactFrames = 20;     // where frames of blocks do not all fit
 constexpr double kContactShare = 0.25;    // of the page, for contact points
 constexpr size_t kTableValues = 1500000;  // of one table, above that rows are left out
 
@@ -246,13 +246,18 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
   };
   const double contact_size =
       mean_size(run.contact_frames, [&](const auto& file) { return packed(read_contacts(file), origin); });
-  const auto contacts_fit = static_cast<size_t>(std::max(2.0, kContactShare * room / contact_size));
-  const size_t contacts = std::min({kContactFrames, contacts_fit, run.contact_frames.size()});
   FrameReader sampler;
   const double block_size =
       mean_size(run.block_frames, [&](const auto& file) { return packed(sampler.read(file)); });
-  double rest = static_cast<double>(contacts) * contact_size;
-  for (const Shapes& s : sampler.shapes()) rest += static_cast<double>(packed(s).size());
+  double shapes = 0;
+  for (const Shapes& s : sampler.shapes()) shapes += static_cast<double>(packed(s).size());
+  // some frames of contacts always; all of them, for histories in full, where frames of blocks leave the room
+  const double always = std::min(static_cast<double>(kContactFrames), kContactShare * room / contact_size);
+  const double beside = (room - shapes - static_cast<double>(there) * block_size) / contact_size;
+  const auto floor = static_cast<size_t>(std::max(2.0, always));
+  size_t contacts =
+      std::min(run.contact_frames.size(), std::max(floor, static_cast<size_t>(std::max(0.0, beside))));
+  const double rest = shapes + static_cast<double>(contacts) * contact_size;
   size_t count = std::min(there, static_cast<size_t>(std::max(2.0, (room - rest) / block_size)));
   if (count < there) note.reason = "for the size of the page";
   if (options.frames > 0 && static_cast<size_t>(options.frames) < count) {
@@ -262,7 +267,12 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
 
   // the sample may have been too small: then once more with fewer
   FramesData data = pack_frames(run, spread(there, count), contacts, origin);
-  for (int again = 0; data.size > room && count > 2 && again < 5; ++again) {
+  for (int again = 0; data.size > room && count > 2 && again < 8; ++again) {
+    if (contacts > floor) {
+      contacts = std::max(floor, contacts / 2);
+      data = pack_frames(run, spread(there, count), contacts, origin);
+      continue;
+    }
     count = std::max<size_t>(2, static_cast<size_t>(static_cast<double>(count) * 0.98 * room / data.size));
     note.reason = "for the size of the page";
     data = pack_frames(run, spread(there, count), contacts, origin);

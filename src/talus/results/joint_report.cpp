@@ -144,25 +144,6 @@ std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
   return out;
 }
 
-std::vector<JointLine> joint_lines(const Scene& scene, const Instant& i) {
-  std::vector<JointLine> lines;
-  const auto add = [&](size_t row, size_t other) {
-    const auto p = joint_point(scene, i, row), q = joint_point(scene, i, other);
-    if (!p || !q) return;
-    JointLine line;
-    line.slip = std::max(p->residual_slip(), q->residual_slip());
-    for (const auto& end : {*p, *q})
-      if (end.is(JointState::kOpen)) line.opening = std::max(line.opening, end.opening);
-    if (line.slip == 0 && line.opening == 0) return;
-    const auto name = [&scene](int block) { return scene.blocks.name[static_cast<size_t>(block)]; };
-    line.between = fmt::format("{} - {}", name(p->block_a), name(p->block_b));
-    line.from = p->point, line.to = q->point;
-    lines.push_back(std::move(line));
-  };
-  for (const auto& [row, other] : joint_ends(i)) add(row, other);
-  return lines;
-}
-
 void JointSummary::look(const Scene& scene, const State& state) {
   std::map<std::string, double> by_set;
   for (size_t f = 0; f < state.face.size(); ++f) {

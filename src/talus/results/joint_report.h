@@ -11,7 +11,6 @@
 #include "talus/contact/joint_state.h"
 #include "talus/output/archive.h"
 #include "talus/output/contact_points.h"
-#include "talus/output/joint_lines.h"
 #include "talus/run/instant.h"
 
 namespace talus {
@@ -39,9 +38,6 @@ std::vector<FramePoint> frame_points(const Scene& scene, const Instant& instant)
 /// Rows of the two ends of everything that two blocks share: of glued faces, and of contacts that know their
 /// other end.
 std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& instant);
-
-/// The joints of an instant that slipped or stand open, from end to end.
-std::vector<JointLine> joint_lines(const Scene& scene, const Instant& instant);
 
 struct JointSummary {
   double time = 0;

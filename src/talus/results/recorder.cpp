@@ -11,11 +11,8 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
-#include "talus/output/picture.h"
-#include "talus/output/vtk.h"
 #include "talus/results/model_report.h"
 #include "talus/results/problem_file.h"
-#include "talus/results/reference.h"
 #include "talus/results/slip_report.h"
 #include "talus/results/step_table.h"
 
@@ -29,18 +26,6 @@ bool is_due(double time, double dt, double interval, double& next) {
   if (time < next - 1e-6 * dt) return false;
   next = (std::floor((time + 1e-6 * dt) / interval) + 1) * interval;
   return true;
-}
-
-// The bolts at an instant, those of stages up to `stage`.
-std::vector<BoltLine> bolt_lines(const Scene& scene, const State& state, int stage) {
-  std::vector<BoltLine> lines;
-  for (const BoltPart& p : bolt_parts(scene.blocks, state)) {
-    const BoltInput& bolt = scene.model.bolts[static_cast<size_t>(p.input)];
-    if (bolt.stage <= stage)
-      lines.push_back({bolt.name, p.piece, p.crossing, p.from, p.to, p.axial, p.shear, p.elongation,
-                       static_cast<int>(p.condition)});
-  }
-  return lines;
 }
 
 constexpr const char *kHistorySize = "recorder.histories_csv", *kStepsSize = "recorder.steps_csv";
@@ -342,19 +327,16 @@ void Recorder::at(const Instant& i) {
     due_.dumped_failure = due_.dumped_failure || failure;
   }
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, due_.frame);
-  if (frame || start || i.last) write_frame(i);
+  if (frame || start || i.last) {
+    const FrameTexts texts = write_frame(i);
+    if (first) folder_.write("blocks_start.svg", picture_of(texts, scene_.model.title));
+    if (i.last) folder_.write("blocks_end.svg", picture_of(texts, scene_.model.title));
+  }
   if (auditor_) auditor_->at(i, frame || start || i.last);
   // a stage ends at the instant at which the next one starts
   if (i.stage_start && i.stage > 0) write_joints(i, i.stage - 1);
   if (i.last) write_joints(i, i.stage);
-  if (first) {
-    folder_.write("blocks.csv", blocks_table(scene_));
-    folder_.write("blocks_start.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
-                                                 bolt_lines(scene_, i.state, i.stage)));
-  }
-  if (i.last)
-    folder_.write("blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
-                                               bolt_lines(scene_, i.state, i.stage), joint_lines(scene_, i)));
+  if (first) folder_.write("blocks.csv", blocks_table(scene_));
   if (i.last || (start && i.stage > 0)) write_bolts(i);
   if (wall_now() - last_flush_ > 1) {
     flush_tables();
@@ -369,10 +351,16 @@ void Recorder::fails(const Instant& i) {
   // a step that failed before, and did not end the run, is not the one to look at
   if (left_.step != dump_name(i.state.step)) left_.step = write_dump(i);
   left_.frame = i.state.time;
-  if (block_frames_.times().empty() || block_frames_.times().back() < i.state.time) write_frame(i);
+  const bool there = !block_frames_.times().empty() && block_frames_.times().back() >= i.state.time;
+  const FrameTexts texts = there ? frame_texts(scene_, i) : write_frame(i);
   write_joints(i, i.stage);
-  folder_.write("blocks_end.svg", blocks_svg(scene_.blocks, i.state, scene_.model.title,
-                                             bolt_lines(scene_, i.state, i.stage), joint_lines(scene_, i)));
+  std::string picture;
+  try {
+    picture = picture_of(texts, scene_.model.title);
+  } catch (const FileError&) {  // blocks without a shape: that is the failure, of which the run tells
+    return;
+  }
+  folder_.write("blocks_end.svg", picture);
 }
 
 // The equations of a step as a file, whose name it gives; of a very large one only when it was asked for.
@@ -396,13 +384,12 @@ void Recorder::record_step(const Instant& i) {
   }
 }
 
-void Recorder::write_frame(const Instant& i) {
-  std::vector<BlockRate> rates;
-  for (size_t k = 0; k < i.state.rate.size(); ++k) rates.push_back(rate_now(i.work, i.state, k));
-  block_frames_.add(i.state.time, blocks_vtu(scene_.blocks, i.state, rates, ground_motions(i)));
-  contact_frames_.add(i.state.time, contacts_vtp(frame_points(scene_, i), i.state.time));
-  if (!scene_.model.bolts.empty())
-    bolt_frames_.add(i.state.time, bolts_vtp(bolt_lines(scene_, i.state, i.stage), i.state.time));
+FrameTexts Recorder::write_frame(const Instant& i) {
+  FrameTexts texts = frame_texts(scene_, i);
+  block_frames_.add(i.state.time, texts.blocks);
+  contact_frames_.add(i.state.time, texts.contacts);
+  if (!texts.bolts.empty()) bolt_frames_.add(i.state.time, texts.bolts);
+  return texts;
 }
 
 // Tables that are replaced as a whole reach the disk at once: states that are there already count on them.

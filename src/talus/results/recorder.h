@@ -8,6 +8,7 @@
 #include "talus/output/csv.h"
 #include "talus/output/frame_series.h"
 #include "talus/results/auditor.h"
+#include "talus/results/frames.h"
 #include "talus/results/histories.h"
 #include "talus/results/joint_report.h"
 #include "talus/results/summary.h"
@@ -111,7 +112,7 @@ class Recorder : public Observer {
   void find_saved();
   void record_step(const Instant& instant);
   std::string write_dump(const Instant& instant);
-  void write_frame(const Instant& instant);
+  FrameTexts write_frame(const Instant& instant);
   void write_bolts(const Instant& instant);
   void write_joints(const Instant& instant, int stage);
 

@@ -279,7 +279,7 @@ struct OutputInput {
   double history_interval = 0, steps_interval = 0,
          field_interval = 0;  // [s] 0 = every step; fields: stage ends
   double save_interval = 60;  // [s] of wall time; 0: only at the ends of stages
-  bool audit = true;
+  bool audit = true, pictures = true;
   double audit_interval = 0;  // [s] 0: at every frame
   Where where_history, where_field;
 };

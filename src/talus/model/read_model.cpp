@@ -492,6 +492,7 @@ class ModelReader : private SectionReader {
     model_.output.field_interval = f.get("field_interval", 0.0);
     model_.output.save_interval = f.get("save_interval", model_.output.save_interval);
     model_.output.audit = f.get("audit", true);
+    model_.output.pictures = f.get("pictures", true);
     model_.output.where_history = f.where("history_interval");
     model_.output.where_field = f.where("field_interval");
     model_.output.audit_interval = f.get("audit_interval", 0.0);

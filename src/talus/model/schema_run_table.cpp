@@ -161,7 +161,12 @@ std::vector<SectionSpec> run_sections() {
          .default_text = "\"0 s\"",
          .doc =
              "Spacing of audits of all polygons; 0: at every frame. Steps and the ends of stages are always "
-             "audited."}}},
+             "audited."},
+        {.name = "pictures",
+         .type = K::kBool,
+         .default_text = "true",
+         .doc = "The blocks at the start and at the end as blocks_start.svg and blocks_end.svg. Thousands of short "
+                "runs are quicker without."}}},
 
       {"safety",
        SectionShape::kTable,

@@ -329,8 +329,8 @@ void Recorder::at(const Instant& i) {
   const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, due_.frame);
   if (frame || start || i.last) {
     const FrameTexts texts = write_frame(i);
-    if (first) folder_.write("blocks_start.svg", picture_of(texts, scene_.model.title));
-    if (i.last) folder_.write("blocks_end.svg", picture_of(texts, scene_.model.title));
+    if (first && out.pictures) folder_.write("blocks_start.svg", picture_of(texts, scene_.model.title));
+    if (i.last && out.pictures) folder_.write("blocks_end.svg", picture_of(texts, scene_.model.title));
   }
   if (auditor_) auditor_->at(i, frame || start || i.last);
   // a stage ends at the instant at which the next one starts
@@ -354,6 +354,7 @@ void Recorder::fails(const Instant& i) {
   const bool there = !block_frames_.times().empty() && block_frames_.times().back() >= i.state.time;
   const FrameTexts texts = there ? frame_texts(scene_, i) : write_frame(i);
   write_joints(i, i.stage);
+  if (!scene_.model.output.pictures) return;
   std::string picture;
   try {
     picture = picture_of(texts, scene_.model.title);

@@ -92,6 +92,7 @@ void Runner::start(Job job) {
                                  "--threads",       "1",   "-o",  job.attempt.string()};
   for (const std::string& item : parent ? job.task.group_overrides : job.task.overrides)
     words.insert(words.end(), {"--set", item});
+  if (!settings_.keep_all) words.insert(words.end(), {"--set", "output.pictures=false"});
   if (parent) words.insert(words.end(), {"--until", folder_.until()});
   if (job.branch) words.insert(words.end(), {"--from", state_of(job.group)});
   job.begun = wall_now();

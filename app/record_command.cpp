@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>
@@ -18,10 +19,12 @@ namespace talus::app {
 
 namespace {
 
-const std::map<std::string, record::Format> kFormats{{"peer", record::Format::kPeer},
-                                                     {"knet", record::Format::kKnet},
-                                                     {"jma", record::Format::kJma},
-                                                     {"csv", record::Format::kCsv}};
+const std::map<std::string, record::Format> kFormats{
+    {"peer", record::Format::kPeer},   {"knet", record::Format::kKnet},
+    {"jma", record::Format::kJma},     {"csv", record::Format::kCsv},
+    {"esm", record::Format::kEsm},     {"geonet", record::Format::kGeonet},
+    {"csmip", record::Format::kCsmip}, {"cosmos", record::Format::kCosmos},
+    {"smc", record::Format::kSmc}};
 
 // What the command made, ready to be written.
 struct Outcome {
@@ -30,6 +33,7 @@ struct Outcome {
   std::optional<record::TargetSpectrum> target;
   record::Account account;
   std::string title;
+  bool as_read = false;  // nothing was done to it
 };
 
 Outcome from_file(const RecordArguments& args) {
@@ -50,7 +54,16 @@ Outcome from_file(const RecordArguments& args) {
   if (r.quantity != record::Quantity::kAcceleration)
     out.account.steps.push_back(
         {fmt::format("acceleration by differences of the {}", name_of(r.quantity)), {}});
-  if (args.raw) {
+  const bool asked = std::any_of(args.step_options.begin(), args.step_options.end(),
+                                 [](const CLI::Option* option) { return option->count() > 0; });
+  if (!r.processed.empty()) {
+    tell("talus: note: {} is processed already: {}; {}\n", args.file, r.processed,
+         args.raw || !asked ? "it is taken as it is, as with --raw; any option of a step processes it again"
+                            : "it is processed once more, as asked for");
+    out.account.steps.push_back({"processed before: " + r.processed, {}});
+  }
+  out.as_read = args.raw || (!r.processed.empty() && !asked);
+  if (out.as_read) {
     out.motion = *out.before;
   } else {
     record::Processing how = args.how;
@@ -87,13 +100,14 @@ Outcome from_seed(const RecordArguments& args) {
 
 // What only a file has: its format, and steps that a synthetic motion does not go through.
 std::vector<CLI::Option*> add_file_options(CLI::App& verb, RecordArguments& args) {
-  return {verb.add_option("--format", args.format, "format of the file; without: known from its content")
-              ->check(CLI::IsMember({"peer", "knet", "jma", "csv"})),
-          verb.add_option("--column", args.read.column,
-                          "column or component: its title, or acceleration, velocity, displacement"),
-          verb.add_option("--unit", args.read.unit,
-                          "unit of the values where the file names none: " + record::known_units()),
-          verb.add_flag("--raw", args.raw, "convert to SI and integrate only; none of the steps below")};
+  return {
+      verb.add_option("--format", args.format, "format of the file; without: known from its content")
+          ->check(CLI::IsMember({"peer", "knet", "jma", "csv", "esm", "geonet", "csmip", "cosmos", "smc"})),
+      verb.add_option("--column", args.read.column,
+                      "column or component: its title, or acceleration, velocity, displacement"),
+      verb.add_option("--unit", args.read.unit,
+                      "unit of the values where the file names none: " + record::known_units()),
+      verb.add_flag("--raw", args.raw, "convert to SI and integrate only; none of the steps below")};
 }
 
 std::vector<CLI::Option*> add_step_options(CLI::App& verb, RecordArguments& args) {
@@ -144,7 +158,9 @@ std::vector<CLI::Option*> add_synthetic_options(CLI::App& verb, RecordArguments&
 }  // namespace
 
 void add_record_arguments(CLI::App& verb, RecordArguments& args) {
-  verb.add_option("FILE", args.file, "PEER AT2, VT2, DT2; K-NET or KiK-net; JMA CSV; or plain CSV");
+  verb.add_option(
+      "FILE", args.file,
+      "PEER AT2, VT2, DT2; K-NET or KiK-net; JMA; ESM or ITACA ASC; GeoNet V2A; CSMIP V2; COSMOS V1, V2; SMC; or a table");
   verb.add_option("-o,--out,--output", args.folder, "folder for motion.csv, record.json and the figures")
       ->required();
   verb.add_flag("--force", args.force, "replace the results in that folder");
@@ -157,6 +173,7 @@ void add_record_arguments(CLI::App& verb, RecordArguments& args) {
       verb.add_flag("--synthetic", args.synthetic, "make a motion from a seed instead of reading one");
   // an option that would do nothing is refused
   const auto of_file = add_file_options(verb, args), of_steps = add_step_options(verb, args);
+  args.step_options.assign(of_steps.begin(), of_steps.end());
   for (CLI::Option* o : of_file) o->excludes(synthetic);
   for (CLI::Option* o : of_steps) o->excludes(synthetic)->excludes(of_file.back());
   for (CLI::Option* o : add_synthetic_options(verb, args)) o->needs(synthetic);
@@ -178,13 +195,13 @@ int record_command(const RecordArguments& args) {
   account.dt = out.motion.dt;
   std::vector<std::pair<std::string, record::Measures>> columns;
   std::vector<plot::MotionCurve> curves;
-  if (out.before && !args.raw) {
+  if (out.before && !out.as_read) {
     account.before.push_back(record::measure(*out.before));
     record::check_finite(out.title, *out.before, account.before[0]);
     columns.emplace_back("as read", account.before[0]);
     curves.push_back({"as read", &*out.before});
   }
-  const char* made = args.synthetic ? "synthetic" : args.raw ? "as read" : "processed";
+  const char* made = args.synthetic ? "synthetic" : out.as_read ? "as read" : "processed";
   columns.emplace_back(made, account.after);
   curves.push_back({made, &out.motion});
   show("{}", record::measures_table(columns));
@@ -192,11 +209,12 @@ int record_command(const RecordArguments& args) {
   ResultFolder folder(args.folder, args.force, ResultKind::kRecord);
   folder.write("record.json", record::record_json(account));
   folder.write("motion.csv", record::motion_csv(out.motion));
+  folder.write("spectrum.csv", record::spectrum_csv(out.motion));
   for (const char* figure : {"acceleration", "velocity", "displacement", "spectrum"})
     folder.note_picture(figure);
   plot::write_record_figures(out.title, curves, out.target ? &*out.target : nullptr, folder.path());
   show(
-      "written to {}: motion.csv (for [history.NAME] file and column), record.json, acceleration, velocity, "
+      "written to {}: motion.csv (for [history.NAME] file and column), spectrum.csv, record.json, acceleration, velocity, "
       "displacement and spectrum as .svg and .png\n",
       args.folder);
   return kExitOk;

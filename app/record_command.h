@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "talus/record/process.h"
 #include "talus/record/read_record.h"
@@ -12,6 +13,7 @@ namespace talus::app {
 
 struct RecordArguments {
   std::string file, folder, format, corner = "-3dB", target;
+  std::vector<const CLI::Option*> step_options;  // of processing
   bool force = false, raw = false, synthetic = false;
   double dt = 0;   // [s] 0: as in the file, or the default of a synthetic motion
   double pga = 0;  // [m/s2] 0: not asked for

@@ -150,8 +150,8 @@ const std::array<std::vector<std::string>, 5> kFixedNames{
       "fields/contacts.pvd", "fields/bolts.pvd"},
      {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt", "map.svg",
       "map.png", "model.toml"},
-     {"motion.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg", "velocity.png",
-      "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"},
+     {"motion.csv", "spectrum.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
+      "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"},
      {"safety.json", "safety.csv", "model.toml"},
      {"cut.svg", "cut.png"}}};
 

@@ -29,7 +29,9 @@ size_t end_of_number(std::string_view token) {
 Lines split_lines(const std::string& file, const std::string& text) {
   Lines lines{file, {}};
   if (text.find('\0') != std::string::npos)
-    fail(lines, 0, "is not a text file", "give the record as text: PEER, K-NET, JMA CSV or plain CSV");
+    fail(
+        lines, 0, "is not a text file",
+        "records are text: PEER, K-NET, JMA, ESM, GeoNet, CSMIP, COSMOS, SMC or a table; SAC and miniSEED are not read");
   size_t begin = 0;
   while (begin < text.size()) {
     const size_t end = std::min(text.find('\n', begin), text.size());
@@ -88,6 +90,30 @@ std::vector<double> numbers_from(const Lines& lines, size_t first, Numbers kind)
       rest = trimmed(rest.substr(token.size()));
     }
   }
+  return out;
+}
+
+std::vector<double> fixed_numbers(const Lines& lines, size_t first, size_t count, size_t width,
+                                  size_t* next) {
+  std::vector<double> out;
+  out.reserve(std::min<size_t>(count, 1000000));
+  size_t n = first;
+  for (; out.size() < count; ++n) {
+    if (n > lines.count())
+      fail(lines, lines.count(), fmt::format("the file ends after {} of {} values", out.size(), count),
+           "it is cut short: fetch it again");
+    const std::string_view line = lines.line[n - 1];
+    const size_t before = out.size();
+    for (size_t at = 0; at < line.size() && out.size() < count; at += width) {
+      const std::string_view field = trimmed(line.substr(at, width));
+      if (field.empty()) break;
+      out.push_back(number_at(lines, n, field, fmt::format("value {}", out.size() + 1)));
+    }
+    if (out.size() == before)
+      fail(lines, n, fmt::format("an empty line after {} of {} values", out.size(), count),
+           "it is cut short: fetch it again");
+  }
+  if (next) *next = n;
   return out;
 }
 

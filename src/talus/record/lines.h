@@ -35,4 +35,10 @@ enum class Numbers { kAny, kWhole };
 /// them. Throws by fail(), also on a fraction where whole numbers are expected (counts of a logger).
 std::vector<double> numbers_from(const Lines& lines, size_t first, Numbers kind = Numbers::kAny);
 
+/// `count` numbers in columns of `width` characters from line `first` on: Fortran's fixed fields, which need no blank
+/// between them. Throws by fail() where the lines end before.
+/// @param next  the line behind them, when given
+std::vector<double> fixed_numbers(const Lines& lines, size_t first, size_t count, size_t width,
+                                  size_t* next = nullptr);
+
 }  // namespace talus::record

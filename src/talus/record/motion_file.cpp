@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/version.h"
+#include "talus/record/response_spectrum.h"
 
 namespace talus::record {
 
@@ -31,6 +32,16 @@ std::string motion_csv(const Motion& m) {
   for (size_t i = 0; i < m.size(); ++i)
     fmt::format_to(std::back_inserter(out), "{:.12g},{},{},{}\n", static_cast<double>(i) * m.dt,
                    m.acceleration[i], m.velocity[i], m.displacement[i]);
+  return out;
+}
+
+std::string spectrum_csv(const Motion& m) {
+  constexpr double kShortest = 0.02, kLongest = 10;  // [s]
+  constexpr int kPeriods = 200;
+  const std::vector<double> periods = spectrum_periods(kShortest, kLongest, kPeriods);
+  const std::vector<double> sa = response_spectrum(m.acceleration, m.dt, periods);
+  std::string out = "period [s],sa [m/s2]\n";
+  for (size_t i = 0; i < periods.size(); ++i) out += fmt::format("{:.9g},{:.9g}\n", periods[i], sa[i]);
   return out;
 }
 

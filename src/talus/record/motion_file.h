@@ -12,6 +12,9 @@ namespace talus::record {
 /// "time [s],acceleration [m/s2],velocity [m/s],displacement [m]" and a row per sample, with as many digits
 /// as bring back the same numbers.
 std::string motion_csv(const Motion& motion);
+/// Response spectrum of its acceleration, damping 5 %: "period [s],sa [m/s2]", 200 periods from 0.02 to 10 s, as
+/// --target reads it.
+std::string spectrum_csv(const Motion& motion);
 
 /// What record.json tells.
 struct Account {

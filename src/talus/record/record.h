@@ -10,9 +10,9 @@
 
 namespace talus::record {
 
-enum class Format { kPeer, kKnet, kJma, kCsv };
+enum class Format { kPeer, kKnet, kJma, kCsv, kEsm, kGeonet, kCsmip, kCosmos, kSmc };
 
-/// "PEER", "K-NET", "JMA", "CSV"
+/// "PEER", "K-NET", "JMA", "CSV", "ESM", "GeoNet", "CSMIP", "COSMOS", "SMC"
 std::string_view name_of(Format format);
 
 /// One component of a record at equal time steps; sample i stands at i dt.
@@ -23,6 +23,7 @@ struct Record {
   Quantity quantity = Quantity::kAcceleration;
   double dt = 0;              // [s]
   std::vector<double> value;  // [n] SI
+  std::string processed;      // what its header says was done to it, "": nothing
   double offset = 0;          // [SI] mean that the reader took off (raw counts of K-NET), 0: none
 };
 

@@ -58,7 +58,7 @@ TEST_CASE("wrong record: each kind has its message") {
       {" \n\n", {}, "r: error: is empty\n      = fetch or write the file again"},
       {std::string("a\0b", 3),
        {},
-       "r: error: is not a text file\n      = give the record as text: PEER, K-NET, JMA CSV or plain CSV"},
+       "r: error: is not a text file\n      = records are text: PEER, K-NET, JMA, ESM, GeoNet, CSMIP, COSMOS, SMC or a table; SAC and miniSEED are not read"},
       // PEER
       {replaced(kPeer, "\n.6", ""),
        {},

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "help.h"
 #include "talus/base/version.h"
 
 namespace talus::app {
@@ -37,26 +38,41 @@ std::vector<std::string> options_of(const CLI::App& verb) {
 
 std::string bash_script(const CLI::App& app) {
   std::vector<std::string> verbs;
-  std::string cases;
+  std::string cases, values;
   for (const CLI::App* verb : verbs_of(app)) {
     verbs.push_back(verb->get_name());
+    for (const CLI::Option* option : verb->get_options()) {
+      const std::vector<std::string> choices = choices_of(*option);
+      if (choices.empty()) continue;
+      std::vector<std::string> names = names_of(*option);
+      if (names.empty()) names = {verb->get_name()};  // the word after the verb
+      std::string pattern;
+      for (const std::string& name : names)
+        pattern += (pattern.empty() ? "" : " | ") + fmt::format("\"{} {}\"", verb->get_name(), name);
+      values += fmt::format("    {}) choices=\"{}\" ;;\n", pattern, joined(choices, " "));
+    }
     cases += fmt::format("    {}) words=\"{}\" ;;\n", verb->get_name(), joined(options_of(*verb), " "));
   }
   return fmt::format(
       "_talus() {{\n"
-      "  local word=${{COMP_WORDS[COMP_CWORD]}} words\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words= choices=\n"
       "  if [ \"$COMP_CWORD\" = 1 ]; then\n"
       "    COMPREPLY=($(compgen -W \"{} {}\" -- \"$word\"))\n"
       "    return\n"
       "  fi\n"
       "  case ${{COMP_WORDS[1]}} in\n{}  esac\n"
+      "  case \"${{COMP_WORDS[1]}} $before\" in\n{}  esac\n"
+      "  if [ -n \"$choices\" ]; then\n"
+      "    COMPREPLY=($(compgen -W \"$choices\" -- \"$word\"))\n"
+      "    return\n"
+      "  fi\n"
       "  case $word in\n"
       "    -*) COMPREPLY=($(compgen -W \"$words\" -- \"$word\")) ;;\n"
       "    *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n"
       "  esac\n"
       "}}\n"
       "complete -o filenames -F _talus talus\n",
-      joined(verbs, " "), joined(options_of(app), " "), cases);
+      joined(verbs, " "), joined(options_of(app), " "), cases, values);
 }
 
 // Text in single quotes for fish.
@@ -76,8 +92,10 @@ std::string fish_script(const CLI::App& app) {
       std::string names;
       for (const std::string& s : option->get_snames()) names += " -s " + s;
       for (const std::string& l : option->get_lnames()) names += " -l " + l;
-      out += fmt::format("complete -c talus -n '__fish_seen_subcommand_from {}'{} -d {}\n", verb->get_name(),
-                         names, fish_quoted(option->get_description()));
+      const std::vector<std::string> choices = choices_of(*option);
+      const std::string values = choices.empty() ? "" : " -x -a " + fish_quoted(joined(choices, " "));
+      out += fmt::format("complete -c talus -n '__fish_seen_subcommand_from {}'{}{} -d {}\n",
+                         verb->get_name(), names, values, fish_quoted(option->get_description()));
     }
   }
   return out;

@@ -12,6 +12,7 @@
 #include "talus/maps/vector_module.h"
 #include "talus/model/read_model.h"
 #include "talus/model/toml_source.h"
+#include "talus/model/with_folder.h"
 #include "talus/output/cut_report.h"
 #include "talus/output/result_folder.h"
 #include "talus/plot/cut_picture.h"
@@ -52,7 +53,7 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   const std::string report = map_report_text(expanded.report) + cut_report(model, cut, statistics);
   out.write("cut.json", cut_summary(model, cut, statistics));
   out.write("model.toml",
-            expanded.has_maps ? maps::with_folder(model.text, expanded.folder, out.path()) : model.text);
+            expanded.has_maps ? with_folder(model.text, expanded.folder, out.path()) : model.text);
   out.write("blocks.json", blocks_file_text(model, cut));
   out.write("blocks.csv", cut_blocks_csv(model, shapes_of(model, cut, cut.blocks)));
   out.write("slivers.csv", slivers_csv(cut));

@@ -19,6 +19,7 @@
 #include "check_command.h"
 #include "command_pages.h"
 #include "cut_command.h"
+#include "help.h"
 #include "import_command.h"
 #include "new_command.h"
 #include "plot_command.h"
@@ -71,6 +72,7 @@ int verb_of_line(int argc, char** argv) {
       "talus: blocks that move, slip and break under dynamic load, with contact forces found exactly");
   app.set_version_flag("--version",
                        fmt::format("talus {} (model format {})", talus::kVersion, talus::kModelFormat));
+  app.formatter(std::make_shared<talus::app::HelpFormatter>());
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 7 no memory "

@@ -33,11 +33,46 @@ TEST_CASE("command: help, version and wrong usage") {
     const Outcome o = shell(f, fmt::format("$talus {} --help", verb));
     CHECK(o.code == 0);
     has(o.text, "Example: talus");
+    for (const char* raw : {"TEXT", "FLOAT", "INT:", "UINT", "NONNEGATIVE", "POSITIVE"})
+      CHECK_MESSAGE(o.text.find(raw) == std::string::npos, verb << " shows " << raw);
   }
+  has(shell(f, "$talus plot --help").text, "--time-unit s|ms");
+  has(shell(f, "$talus plot --help").text, "one of displacement, displacement_x");
   has(shell(f, "$talus --version").text, "model format 1");
   CHECK(shell(f, "$talus").code == 2);
   CHECK(shell(f, "$talus rum x").code == 2);
   CHECK(shell(f, "$talus run").code == 2);
+}
+
+TEST_CASE("command: completion offers verbs, options and the values of an option") {
+  const Folder f;
+  const Outcome o = shell(
+      f,
+      "$talus completion bash > c.sh && bash -c '. ./c.sh; "
+      "try() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _talus; echo \"${COMPREPLY[*]}\"; }; "
+      "try talus comp; try talus plot --bl; try talus plot d --blocks stress_m; try talus completion z'");
+  CHECK(o.code == 0);
+  has(o.text, "completion\n--blocks\nstress_major stress_minor\nzsh\n");
+}
+
+TEST_CASE("command: a result folder runs again as it lies, with files, and says what was set") {
+  const Folder f;
+  fs::create_directories(f / "in/data");
+  write_file(f / "in/data/push.txt", "0\n1\n1\n");
+  write_file(
+      f / "in/model.toml",
+      "talus = 1\n[material.m]\ndensity = 2000\n[[block]]\nname = \"b\"\npolygon = [[0, 0], [1, 0], [1, 1], [0, 1]]\n"
+      "material = \"m\"\nkind = \"rigid\"\n[history.push]\nfile = \"data/push.txt\"\ndt = \"0.1 s\"\nunit = \"m/s2\"\n"
+      "[[load]]\nname = \"l\"\nacceleration_x = \"push\"\n[[stage]]\nname = \"go\"\nkind = \"dynamic\"\nduration = \"0.2 s\"\n"
+      "time_step = \"10 ms\"\n[[monitor]]\nname = \"b\"\ncentroid = \"b\"\n");
+  const Outcome first = shell(f, "$talus run in/model.toml -o out/deep/first --set material.m.density=2500");
+  CHECK(first.code == 0);
+  has(first.text, "histories (their clock stands in static stages) from 0 s");
+  const std::string kept = read_text_file(f / "out/deep/first/model.toml");
+  CHECK(kept.rfind("folder = \"../../../in", 0) == 0);
+  has(kept, "# --set material.m.density=2500");
+  CHECK(shell(f, "$talus run out/deep/first/model.toml -o again -q --set material.m.density=2500").code == 0);
+  CHECK(read_text_file(f / "out/deep/first/histories.csv") == read_text_file(f / "again/histories.csv"));
 }
 
 TEST_CASE("command: check predicts and runs nothing") {

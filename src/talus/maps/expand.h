@@ -24,8 +24,4 @@ ExpandedModel expand_model(const std::string& file, const std::string& text,
                            const std::vector<std::string>& overrides, const DrawingReader& reader,
                            Findings& findings);
 
-/// The model text with its key `folder` such that, read from `new_folder`, its paths count from `folder`.
-std::string with_folder(const std::string& text, const std::filesystem::path& folder,
-                        const std::filesystem::path& new_folder);
-
 }  // namespace talus::maps

@@ -25,12 +25,15 @@ std::string read_history_file(const Fields& fields, const std::string& folder, H
     return "";
   }
   try {
+    record::Bare bare;
+    if (fields.given("dt")) bare.dt = fields.get<double>("dt");
+    bare.unit = fields.get<std::string>("unit");
     record::HistoryColumn column =
-        record::read_history_text(path.string(), text, fields.get<std::string>("column"));
+        record::read_history_text(path.string(), text, fields.get<std::string>("column"), bare);
     history.time = std::move(column.time);
     history.value = std::move(column.value);
   } catch (const InputError& e) {
-    const char* key = fields.given("column") ? "column" : "file";
+    const char* key = fields.given("column") ? "column" : fields.given("unit") ? "unit" : "file";
     findings.error(fields.where(key), fields.path_of(key), std::string("cannot be read\n") + e.what());
   }
   return text;

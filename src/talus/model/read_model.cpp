@@ -47,6 +47,7 @@ class ModelReader : private SectionReader {
     files_ += shapes;
     if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_cut_sections(source_, block_names_, model_, findings_);
+    model_.reads_files = !files_.empty() || !model_.cut.blocks_file.empty();
     read_contact();
     read_stage_sections(source_, model_, findings_);
     read_action_sections(source_, model_, findings_);
@@ -218,9 +219,9 @@ class ModelReader : private SectionReader {
       for (const char* key : {"duration", "samples"})
         if (!formula && f.given(key))
           findings_.error(f.where(key), f.path_of(key), "belongs to an expression", "leave it out");
-      if (!file && f.given("column"))
-        findings_.error(f.where("column"), f.path_of("column"), "belongs to a file",
-                        "leave it out, or give file");
+      for (const char* key : {"column", "dt", "unit"})
+        if (!file && f.given(key))
+          findings_.error(f.where(key), f.path_of(key), "belongs to a file", "leave it out, or give file");
       if (table + formula + file != 1) {
         findings_.error(f.where(), f.path(),
                         table + formula + file == 0 ? "is empty" : "is given in more than one way",

@@ -196,12 +196,21 @@ std::vector<SectionSpec> sections_of_model() {
          .doc = "With `expression`: number of equal intervals."},
         {.name = "file",
          .type = K::kText,
-         .doc = "A table (CSV with a column \"time [s]\") or a strong-motion record (PEER, K-NET, JMA); the "
+         .doc = "A table (CSV with a column \"time [s]\") or a strong-motion record (PEER, K-NET, JMA, ESM, GeoNet, CSMIP, COSMOS, SMC); the "
                 "path counts from the folder of the model. Its content belongs to the hash of the model."},
         {.name = "column",
          .type = K::kText,
          .doc = "With `file`: title of the column, or its quantity (acceleration, velocity, displacement); "
                 "none: the only one beside the time. Values become SI by the unit in the title."},
+        {.name = "dt",
+         .dimension = D::kTime,
+         .range = kPositive,
+         .doc =
+             "With `file`: the time step of a file of bare values, one a line or in rows, without a column of time."},
+        {.name = "unit",
+         .type = K::kText,
+         .doc =
+             "With `file`: the unit of values whose file names none: one of motion (m/s2, gal, g, m/s, cm/s, m, mm ...), rad, rad/s, rad/s2, N, Pa, -."},
         {.name = "scale",
          .default_text = "1",
          .doc = "Factor on all values; -1 turns the motion of a base into the load seen from it."}}},

@@ -63,6 +63,7 @@ const std::vector<Unit>& all_units() {
       {"mm", kLength, 1e-3},
       {"cm", kLength, 1e-2},
       {"km", kLength, 1e3},
+      {"ft", kLength, 0.3048},
       {"m2", kArea, 1},
       {"cm2", kArea, 1e-4},
       {"s", kTime, 1},
@@ -86,14 +87,17 @@ const std::vector<Unit>& all_units() {
       {"kg/m3", kDensity, 1},
       {"t/m3", kDensity, 1e3},
       {"g/cm3", kDensity, 1e3},
+      {"kN/m3", kDensity, 1e3 / kStandardGravity},  // unit weight, at standard gravity
       {"Pa", kStress, 1},
       {"kPa", kStress, 1e3},
       {"MPa", kStress, 1e6},
       {"GPa", kStress, 1e9},
+      {"psi", kStress, 6894.757293168361},  // 0.45359237 kg at standard gravity on (25.4 mm)^2
       {"N", kForce, 1},
       {"kN", kForce, 1e3},
       {"MN", kForce, 1e6},
       {"Pa/m", kStiffness, 1},
+      {"kPa/m", kStiffness, 1e3},
       {"MPa/m", kStiffness, 1e6},
       {"GPa/m", kStiffness, 1e9},
       {"N/m", kLineForce, 1},
@@ -164,6 +168,12 @@ Quantity parse_quantity(std::string_view text, Dimension dimension) {
           fmt::format("\"{}\" is {}; expected {}", text, article_name(u.dimension), describe(dimension));
       return q;
     }
+  }
+  if (symbol.size() > 1 && symbol[0] == ',' && symbol[1] >= '0' && symbol[1] <= '9') {
+    std::string point(text);
+    point[point.find(',')] = '.';
+    q.error = fmt::format("\"{}\": numbers have a decimal point; write \"{}\"", text, point);
+    return q;
   }
   const std::string near = closest_name(symbol, symbols_of(dimension));
   q.error = fmt::format("unknown unit \"{}\"; expected {}{}", symbol, describe(dimension),

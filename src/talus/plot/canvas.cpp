@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "talus/base/error.h"
 #include "talus/output/files.h"
@@ -110,6 +111,12 @@ std::string svg_bytes(double width, double height, const std::function<void(cair
   draw_on(surface.get(), 1, draw);
   cairo_surface_finish(surface.get());
   check(cairo_surface_status(surface.get()));
+  // cairo numbers its surfaces over the whole process: the same picture has the same bytes whatever was drawn before it
+  constexpr std::string_view kName = "id=\"surface";
+  for (size_t at = bytes.find(kName); at != std::string::npos; at = bytes.find(kName, at + 1)) {
+    const size_t digits = at + kName.size();
+    bytes.erase(digits, bytes.find('"', digits) - digits);
+  }
   return bytes;
 }
 

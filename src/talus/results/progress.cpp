@@ -23,6 +23,22 @@ std::string rest_left(const StageInput& stage, const StepReport& report) {
                      report.speed_left, stage.unbalanced);
 }
 
+// What blocks do: the fastest, and faces that have broken.
+std::string moving(const Instant& i) {
+  double fastest = 0;
+  size_t block = 0;
+  for (size_t k = 0; k < i.state.rate.size(); ++k) {
+    const double v = norm(i.state.rate[k].a);
+    if (v > fastest) fastest = v, block = k;
+  }
+  const auto broken =
+      std::count_if(i.state.face.begin(), i.state.face.end(), [](const FaceState& f) { return f.broken; });
+  std::string out;
+  if (fastest > 0) out = fmt::format(", fastest {} {:.2g} m/s", i.scene.blocks.name[block], fastest);
+  if (broken > 0) out += fmt::format(", {} face{} broken", broken, broken == 1 ? "" : "s");
+  return out;
+}
+
 }  // namespace
 
 void say(std::FILE* out, const std::string& text) { std::fwrite(text.data(), 1, text.size(), out); }
@@ -37,8 +53,18 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
                                 ? fmt::format("at most {:g} s, the first step {:.4g} s", s.duration, plan.dt)
                                 : fmt::format("{:g} s in {}{} steps of {:.4g} s", s.duration,
                                               at_rest ? "at most " : "", plan.steps, plan.dt);
-  say(out_, fmt::format("stage {}/{} \"{}\" ({}{}): {}\n", stage + 1, scene.model.stages.size(), s.name,
-                        at_rest ? "static" : "dynamic", how, steps));
+  // where the clock of histories is met for the first time, and where it goes on
+  double history_time = 0;
+  for (int k = 0; k < stage; ++k) {
+    const StageInput& before = scene.model.stages[static_cast<size_t>(k)];
+    if (before.kind == StageKind::kDynamic) history_time += before.duration;
+  }
+  const std::string clock =
+      at_rest || scene.model.histories.empty()
+          ? ""
+          : fmt::format("; histories (their clock stands in static stages) from {:g} s", history_time);
+  say(out_, fmt::format("stage {}/{} \"{}\" ({}{}): {}{}\n", stage + 1, scene.model.stages.size(), s.name,
+                        at_rest ? "static" : "dynamic", how, steps, clock));
   std::fflush(out_);
   stage_wall_ = last_shown_ = wall_now();
   stage_step_ = 0;
@@ -65,13 +91,13 @@ void Progress::show(const Instant& instant, double now) {
   const double share =
       100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
   const std::string pace =
-      s.from_rest
-          ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt)
-          : fmt::format("({:.0f} %), {:.0f} steps/s, {}{} to go", share, rate,
-                        s.kind == StageKind::kStatic ? "at most " : "", readable_seconds(left / rate));
+      s.from_rest ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt)
+                  : fmt::format("{:.0f} %, {}{} to go", share, s.kind == StageKind::kStatic ? "at most " : "",
+                                readable_seconds(left / rate));
+  const std::string steps = s.from_rest ? "" : fmt::format(", {:.0f} steps/s", rate);
   const std::string line =
-      fmt::format("  {}: t = {:.4g} s{} {}, worst contact error {:.1e} m{}", s.name, instant.state.time,
-                  s.from_rest ? "," : "", pace, worst_error_, rest_left(s, instant.report));
+      fmt::format("  {}: t = {:.4g} s, {}{}{}, contact error {:.0e} m{}", s.name, instant.state.time, pace,
+                  rest_left(s, instant.report), moving(instant), worst_error_, steps);
   say(out_, (terminal_ ? "\r" : "") + line + (terminal_ ? "\x1b[K" : "\n"));
   std::fflush(out_);
   line_open_ = terminal_;

@@ -11,6 +11,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
+#include "talus/model/with_folder.h"
 #include "talus/results/model_report.h"
 #include "talus/results/problem_file.h"
 #include "talus/results/slip_report.h"
@@ -74,10 +75,15 @@ std::string running_text(const Scene& scene) {
   return running.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+// The model such that it runs again where the results lie: its paths count from where they did.
+std::string model_to_keep(const Model& model, const std::filesystem::path& folder) {
+  return model.reads_files ? with_folder(model.text, model.folder, folder) : model.text;
+}
+
 // First of all files: whatever happens then, the folder says what it is.
 ResultFolder begin_results(ResultFolder folder, const Scene& scene) {
   folder.write("summary.json", running_text(scene), Reach::kDisk);
-  folder.write("model.toml", scene.model.text, Reach::kDisk);
+  folder.write("model.toml", model_to_keep(scene.model, folder.path()), Reach::kDisk);
   folder.make_folder("fields");
   return folder;
 }

@@ -9,6 +9,7 @@
 #include "talus/maps/import.h"
 #include "talus/model/read_model.h"
 #include "talus/model/toml_source.h"
+#include "talus/model/with_folder.h"
 
 namespace test_sections {
 

@@ -83,6 +83,32 @@ TEST_CASE("history file: scale, and the only column") {
   CHECK(c.message == "");
 }
 
+TEST_CASE("history file: bare values take their step and unit from the model") {
+  Case c;
+  c.write("bare.txt", "1\n2\n-3\n");
+  const Model model = c.read("file = \"bare.txt\"\ndt = \"20 ms\"\nunit = \"gal\"\n");
+  CHECK(c.message == "");
+  CHECK(model.histories[0].time == std::vector<double>{0, 0.02, 0.04});
+  CHECK(model.histories[0].value[2] == doctest::Approx(-0.03));
+  CHECK(c.read("file = \"bare.txt\"\ndt = \"1 s\"\nunit = \"N\"\n").histories[0].value ==
+        std::vector<double>{1, 2, -3});
+  c.write("table.csv", "t [s],ax\n0,1\n1,5\n");
+  CHECK(c.read("file = \"table.csv\"\nunit = \"cm/s2\"\n").histories[0].value[1] == doctest::Approx(0.05));
+  CHECK(c.message == "");
+  // without them, or against what the file says
+  c.read("file = \"bare.txt\"\n");
+  CHECK(c.message.find("or say dt = ") != std::string::npos);
+  c.read("file = \"bare.txt\"\ndt = \"20 ms\"\n");
+  CHECK(c.message.find("no unit of the values is named") != std::string::npos);
+  c.read("file = \"table.csv\"\nunit = \"furlong\"\n");
+  CHECK(c.message.find("the unit \"furlong\" is not known") != std::string::npos);
+  c.write("named.csv", "t [s],ax [m/s2]\n0,1\n1,5\n");
+  c.read("file = \"named.csv\"\nunit = \"gal\"\n");
+  CHECK(c.message.find("the unit is named twice") != std::string::npos);
+  c.read("time = [0, 1]\nvalue = [1, 2]\nunit = \"gal\"\n");
+  CHECK(c.message.find("history.h.unit: belongs to a file") != std::string::npos);
+}
+
 TEST_CASE("history file: records are read as talus record reads them") {
   Case c;
   c.write("a.AT2",

@@ -26,10 +26,17 @@ TEST_CASE("units: numbers with units become SI") {
   CHECK(value("180 deg", Dimension::kAngle) == doctest::Approx(M_PI).epsilon(1e-15));
   CHECK(value("-3e2 mm", Dimension::kLength) == doctest::Approx(-0.3));
   CHECK(value("2.7 t/m3", Dimension::kDensity) == doctest::Approx(2700));
+  CHECK(value("26 kN/m3", Dimension::kDensity) == doctest::Approx(26e3 / 9.80665).epsilon(1e-15));
+  CHECK(value("40 kPa/m", Dimension::kStiffness) == 4e4);
+  CHECK(value("10 ft", Dimension::kLength) == doctest::Approx(3.048).epsilon(1e-15));
+  CHECK(value("1000 psi", Dimension::kStress) == doctest::Approx(6.894757293168361e6).epsilon(1e-15));
   CHECK(value("7", Dimension::kTime) == 7);
   CHECK(value("0", Dimension::kAngle) == 0);
   CHECK(parse_quantity("1.5", Dimension::kAngle).error != "");
   CHECK(parse_quantity("", Dimension::kLength).error != "");
+  CHECK(parse_quantity("3,0 m", Dimension::kLength).error.find("write \"3.0 m\"") != std::string::npos);
+  CHECK(parse_quantity("1,5", Dimension::kLength).error.find("write \"1.5\"") != std::string::npos);
+  CHECK(parse_quantity("3, m", Dimension::kLength).error.find("unknown unit") != std::string::npos);
 }
 
 TEST_CASE("histories: linear between points, held outside, integral exact") {

@@ -114,7 +114,7 @@ TEST_CASE("wrong input: each kind has its message") {
        "\"5 GPa\"",
        "\"5 kN\"",
        {"model.toml:7:9: error: material.rock.young: \"5 kN\" is a force; expected a stress (Pa, kPa, MPa, "
-        "GPa)"}},
+        "GPa, psi)"}},
       {"unknown unit", "\"5 GPa\"", "\"5 Gpa\"", {"unknown unit \"Gpa\"", "did you mean \"GPa\"?"}},
       {"no number", "\"5 GPa\"", "\"stiff\"", {"\"stiff\" does not begin with a number; expected a stress"}},
       {"bare angle",

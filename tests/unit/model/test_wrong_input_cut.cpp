@@ -226,7 +226,7 @@ spacing = "4 m" => spacing = { mean = "4 m", normal = "-1 m" }
 spacing = "4 m" => spacing = { mean = "4 m", uniform = "5 m" }
   42:37: error: joint_set.steep.spacing: is wider than the mean: values would go below 0 m
 spacing = "4 m" => spacing = "{ mean = 4 m }"
-  42:11: error: joint_set.steep.spacing: "{ mean = 4 m }" does not begin with a number; expected a length (m, mm, cm, km), for example "1 m"
+  42:11: error: joint_set.steep.spacing: "{ mean = 4 m }" does not begin with a number; expected a length (m, mm, cm, km, ft), for example "1 m"
 trace_length = { mean = "12 m", uniform = "4 m" }\n =>
   43:1: error: joint_set.steep.gap: has no meaning for a through-going set
   = give trace_length
@@ -263,7 +263,7 @@ TEST_CASE("wrong cut: regions and arches") {
 [[0, 0], [40, 0], [40, 30], [0, 30]]\nsides = ["base", "right", "top", "left"] => [[0, 0], [40, 0]]
   16:1: error: region.rock.polygon: has 2 corners; a polygon needs at least 3
 [[0, 0], [40, 0], [40, 30], [0, 30]]\nsides = ["base", "right", "top", "left"] => [0, 0, 40, 0, 40, 30]
-  16:12: error: region.rock.polygon: is a number; expected a point [x, y] with a length (m, mm, cm, km)
+  16:12: error: region.rock.polygon: is a number; expected a point [x, y] with a length (m, mm, cm, km, ft)
 [[arch]] => [[region]]\npolygon = [[95, 0], [96, 0], [96, 1]]\nmaterial = "stone"\n[[arch]]
   29:1: error: region.3.name: is missing
   = Unique name; stands for all its blocks.

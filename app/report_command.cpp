@@ -16,8 +16,6 @@ namespace talus::app {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 std::string page_text() {
   const fs::path place = data_file("report_page.html");
   std::error_code ec;
@@ -28,8 +26,6 @@ std::string page_text() {
         place.string()));
   return read_text_file(place);
 }
-
-}  // namespace
 
 void add_report_arguments(CLI::App& verb, ReportArguments& args) {
   verb.add_option("DIR", args.folders, "result folders; the charts of several are overlaid")->required();

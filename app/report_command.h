@@ -15,6 +15,8 @@ struct ReportArguments {
 };
 
 void add_report_arguments(CLI::App& verb, ReportArguments& args);
+/// The page that reports are made of. Throws FileError where it was not built.
+std::string page_text();
 int report_command(const ReportArguments& args);
 
 }  // namespace talus::app

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "report_command.h"
 #include "signals.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
@@ -13,6 +14,7 @@
 #include "talus/run/base_report.h"
 #include "talus/run/resolution.h"
 #include "tell.h"
+#include "watch.h"
 
 namespace talus::app {
 
@@ -27,8 +29,8 @@ RunNotes notes_of(const ModelArguments& model, const Findings& findings) {
 // Stops the run when a signal asks for it.
 class StoppedBySignals : public Progress {
  public:
-  StoppedBySignals(StopSignals& signals, Recorder& recorder, std::FILE* out, bool terminal)
-      : Progress(recorder, out, terminal), signals_(signals) {
+  StoppedBySignals(StopSignals& signals, Recorder& recorder, Observer& next, std::FILE* out, bool terminal)
+      : Progress(next, out, terminal), signals_(signals) {
     signals_.listen([&recorder] { recorder.end_as_held(); });
   }
   bool stop() override { return signals_.hear() != 0 || Progress::stop(); }
@@ -56,9 +58,10 @@ struct Run {
 };
 
 Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const std::string& from,
-                 Recorder& recorder, StopSignals& signals, std::FILE* out, const Workers& workers,
-                 bool branches) {
-  StoppedBySignals progress(signals, recorder, out, isatty(fileno(out)) != 0);
+                 Recorder& recorder, LivePage* live, StopSignals& signals, std::FILE* out,
+                 const Workers& workers, bool branches) {
+  Observer& first = live ? static_cast<Observer&>(*live) : recorder;
+  StoppedBySignals progress(signals, recorder, first, out, isatty(fileno(out)) != 0);
   say(out, base_report(prepared.scene) + resolution_report(prepared.scene));
   State state = saved ? std::move(saved->state) : start_state(prepared.scene);
   if (saved)
@@ -70,6 +73,7 @@ Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const st
   signals.run_has_ended();
   progress.finish();
   recorder.finish(result);
+  if (live) live->finish();
   return {std::move(result), signals.asked()};
 }
 
@@ -100,6 +104,9 @@ void add_run_arguments(CLI::App& verb, RunArguments& args) {
                   "threads inside a step, 0: as many as pay; results are the same for any number")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  verb.add_flag(
+      "--watch", args.watch,
+      "write live.html into the folder every few seconds: the report so far, which a browser keeps up");
   verb.add_flag("--profile", args.profile, "print the share of each part of a step in the time of the run");
   verb.add_option("--dump-step", args.dump_step,
                   "also write the contact equations of this step, as step_N.json, for talus replay");
@@ -114,6 +121,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (args.force && !args.from.empty() && !branches)
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
   if (args.from.empty() || branches) check_result_folder(args.folder, args.force);
+  const std::string page = args.watch ? page_text() : "";
   auto [findings, prepared] = prepare_model(model);
   if (!args.until.empty()) end_after(prepared, stages_until(prepared.scene.model, args.until));
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
@@ -155,9 +163,15 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
     throw;
   }
   recorder->dump_step(args.dump_step);
+  std::optional<LivePage> live;
+  if (args.watch) {
+    live.emplace(*recorder, name, page);
+    say(out, fmt::format("to watch it, open {} in a browser\n", live->file().string()));
+  }
   Run run;
   try {
-    run = run_recorded(prepared, saved, args.from, *recorder, signals, out, workers, branches);
+    run = run_recorded(prepared, saved, args.from, *recorder, live ? &*live : nullptr, signals, out, workers,
+                       branches);
   } catch (const std::bad_alloc&) {
     recorder->abandon("not enough memory");
     throw;

@@ -12,7 +12,7 @@ namespace talus::app {
 struct RunArguments {
   std::string folder, from;
   std::string until;  // name of the last stage, "": all
-  bool force = false, quiet = false, profile = false;
+  bool force = false, quiet = false, profile = false, watch = false;
   int64_t dump_step = -1;
   int threads = 0;  // 0: as many as pay
 };

@@ -1,12 +1,13 @@
-// Drives the report in a real browser, from a file, with the network watched: node report.test.mjs REPORT FOLDER MANY
-// where FOLDER is the result folder of examples/bolted_slope that REPORT was made from, and MANY a report of six runs. Exit 77: no browser.
+// Drives the report in a real browser, from a file, with the network watched: node report.test.mjs REPORT FOLDER MANY LIVE
+// where FOLDER is the result folder of examples/bolted_slope that REPORT was made from, MANY a report of six runs,
+// and LIVE the page of a run that goes on. Exit 77: no browser.
 
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { test, before, after } from "node:test";
 
-const [report, folder, many] = process.argv.slice(2);
+const [report, folder, many, live] = process.argv.slice(2);
 const browserPath = process.env.TALUS_BROWSER || "/usr/bin/chromium";
 if (!existsSync(browserPath)) {
   console.log(`skipped: there is no browser at ${browserPath} (package chromium)`);
@@ -38,7 +39,7 @@ after(async () => { if (browser) await browser.close(); });
 // not page.waitForFunction: it evaluates in the page, which the page's own policy forbids
 async function until(expression) {
   for (const end = Date.now() + 30000; Date.now() < end;) {
-    if (await page.evaluate(expression)) return;
+    if (await page.evaluate(expression).catch(() => false)) return;  // a page that is being loaded anew knows nothing
     await new Promise((resolve) => setTimeout(resolve, 10));
   }
   assert.fail(`never came true: ${expression}`);
@@ -262,7 +263,27 @@ test("six runs: a row and a small chart each, in colours of their own; told agai
   await until("document.querySelector('#legend').innerText.includes('relative to')");
 });
 
+test("the page of a run that goes on loads itself anew and keeps frame, colours, selection and zoom", async () => {
+  for (const end = Date.now() + 60000; !existsSync(live) && Date.now() < end;) await new Promise((resolve) => setTimeout(resolve, 100));
+  await page.goto(`file://${live}`);
+  await until("window.talus && window.talus.ready");
+  const first = await page.evaluate("performance.timeOrigin");
+  await page.locator("#quantity").selectOption("velocity");
+  await page.locator("#slider").fill("1");
+  await until("window.talus.state().frame === 1");
+  await page.locator("#zoom-in").click();
+  await page.locator("#inspector input[name=name]").fill("1");
+  await page.locator("#inspector form button").click();
+  const before = await page.evaluate("window.talus.screenOf(1)");
+  await until(`performance.timeOrigin !== ${first} && window.talus && window.talus.ready`);
+  assert.equal((await state()).frame, 1);
+  assert.deepEqual((await state()).selected, { block: 1 });
+  assert.equal(await page.locator("#quantity").inputValue(), "velocity");
+  const after = await page.evaluate("window.talus.screenOf(1)");
+  assert.ok(Math.hypot(after[0] - before[0], after[1] - before[1]) < 1, `${before} and ${after}`);
+});
+
 test("no page error, no request", () => {
   assert.deepEqual(errors, []);
-  assert.deepEqual(requests, [`file://${report}`, `file://${many}`]);
+  assert.deepEqual([...new Set(requests.map((r) => r.split("#")[0]))], [`file://${report}`, `file://${many}`, `file://${live}`]);
 });

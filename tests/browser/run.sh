@@ -46,4 +46,8 @@ for k in 1 2 3 4 5 6; do
   runs+=("$out/wave_$k")
 done
 "$build/app/talus" report "${runs[@]}" -o "$out/many.html"
-NODE_PATH=$build/browser/node_modules exec node "$here/report.test.mjs" "$out/report.html" "$out/run" "$out/many.html"
+# a run that goes on, and its page
+"$build/app/talus" run "$here/../../examples/shaken_slope/shaken_slope.toml" -o "$out/live" --watch --quiet --set output.field_interval=0.25 &
+watched=$!
+trap 'kill $watched 2>/dev/null || true' EXIT
+NODE_PATH=$build/browser/node_modules node "$here/report.test.mjs" "$out/report.html" "$out/run" "$out/many.html" "$out/live/live.html"

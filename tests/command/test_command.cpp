@@ -75,6 +75,20 @@ TEST_CASE("command: a result folder runs again as it lies, with files, and says 
   CHECK(read_text_file(f / "out/deep/first/histories.csv") == read_text_file(f / "again/histories.csv"));
 }
 
+TEST_CASE("command: run --watch leaves the page of the run, which does not load itself any more") {
+  const Folder f;
+  const Outcome o = shell(f, fmt::format("$talus run {} -o out --watch", kBar));
+  if (o.text.find("the page of the report was not built") != std::string::npos) return;
+  CHECK(o.code == 0);
+  has(o.text, "to watch it, open");
+  CHECK(read_text_file(f / "out/live.html").find("talus-index") != std::string::npos);
+  CHECK(read_text_file(f / "out/talus_manifest.txt").find("live.html") != std::string::npos);
+  // the tables of a run that is watched are those of one that is not
+  CHECK(shell(f, fmt::format("$talus run {} -o plain -q", kBar)).code == 0);
+  for (const char* table : {"histories.csv", "steps.csv", "monitors.csv"})
+    CHECK(read_text_file(f / "out" / table) == read_text_file(f / "plain" / table));
+}
+
 TEST_CASE("command: check predicts and runs nothing") {
   const Folder f;
   const Outcome o = shell(f, fmt::format("$talus check {}", kBar));

@@ -38,7 +38,53 @@ async function start() {
   await showRun(0);
   offerClocks();
   await addMonitors();
+  if (window.location.hash.length > 1) await goOnWhereWeWere();  // also the last page of a run that has ended
+  if (index.reload > 0) reloading = setTimeout(reload, 1000 * index.reload);
   window.talus.ready = true;
+}
+
+// ---- a run that goes on ----
+
+let reloading = 0;
+
+// The page is loaded anew, and kept as the reader has left it, by what stands behind the # of its address.
+function reload() {
+  if (playing) {
+    reloading = setTimeout(reload, 500);
+    return;
+  }
+  const last = run.frames.length - 1, controls = {};
+  for (const id of ["quantity", "range", "deformation", "clock-of", "answer-stage"]) if ($(id)) controls[id] = $(id).value;
+  const kept = { frame: frameIndex === last ? "last" : frameIndex, centre: view.centre, scale: view.scale, fitted: view.fitted, selected: view.selected,
+    show: view.show, against, controls, scroll: window.scrollY };
+  window.history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify(kept))}`);
+  window.location.reload();
+}
+
+async function goOnWhereWeWere() {
+  let kept;
+  try {
+    kept = JSON.parse(decodeURIComponent(window.location.hash.slice(1)));
+  } catch {
+    return;  // the first time
+  }
+  for (const [id, value] of Object.entries(kept.controls || {})) {
+    const control = $(id);
+    if (!control || (control.tagName === "SELECT" && ![...control.options].some((o) => o.value === value))) continue;
+    control.value = value;
+  }
+  if ($("answer-stage")) showAnswer($("answer-stage").value);
+  view.quantity = $("quantity").value;
+  view.deformation = Number($("deformation").value) || view.deformation;
+  Object.assign(view.show, kept.show);
+  for (const key of Object.keys(view.show)) $(`show-${key}`).checked = view.show[key];
+  against = kept.against || "";
+  if ([...$("against").options].some((o) => o.value === against)) $("against").value = against;
+  view.selected = kept.selected;
+  if (!kept.fitted) view.centre = kept.centre, view.scale = kept.scale, view.fitted = false;
+  if (run.frames.length) await showFrame(kept.frame === "last" ? run.frames.length - 1 : Math.min(kept.frame, run.frames.length - 1), kept.fitted);
+  if (kept.controls["clock-of"]) await addMonitors();
+  window.scrollTo(0, kept.scroll);
 }
 
 // ---- one run ----

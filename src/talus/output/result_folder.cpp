@@ -146,7 +146,7 @@ bool is_numbered(std::string_view name, std::string_view begin, size_t digits, s
 // Files of results with names that do not count, by number of ResultKind.
 const std::array<std::vector<std::string>, 5> kFixedNames{
     {{"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv",
-      "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html", "fields/blocks.pvd",
+      "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html", "live.html", "fields/blocks.pvd",
       "fields/contacts.pvd", "fields/bolts.pvd"},
      {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt", "map.svg",
       "map.png", "model.toml"},

@@ -338,8 +338,10 @@ json words_of_results() {
 // The index of the page, in the order of the runs; their data in `chunks`.
 json index_of(const std::vector<RunFolder>& runs, const PageOptions& options, PageNotes& notes,
               Chunks& chunks) {
-  json index = {
-      {"program", fmt::format("talus {}", kVersion)}, {"words", words_of_results()}, {"runs", json::array()}};
+  json index = {{"program", fmt::format("talus {}", kVersion)},
+                {"words", words_of_results()},
+                {"reload", options.reload},
+                {"runs", json::array()}};
   size_t blocks = 0;
   for (const RunFolder& run : runs) blocks = std::max(blocks, blocks_in(run));
   const double limit = options.megabytes > 0 ? 1e6 * options.megabytes

@@ -12,6 +12,7 @@ namespace talus::report {
 struct PageOptions {
   int frames = 0;        // at most so many of each run, 0: as many as fit
   double megabytes = 0;  // of the page, 0: 2 kB a block, within 29 and 95 MB
+  double reload = 0;     // the page loads itself anew after so long, 0: never [s]
 };
 
 struct PageNotes {

@@ -1,0 +1,48 @@
+#pragma once
+// `talus run --watch`: the report of a run that goes on, written anew every few seconds.
+
+#include <filesystem>
+#include <string>
+
+#include "talus/run/instant.h"
+
+namespace talus::app {
+
+/// Hands everything on, and writes live.html of the folder in between: atomically, at most every kEvery seconds and in at
+/// most 5 % of the time of the run. The page reloads itself while the run goes on.
+class LivePage : public Observer {
+ public:
+  /// @param page  of the report, without data
+  LivePage(Observer& next, std::filesystem::path folder, std::string page);
+
+  void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
+    next_.stage_begins(scene, stage, plan);
+  }
+  void at(const Instant& instant) override;
+  void fails(const Instant& instant) override { next_.fails(instant); }
+  bool stop() override { return next_.stop(); }
+  bool wants_state() override { return next_.wants_state(); }
+  bool wants_copy() override { return next_.wants_copy(); }
+  void hold_state(const Standing& standing, const State& state) override {
+    next_.hold_state(standing, state);
+  }
+  void keep_state(const Standing& standing, const State& state) override {
+    next_.keep_state(standing, state);
+  }
+
+  /// The page of the run that has ended, which does not reload. Never throws: what went wrong is told once.
+  void finish() { write(0); }
+  std::filesystem::path file() const { return folder_ / "live.html"; }
+
+ private:
+  void write(double reload);
+
+  Observer& next_;
+  std::filesystem::path folder_;
+  std::string page_;
+  double next_at_ = 0;  // wall time [s]
+  int steps_ = 0;
+  bool noted_ = false, told_ = false;
+};
+
+}  // namespace talus::app

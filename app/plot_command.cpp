@@ -12,6 +12,7 @@
 #include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
+#include "talus/output/columns.h"
 #include "talus/output/csv.h"
 #include "talus/output/result_folder.h"
 #include "talus/plot/block_picture.h"
@@ -24,16 +25,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// "impact.mean_normal_force [N]" -> monitor "impact", quantity "mean normal force [N]"
-struct ColumnName {
-  std::string monitor, quantity;
-};
+// What an axis is called: "mean normal force [N]".
+std::string axis_title(ColumnTitle title) {
+  title.monitor.clear();
+  std::replace(title.quantity.begin(), title.quantity.end(), '_', ' ');
+  return title.text();
+}
 
-ColumnName split_column(const std::string& column) {
-  const size_t dot = column.find('.');
-  ColumnName name{column.substr(0, dot), dot == std::string::npos ? column : column.substr(dot + 1)};
-  std::replace(name.quantity.begin(), name.quantity.end(), '_', ' ');
-  return name;
+// A clock has no monitor.
+std::string name_in_files(const std::string& column) {
+  const ColumnTitle title = parts_of_title(column);
+  return title.monitor.empty() ? title.quantity : title.monitor;
 }
 
 std::vector<double> in_unit(std::vector<double> t, double scale) {
@@ -99,17 +101,17 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
   plot::Figure figure;
   std::vector<std::string> titles;
   for (const std::string& column : columns) titles.push_back(full_title(tables[0], column));
-  const ColumnName name = split_column(titles[0]);
-  const std::string quantity = name.quantity.substr(0, name.quantity.find(" ["));
-  figure.title = !args.title.empty()  ? args.title
-                 : columns.size() > 1 ? quantity
-                                      : name.monitor + ": " + quantity;
+  const ColumnTitle name = parts_of_title(titles[0]);
+  const std::string axis = axis_title(name), quantity = axis_title({"", name.quantity, ""});
+  figure.title = !args.title.empty()                          ? args.title
+                 : columns.size() > 1 || name.monitor.empty() ? quantity
+                                                              : name.monitor + ": " + quantity;
   figure.x_label = args.time_unit == "ms" ? "t [ms]" : "t [s]";
-  figure.y_label = name.quantity;
+  figure.y_label = axis;
   const double scale = args.time_unit == "ms" ? 1e3 : 1;
   for (size_t c = 0; c < columns.size(); ++c) {
-    const ColumnName of = split_column(titles[c]);
-    if (of.quantity != name.quantity)
+    const ColumnTitle of = parts_of_title(titles[c]);
+    if (axis_title(of) != axis)
       throw Error(kExitUsage,
                   fmt::format("one figure has one axis: \"{}\" and \"{}\" are different quantities",
                               titles[0], titles[c]));
@@ -279,7 +281,7 @@ int plot_command(const PlotArguments& args) {
     throw Error(kExitUsage, "several columns in one figure need -o, the path of the figure");
   const fs::path stem = args.output.empty()
                             ? fs::path(args.folders[0]) / "plots" /
-                                  file_name_of(split_column(full_title(tables[0], args.columns[0])).monitor)
+                                  file_name_of(name_in_files(full_title(tables[0], args.columns[0])))
                             : fs::path(args.output);
   if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
   draw_columns(args, tables, args.columns, stem);

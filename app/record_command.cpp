@@ -13,6 +13,7 @@
 #include "talus/plot/record_figures.h"
 #include "talus/record/measures.h"
 #include "talus/record/motion_file.h"
+#include "talus/record/section.h"
 #include "tell.h"
 
 namespace talus::app {
@@ -36,6 +37,30 @@ struct Outcome {
   bool as_read = false;  // nothing was done to it
 };
 
+// The motion along the section from this component and the other one.
+std::vector<double> with_second(const RecordArguments& args, record::ReadOptions read,
+                                const record::Record& first, std::vector<double> acceleration, Outcome& out) {
+  const std::string file = args.second.empty() ? args.file : args.second;
+  read.column = args.second_column;
+  const record::Record other = record::read_record_text(file, record::read_record_file(file), read);
+  if (std::abs(other.dt - first.dt) > 1e-6 * first.dt)
+    throw InputError(
+        fmt::format("{}: its step is {:g} s, that of {} {:g} s: the two components must have the same", file,
+                    other.dt, args.file, first.dt));
+  if (other.value.size() != first.value.size())
+    tell("talus: note: {} has {} values, {} {}: what one has more is left out\n", args.file,
+         first.value.size(), file, other.value.size());
+  out.account.steps.push_back(
+      {fmt::format("with {}, \"{}\", to the azimuth of the section", file, other.title),
+       {{"azimuth [deg]", args.azimuths[0]},
+        {"azimuth of the other [deg]", args.azimuths[1]},
+        {"azimuth of the section [deg]", args.section}}});
+  show("{}: {}, \"{}\"; along the section at {:g} deg\n", file, name_of(other.format), other.title,
+       args.section);
+  return record::along_section(acceleration, args.azimuths[0], record::acceleration_of(other),
+                               args.azimuths[1], args.section);
+}
+
 Outcome from_file(const RecordArguments& args) {
   record::ReadOptions read = args.read;
   if (!args.format.empty()) read.format = kFormats.at(args.format);
@@ -50,7 +75,9 @@ Outcome from_file(const RecordArguments& args) {
                  .unit = r.unit,
                  .offset = r.offset};
   out.title = std::filesystem::path(args.file).filename().string();
-  out.before = record::integrate(record::acceleration_of(r), r.dt);
+  std::vector<double> acceleration = record::acceleration_of(r);
+  if (args.to_section) acceleration = with_second(args, read, r, std::move(acceleration), out);
+  out.before = record::integrate(acceleration, r.dt);
   if (r.quantity != record::Quantity::kAcceleration)
     out.account.steps.push_back(
         {fmt::format("acceleration by differences of the {}", name_of(r.quantity)), {}});
@@ -107,6 +134,14 @@ std::vector<CLI::Option*> add_file_options(CLI::App& verb, RecordArguments& args
                       "column or component: its title, or acceleration, velocity, displacement"),
       verb.add_option("--unit", args.read.unit,
                       "unit of the values where the file names none: " + record::known_units()),
+      verb.add_option(
+          "--second", args.second,
+          "file of the other horizontal component; without, but with --second-column: the same file"),
+      verb.add_option("--second-column", args.second_column, "column or component of the other one"),
+      verb.add_option("--azimuths", args.azimuths, "azimuths of both components, clockwise from north [deg]")
+          ->expected(2),
+      verb.add_option("--section", args.section,
+                      "azimuth of the section's x [deg]: the motion along it is made of both"),
       verb.add_flag("--raw", args.raw, "convert to SI and integrate only; none of the steps below")};
 }
 
@@ -183,7 +218,13 @@ void add_record_arguments(CLI::App& verb, RecordArguments& args) {
       "         talus record --synthetic --seed 50 --pga 8.17 --out out/synthetic");
 }
 
-int record_command(const RecordArguments& args) {
+int record_command(const RecordArguments& given) {
+  RecordArguments args = given;
+  args.to_section = !args.second.empty() || !args.second_column.empty() || !args.azimuths.empty();
+  if (args.to_section && (args.azimuths.size() != 2 || (args.second.empty() && args.second_column.empty())))
+    throw Error(
+        kExitUsage,
+        "talus record: the motion along a section takes --second FILE or --second-column, --azimuths of both, and --section");
   if (args.synthetic != args.file.empty())
     throw Error(kExitUsage, args.synthetic ? "talus record: give FILE or --synthetic, not both"
                                            : "talus record: give FILE, or --synthetic with --seed and --pga");

@@ -175,6 +175,10 @@ test("displacements are told against a block, a group, a support", async () => {
   await until("!document.querySelector('#legend').innerText.includes('relative to')");
 });
 
+test("the note under the picture calls slip by its name", async () => {
+  assert.match(await page.locator("#joint-note").innerText(), /^Residual slip of joints orange, the wider the more, at most [0-9.]+ .?m \(accumulated, to and fro: /);
+});
+
 test("the colour bar has round marks at their places", async () => {
   const marks = await page.locator("#legend .tick").evaluateAll((list) => list.map((t) => [Number(t.textContent), parseFloat(t.style.left)]));
   assert.ok(marks.length >= 3, marks.join());

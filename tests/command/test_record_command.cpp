@@ -1,6 +1,7 @@
 // talus record as a user meets it.
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "support/record_text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
+#include "talus/output/files.h"
 
 namespace test_record_command {
 
@@ -143,6 +145,34 @@ TEST_CASE("command: record and its exit codes") {
   CHECK(shell(f, "$talus record a.AT2 --out out --force").code == 0);
   CHECK(shell(f, "mkdir mine && echo x > mine/x").code == 0);
   refused("a.AT2 --out mine --force", 4, "holds no results of talus");
+}
+
+TEST_CASE(
+    "command: record makes the motion along a section of two components, and refuses what does not fit") {
+  const Folder f;
+  std::string north = "t [s],a [m/s2]\n", east = north;
+  for (int i = 0; i < 400; ++i) {
+    const double v = std::sin(0.2 * i);
+    north += fmt::format("{},{}\n", 0.01 * i, 0.6 * v), east += fmt::format("{},{}\n", 0.01 * i, 0.8 * v);
+  }
+  write_file(f / "n.csv", north), write_file(f / "e.csv", east);
+  // ground that moves along atan(0.8 / 0.6) = 53.1301 deg
+  const Outcome o =
+      shell(f, "$talus record n.csv --second e.csv --azimuths 0 90 --section 53.130102354 --raw --out out");
+  CHECK(o.code == 0);
+  const CsvTable motion = read_csv(f / "out/motion.csv");
+  for (size_t i = 0; i < 400; i += 37)
+    CHECK(motion.column("acceleration")[i] ==
+          doctest::Approx(std::sin(0.2 * static_cast<double>(i))).epsilon(1e-9));
+  has(read_text_file(f / "out/spectrum.csv"), "period [s],sa [m/s2]\n0.02,");
+  CHECK(shell(f, "$talus record n.csv --second e.csv --section 40 --raw --out x").code == 2);
+  CHECK(shell(f, "$talus record n.csv --second e.csv --azimuths 0 60 --section 40 --raw --out x").code == 3);
+  write_file(f / "slow.csv", "t [s],a [m/s2]\n0,1\n0.5,2\n1,1\n");
+  const Outcome steps =
+      shell(f, "$talus record n.csv --second slow.csv --azimuths 0 90 --section 40 --raw --out x");
+  CHECK(steps.code == 3);
+  has(steps.text, "the two components must have the same");
+  CHECK(!fs::exists(f / "x"));
 }
 
 }  // namespace test_record_command

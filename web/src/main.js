@@ -277,7 +277,7 @@ function legend() {
   }
   const notes = [], c = view.contacts;
   if (c && (view.show.joints || view.show.forces)) {
-    if (view.show.joints && c.lines.length + c.alone.length) notes.push(view.largestSlip > 0 ? `${c.residual ? "Residual" : "Accumulated"} slip slip of joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}${c.residual && view.largestAccumulated > 0 ? ` (accumulated, to and fro: ${withUnit(view.largestAccumulated, "m")})` : ""}.` : "No joint has slipped.");
+    if (view.show.joints && c.lines.length + c.alone.length) notes.push(view.largestSlip > 0 ? `${c.residual ? "Residual" : "Accumulated"} slip of joints orange, the wider the more, at most ${withUnit(view.largestSlip, "m")}${c.residual && view.largestAccumulated > 0 ? ` (accumulated, to and fro: ${withUnit(view.largestAccumulated, "m")})` : ""}.` : "No joint has slipped.");
     if (view.show.joints && view.largestOpening > 0) notes.push(`Open joints of blocks still near each other dashed, at most ${withUnit(view.largestOpening, "m")}.`);
     if (view.show.forces && view.largestForce > 0) notes.push(`Longest arrow: ${withUnit(view.largestForce, "N")}, on the first of the two blocks.`);
     if (!c.exact) notes.push(`Contacts are those of t = ${number(c.time, 5)} s: this page has them for ${run.contacts.length} frames.`);

@@ -95,7 +95,8 @@ std::string from_markup(std::string_view text) {
   std::string out;
   while (!text.empty()) {
     bool known = false;
-    for (const auto& [name, c] : {std::pair<std::string_view, char>("&lt;", '<'), {"&gt;", '>'}, {"&quot;", '"'}, {"&amp;", '&'}}) {
+    for (const auto& [name, c] :
+         {std::pair<std::string_view, char>("&lt;", '<'), {"&gt;", '>'}, {"&quot;", '"'}, {"&amp;", '&'}}) {
       if (text.substr(0, name.size()) != name) continue;
       out += c, text.remove_prefix(name.size());
       known = true;

@@ -196,8 +196,9 @@ std::vector<SectionSpec> sections_of_model() {
          .doc = "With `expression`: number of equal intervals."},
         {.name = "file",
          .type = K::kText,
-         .doc = "A table (CSV with a column \"time [s]\") or a strong-motion record (PEER, K-NET, JMA, ESM, GeoNet, CSMIP, COSMOS, SMC); the "
-                "path counts from the folder of the model. Its content belongs to the hash of the model."},
+         .doc =
+             "A table (CSV with a column \"time [s]\") or a strong-motion record (PEER, K-NET, JMA, ESM, GeoNet, CSMIP, COSMOS, SMC); the "
+             "path counts from the folder of the model. Its content belongs to the hash of the model."},
         {.name = "column",
          .type = K::kText,
          .doc = "With `file`: title of the column, or its quantity (acceleration, velocity, displacement); "

@@ -165,8 +165,9 @@ std::vector<SectionSpec> run_sections() {
         {.name = "pictures",
          .type = K::kBool,
          .default_text = "true",
-         .doc = "The blocks at the start and at the end as blocks_start.svg and blocks_end.svg. Thousands of short "
-                "runs are quicker without."}}},
+         .doc =
+             "The blocks at the start and at the end as blocks_start.svg and blocks_end.svg. Thousands of short "
+             "runs are quicker without."}}},
 
       {"safety",
        SectionShape::kTable,

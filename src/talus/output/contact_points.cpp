@@ -16,11 +16,10 @@ std::string ContactColumn::array() const {
 
 std::string contacts_vtp(const std::vector<FramePoint>& all, double time) {
   std::vector<double> points, force;
-  std::vector<int64_t> connectivity, offsets;
+  std::vector<int32_t> order, ends;
   for (const FramePoint& c : all) {
     push3(points, c.point), push3(force, c.force);
-    connectivity.push_back(static_cast<int64_t>(connectivity.size()));
-    offsets.push_back(static_cast<int64_t>(connectivity.size()));
+    order.push_back(static_cast<int32_t>(order.size())), ends.push_back(static_cast<int32_t>(order.size()));
   }
   std::string out = file_begin("PolyData") + time_field(time);
   out += fmt::format(
@@ -28,7 +27,8 @@ std::string contacts_vtp(const std::vector<FramePoint>& all, double time) {
       "NumberOfPolys=\"0\">\n",
       all.size());
   out += "<Points>\n" + doubles("Points", 3, points) + "</Points>\n<Verts>\n" +
-         integers("connectivity", connectivity) + integers("offsets", offsets) + "</Verts>\n";
+         data_array("Int32", "connectivity", 1, order) + data_array("Int32", "offsets", 1, ends) +
+         "</Verts>\n";
   out += "<PointData>\n" + doubles("force [N]", 3, force);
   for (const ContactColumn& column : contact_columns()) {
     std::vector<double> values;

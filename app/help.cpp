@@ -45,6 +45,28 @@ bool is_positional(const CLI::Option& option) {
 
 }  // namespace
 
+namespace {
+
+CLI::Validator number_that(bool (*fits)(double), const char* must, const char* type) {
+  return CLI::Validator(
+      [fits, must](std::string& text) {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value)) return fmt::format("\"{}\" is not a number", text);
+        return fits(value) ? std::string() : fmt::format("{} must be {}", text, must);
+      },
+      type);
+}
+
+}  // namespace
+
+CLI::Validator not_negative() {
+  return number_that([](double v) { return v >= 0; }, "0 or more", "NONNEGATIVE");
+}
+
+CLI::Validator above_zero() {
+  return number_that([](double v) { return v > 0; }, "above 0", "POSITIVE");
+}
+
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const size_t begin = type.find(":{"), end = type.rfind('}');

@@ -7,6 +7,10 @@
 
 namespace talus::app {
 
+/// Checks of numbers that say in words what is wrong.
+CLI::Validator not_negative();
+CLI::Validator above_zero();
+
 /// What an option may be, where it is one of some words; else none.
 std::vector<std::string> choices_of(const CLI::Option& option);
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "help.h"
 #include "plot_blocks.h"
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
@@ -233,7 +234,7 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
       ->expected(4);
   verb.add_option("--deformation", args.blocks.deformation,
                   "with --blocks: displacements are drawn so many times")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   verb.add_option(
       "--relative", args.blocks.against,

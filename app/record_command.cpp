@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "help.h"
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/output/result_folder.h"
@@ -178,7 +179,7 @@ std::vector<CLI::Option*> add_synthetic_options(CLI::App& verb, RecordArguments&
   record::Envelope& envelope = args.make.envelope;
   return {verb.add_option("--seed", args.make.seed, "seed of the random phases")->capture_default_str(),
           verb.add_option("--pga", args.pga, "peak acceleration of the synthetic motion [m/s2]")
-              ->check(CLI::PositiveNumber),
+              ->check(above_zero()),
           verb.add_option(
               "--target", args.target,
               "CSV \"period [s],sa [m/s2]\" to match; without: the code spectrum of docs/theory.md (11.6) "
@@ -200,10 +201,10 @@ void add_record_arguments(CLI::App& verb, RecordArguments& args) {
       ->required();
   verb.add_flag("--force", args.force, "replace the results in that folder");
   verb.add_option("--dt", args.dt, "time step [s], where the file has none; of a synthetic motion: 0.01")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--duration", args.how.duration,
                   "length of the window [s], 0: to the end; of a synthetic motion: 20")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   CLI::Option* synthetic =
       verb.add_flag("--synthetic", args.synthetic, "make a motion from a seed instead of reading one");
   // an option that would do nothing is refused

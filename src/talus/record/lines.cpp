@@ -76,6 +76,14 @@ double number_at(const Lines& lines, size_t number, std::string_view token, std:
   return v;
 }
 
+size_t count_at(const Lines& lines, size_t number, std::string_view token, std::string_view what) {
+  const double value = number_at(lines, number, token, what);
+  if (!(value >= 1 && value <= 1e9) || value != std::floor(value))
+    fail(lines, number, fmt::format("{} is {:g}", what, value),
+         "it must be a whole number from 1 on: fetch the file again");
+  return static_cast<size_t>(value);
+}
+
 std::vector<double> numbers_from(const Lines& lines, size_t first, Numbers kind) {
   std::vector<double> out;
   for (size_t n = first; n <= lines.count(); ++n) {

@@ -1,6 +1,7 @@
 #pragma once
 // A record file as numbered lines, the numbers on them, and errors that name file and line.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,9 @@ void check_header_line(const Lines& lines, size_t number);
 /// The number that `token` is (also ".5", "+1.2E-03", "1.2D-3"). Throws by fail() on text, nan, inf and
 /// numbers too large for a double; `what` names the thing in the message.
 double number_at(const Lines& lines, size_t number, std::string_view token, std::string_view what);
+
+/// The same as a count or a width: a whole number from 1 to 1e9.
+size_t count_at(const Lines& lines, size_t number, std::string_view token, std::string_view what);
 
 enum class Numbers { kAny, kWhole };
 

@@ -38,8 +38,8 @@ std::vector<double> header_numbers(const Lines& lines, size_t n, size_t& next) {
   if (n > lines.count() || !std::regex_search(lines.line[n - 1], match, kTold))
     fail(lines, std::min(n, lines.count()), "the numbers of the header are not found",
          "it is written as \"100 Real-header values follow on 20 lines, Format= (5F15.6)\"");
-  const auto count = static_cast<size_t>(number_at(lines, n, match[1].str(), "the number of values"));
-  const auto width = static_cast<size_t>(number_at(lines, n, match[2].str(), "the width of a field"));
+  const auto count = count_at(lines, n, match[1].str(), "the number of values");
+  const auto width = count_at(lines, n, match[2].str(), "the width of a field");
   return fixed_numbers(lines, n + 1, count, std::max<size_t>(width, 1), &next);
 }
 
@@ -69,9 +69,9 @@ std::vector<CosmosChannel> cosmos_channels(const Lines& lines) {
       break;
     }
     c.series = at;
-    if (lower_case(lines.line[std::min(at, lines.count()) - 1].substr(0, 200)).find("accel") !=
-        std::string::npos)
-      out.push_back(c);
+    if (at > lines.count())
+      fail(lines, lines.count(), "the values are missing", "the file is cut short: fetch it again");
+    if (lower_case(lines.line[at - 1].substr(0, 200)).find("accel") != std::string::npos) out.push_back(c);
     n = at;
   }
   if (out.empty())
@@ -99,10 +99,8 @@ Record read_cosmos(const Lines& lines, const ReadOptions& options) {
   record.unit = unit.symbol;
   record.quantity = unit.quantity;
   record.dt = agreed_step(lines, channel.begin + kCosmosText + 1, channel.dt, options);
-  const auto count =
-      static_cast<size_t>(number_at(lines, channel.series, match[1].str(), "the number of points"));
-  const auto width =
-      static_cast<size_t>(number_at(lines, channel.series, match[3].str(), "the width of a field"));
+  const auto count = count_at(lines, channel.series, match[1].str(), "the number of points");
+  const auto width = count_at(lines, channel.series, match[3].str(), "the width of a field");
   record.value = fixed_numbers(lines, channel.series + 1, count, std::max<size_t>(width, 1));
   for (double& v : record.value) v *= unit.factor;
   if (lower_case(lines.line[channel.begin - 1]).rfind("corrected", 0) == 0) record.processed = channel.filter;

@@ -74,13 +74,10 @@ Record read_csmip(const Lines& lines, const ReadOptions& options) {
   record.quantity = unit.quantity;
   record.dt = agreed_step(lines, channel.series,
                           number_at(lines, channel.series, match[2].str(), "the time step"), options);
-  const auto count =
-      static_cast<size_t>(number_at(lines, channel.series, match[1].str(), "the number of points"));
+  const auto count = count_at(lines, channel.series, match[1].str(), "the number of points");
   constexpr size_t kUsual = 10;  // where the line does not tell
   const size_t width =
-      match[5].matched
-          ? static_cast<size_t>(number_at(lines, channel.series, match[5].str(), "the width of a field"))
-          : kUsual;
+      match[5].matched ? count_at(lines, channel.series, match[5].str(), "the width of a field") : kUsual;
   record.value = fixed_numbers(lines, channel.series + 1, count, std::max<size_t>(width, 1));
   for (double& v : record.value) v *= unit.factor;
   record.processed =

@@ -19,8 +19,8 @@ struct GeonetBlock {
   std::string component;
 };
 
-// The number that `pattern` catches on a line of a block.
-double caught(const Lines& lines, size_t n, const std::regex& pattern, const char* what) {
+// What `pattern` catches on a line of a block.
+std::string caught(const Lines& lines, size_t n, const std::regex& pattern, const char* what) {
   if (n > lines.count())
     fail(lines, lines.count(), "the header ends too early", "the file is cut short: fetch it again");
   check_header_line(lines, n);
@@ -28,7 +28,7 @@ double caught(const Lines& lines, size_t n, const std::regex& pattern, const cha
   if (!std::regex_search(lines.line[n - 1], match, pattern))
     fail(lines, n, fmt::format("{} is not found: \"{}\"", what, trimmed(lines.line[n - 1])),
          "it stands there in a V2A file of GeoNet");
-  return number_at(lines, n, match[1].str(), what);
+  return match[1].str();
 }
 
 std::vector<GeonetBlock> geonet_blocks(const Lines& lines) {
@@ -67,9 +67,12 @@ Record read_geonet(const Lines& lines, const ReadOptions& options) {
   record.title = fmt::format("{}, {}", trimmed(lines.line[n - 1]), block.component);
   record.unit = unit.symbol;
   record.quantity = unit.quantity;
-  const double count = caught(lines, n + 9, kPoints, "the number of points");
-  record.dt = agreed_step(lines, n + 10, caught(lines, n + 10, kStep, "the time step"), options);
-  record.value = fixed_numbers(lines, n + kGeonetHeader, static_cast<size_t>(count), kGeonetWidth);
+  const size_t count =
+      count_at(lines, n + 9, caught(lines, n + 9, kPoints, "the number of points"), "the number of points");
+  record.dt = agreed_step(
+      lines, n + 10, number_at(lines, n + 10, caught(lines, n + 10, kStep, "the time step"), "the time step"),
+      options);
+  record.value = fixed_numbers(lines, n + kGeonetHeader, count, kGeonetWidth);
   for (double& v : record.value) v *= unit.factor;
   std::smatch band;
   check_header_line(lines, n + 11);

@@ -43,10 +43,6 @@ bool is_positional(const CLI::Option& option) {
   return option.get_lnames().empty() && option.get_snames().empty();
 }
 
-}  // namespace
-
-namespace {
-
 CLI::Validator number_that(bool (*fits)(double), const char* must, const char* type) {
   return CLI::Validator(
       [fits, must](std::string& text) {

@@ -10,6 +10,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/json_depth.h"
+#include "talus/base/spread.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/read_vtk.h"
@@ -158,21 +159,19 @@ void plot_blocks(const fs::path& folder, const BlockPlotArguments& args, const f
 }
 
 void animate_blocks(const fs::path& folder, const BlockPlotArguments& args, const fs::path& path) {
+  check_no_result(path);
   const Series series = series_of(folder);
   const std::string title = args.title.empty() ? title_of(folder) : args.title;
-  const size_t there = series.blocks.size(), count = std::min(there, static_cast<size_t>(args.frames));
-  const auto frame = [&](size_t k) {
-    return count < 2 ? there - 1 : (k * (there - 1) + (count - 1) / 2) / (count - 1);
-  };
+  const std::vector<size_t> frames = spread(series.blocks.size(), static_cast<size_t>(args.frames));
   const auto make = [&](size_t k) {
-    plot::BlockPicture picture = picture_of(series, frame(k), title);
+    plot::BlockPicture picture = picture_of(series, frames[k], title);
     dress(folder, args, picture);
     picture.quantity = args.quantities[0] == "none" ? "" : args.quantities[0];
     return picture;
   };
   // one window and one range for all
   plot::Extent all = plot::extent_of(make(0));
-  for (size_t k = 1; k < count; ++k) {
+  for (size_t k = 1; k < frames.size(); ++k) {
     const plot::Extent one = plot::extent_of(make(k));
     all.box.min = {std::min(all.box.min.x, one.box.min.x), std::min(all.box.min.y, one.box.min.y)};
     all.box.max = {std::max(all.box.max.x, one.box.max.x), std::max(all.box.max.y, one.box.max.y)};
@@ -185,9 +184,9 @@ void animate_blocks(const fs::path& folder, const BlockPlotArguments& args, cons
         picture.colours = all.values;
         return picture;
       },
-      count, args.seconds, path);
+      frames.size(), args.seconds, path);
   note_result(folder, path);
-  fmt::print("{}: {} frames\n", path.string(), count);
+  fmt::print("{}: {} frames\n", path.string(), frames.size());
 }
 
 void plot_blocks_at_end(const fs::path& folder, const fs::path& plots) {

@@ -161,6 +161,11 @@ test("displacements are told against a block, a group, a support", async () => {
   assert.equal(await value("displacement_x"), 0);
   await clickBlock(3);
   const other = await value("displacement_x");
+  // the history of a stress, which is absolute, leaves the frame in sight as it is told
+  await page.locator("#inspector .history select").selectOption("stress_xx");
+  await page.locator("#show-history").click();
+  await page.locator("#inspector .chart canvas").waitFor();
+  assert.equal(await value("displacement_x"), other);
   await page.locator("#against").selectOption("");
   await until("!document.querySelector('#legend').innerText.includes('relative to')");
   const absolute = await value("displacement_x");
@@ -261,6 +266,7 @@ test("six runs: a row and a small chart each, in colours of their own; told agai
   await grid.scrollIntoViewIfNeeded();
   await grid.locator("canvas").first().waitFor();
   const tints = await grid.locator("figure.chart").first().locator(".u-marker").evaluateAll((list) => list.map((m) => m.style.borderColor || m.style.borderTopColor).filter(Boolean));
+  assert.ok(tints.length >= 2, `${tints.length} colours`);
   assert.equal(new Set(tints).size, tints.length, tints.join());
   const ground = await page.locator('#against option[value^="ground:"]').first().getAttribute("value");
   await page.locator("#against").selectOption(ground);

@@ -70,9 +70,9 @@ export function answersOf(run, stage) {
   const out = [];
   for (const [monitor, m] of Object.entries(run.summary.monitors || {}))
     for (const [title, a] of Object.entries((m.stages || {})[stage] || {})) {
-      const [, quantity, unit] = /^(.*?)(?: \[(.*)\])?$/.exec(title);
+      const { quantity, unit } = run.aboutColumn(monitor, title);
       const low = Math.abs(a.least) > Math.abs(a.greatest);
-      out.push({ monitor, quantity: quantity.replace(/_/g, " "), unit: unit || "", peak: low ? a.least : a.greatest,
+      out.push({ monitor, quantity: quantity.replace(/_/g, " "), unit, peak: low ? a.least : a.greatest,
         when: low ? a["time_of_least [s]"] : a["time_of_greatest [s]"], left: a.residual, end: a.at_end });
     }
   return out;

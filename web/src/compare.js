@@ -23,5 +23,5 @@ export function comparison(runs, show) {
     }),
     number(slip(run) / slipUnit.factor, 3), String((run.summary.moved || {}).blocks ?? "")]);
   return tableOf("Of the last stage with monitors; a click on a name shows the run",
-    ["run", "result", ...columns.flatMap((c, k) => [`${named(c)}, peak [${units[k].unit}]`, `left [${units[k].unit}]`]), `largest residual slip [${slipUnit.unit}]`, "blocks moved"], rows);
+    ["run", "result", ...columns.flatMap((c, k) => [`${named(c)}, peak [${units[k].unit}]`, `residual [${units[k].unit}]`]), `largest residual slip [${slipUnit.unit}]`, "blocks moved"], rows);
 }

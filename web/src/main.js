@@ -242,7 +242,7 @@ async function rangeOf(i) {
   const chosen = mode === "frame" ? [i] : [...Array(n).keys()].filter((k) => k % every === 0 || k === n - 1 || k === i);
   let least = Infinity, low = Infinity, high = -Infinity, most = -Infinity;
   for (const k of chosen) {
-    const s = key ? await run.span(k, key, q) : run.frames[k].spans.slice(4 * q.index, 4 * q.index + 4);
+    const s = await run.span(k, key, q);
     least = Math.min(least, s[0]), low = Math.min(low, s[1]), high = Math.max(high, s[2]), most = Math.max(most, s[3]);
   }
   const trimmed = mode === "run";
@@ -282,7 +282,7 @@ function legend() {
     if (view.show.forces && view.largestForce > 0) notes.push(`Longest arrow: ${withUnit(view.largestForce, "N")}, on the first of the two blocks.`);
     if (!c.exact) notes.push(`Contacts are those of t = ${number(c.time, 5)} s: this page has them for ${run.contacts.length} frames.`);
   }
-  if (against) notes.push(`Displacements and velocities${againstText()}.`);
+  if (against) notes.push(view.frame.lost ? `What displacements are told${againstText()} is not there at this time: they are absolute.` : `Displacements and velocities${againstText()}.`);
   if (view.bolts && view.show.bolts) notes.push(`Bolts: tension, dark green ${withUnit(view.largestTension, "N")}, grey in compression, black ruptured.`);
   $("joint-note").textContent = notes.join(" ");
 }
@@ -391,7 +391,7 @@ function historyButtons(chosen) {
 }
 
 async function drawHistory(chosen, what) {
-  const of = run, time = [], value = [], place = $("inspector");
+  const of = run, time = [], value = [], place = $("inspector"), key = against;
   const note = element("p", { class: "hint" });
   place.append(note);
   let title, unit;
@@ -399,7 +399,7 @@ async function drawHistory(chosen, what) {
     const q = quantities[what];
     title = `${run.block(chosen.block).name}: ${q.title}${isMotion(what) ? againstText() : ""}`, unit = q.unit;
     for (let k = 0; k < run.frames.length; ++k) {
-      const f = await run.frameAgainst(k, isMotion(what) ? against : ""), i = f.shapes.place.get(chosen.block);
+      const f = isMotion(what) ? await run.frameAgainst(k, key) : await run.frame(k), i = f.shapes.place.get(chosen.block);
       if (of !== run) return;
       if (i === undefined || !f.present[i]) continue;
       time.push(f.time), value.push(q.of(f, i));

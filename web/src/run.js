@@ -46,6 +46,12 @@ export class Run {
     return k === undefined ? "" : this.blocks[what][k];
   }
 
+  /** What is known of a column of a monitor, by its title in summary.json: {quantity, unit}. */
+  aboutColumn(monitor, title) {
+    const { columns } = this.tables.histories || { columns: [] };
+    return columns.find((c) => c.title === `${monitor}.${title}`) || { quantity: title, unit: "" };
+  }
+
   once_(key, make) {
     if (!this.decoded_.has(key)) this.decoded_.set(key, make());
     return this.decoded_.get(key);
@@ -103,21 +109,22 @@ export class Run {
     if (f.against === key) return f;
     if (!key) return absolute(f);
     const of = await this.motion_(f, key), n = f.shapes.n;
+    f.against = key, f.lost = false;
+    if (!of) return Object.assign(absolute(f), { against: key, lost: true });  // what it is told against is not there
     for (const name of ["dx", "dy", "dvx", "dvy"]) f[name] = new Float32Array(n);
     for (let b = 0; b < n; ++b) {
       const m = of(f.shapes.cy[b]);
       f.dx[b] = f.ux[b] - m[0], f.dy[b] = f.uy[b] - m[1], f.dvx[b] = f.vx[b] - m[2], f.dvy[b] = f.vy[b] - m[3];
     }
-    f.against = key;
     return f;
   }
 
-  // the motion of a reference in a frame, by height: [ux, uy, vx, vy]
+  // the motion of a reference in a frame, by height: [ux, uy, vx, vy]; null where the frame does not have it
   async motion_(f, key) {
     const name = key.slice(key.indexOf(":") + 1);
     if (key.startsWith("ground:")) {
       const entry = (this.frames[f.index].grounds || []).find((g) => g.name === name);
-      if (!entry) return () => [0, 0, 0, 0];
+      if (!entry) return null;
       const u = new Unpacker(await chunk(entry.data)), n = entry.heights, [h, ...rest] = Array.from({ length: 5 }, () => u.floats(n));
       return (y) => {
         let k = 0;
@@ -136,7 +143,8 @@ export class Run {
       weight += w;
       [f.ux[b], f.uy[b], f.vx[b], f.vy[b]].forEach((v, c) => { sum[c] += w * v; });
     }
-    const mean = sum.map((v) => (weight > 0 ? v / weight : 0));
+    if (!(weight > 0)) return null;
+    const mean = sum.map((v) => v / weight);
     return () => mean;
   }
 
@@ -214,6 +222,6 @@ export class Run {
 }
 
 function absolute(f) {
-  f.dx = f.ux, f.dy = f.uy, f.dvx = f.vx, f.dvy = f.vy, f.against = "";
+  f.dx = f.ux, f.dy = f.uy, f.dvx = f.vx, f.dvy = f.vy, f.against = "", f.lost = false;
   return f;
 }

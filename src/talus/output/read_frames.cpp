@@ -275,8 +275,10 @@ std::optional<FrameMotion> motion_at(const Against& against, const Shapes& shape
 
 BlockFrame told_against(const Against& against, const Shapes& shapes, BlockFrame frame) {
   const BlockFrame absolute = frame;
+  std::optional<FrameMotion> motion;
   for (size_t k = 0; k < frame.present.size(); ++k) {
-    const auto motion = motion_at(against, shapes, absolute, shapes.centre[k].y);
+    // that of blocks is the same at any height
+    if (k == 0 || against.blocks.empty()) motion = motion_at(against, shapes, absolute, shapes.centre[k].y);
     if (!motion)
       throw FileError(
           "the frame does not have what displacements are to be told against: a block that is dug out, or "

@@ -105,21 +105,30 @@ void take_contacts(const BlockPicture& picture, const BlockFrame& f, Scenery& s)
 
 void take_bolts(const BlockPicture& picture, const BlockFrame& f, Scenery& s) {
   const BoltPieces& b = *picture.bolts;
-  const auto place = [&](Vec2 now) {
-    if (picture.deformation == 1) return now;
-    // an end moves with the block it lies in
-    for (const auto& [id, k] : picture.shapes.place) {
-      if (!picture.blocks.present[k]) continue;
-      Polygon polygon;
-      for (auto v = static_cast<size_t>(picture.shapes.begin[k]);
-           v < static_cast<size_t>(picture.shapes.begin[k + 1]); ++v) {
-        const Vec2 zero = picture.shapes.corner[v];
-        polygon.push_back(zero + picture.blocks.displacement[k] +
+  struct Outline {
+    int id;
+    Polygon polygon;  // now [m]
+    Box box;
+  };
+  std::vector<Outline> outlines;
+  for (const auto& [id, k] : picture.shapes.place) {
+    if (picture.deformation == 1 || !picture.blocks.present[k]) continue;
+    Outline o{id, {}, {}};
+    for (auto v = static_cast<size_t>(picture.shapes.begin[k]);
+         v < static_cast<size_t>(picture.shapes.begin[k + 1]); ++v) {
+      const Vec2 zero = picture.shapes.corner[v];
+      o.polygon.push_back(zero + picture.blocks.displacement[k] +
                           picture.blocks.gradient[k] * (zero - picture.shapes.centre[k]));
-      }
-      const Box box = bounding_box(polygon);
-      const bool near = now.x >= box.min.x && now.x <= box.max.x && now.y >= box.min.y && now.y <= box.max.y;
-      if (near && contains(polygon, now)) return now + drawn_off(picture, f, id, now);
+    }
+    o.box = bounding_box(o.polygon);
+    outlines.push_back(std::move(o));
+  }
+  // an end moves with the block it lies in
+  const auto place = [&](Vec2 now) {
+    for (const Outline& o : outlines) {
+      const bool near =
+          now.x >= o.box.min.x && now.x <= o.box.max.x && now.y >= o.box.min.y && now.y <= o.box.max.y;
+      if (near && contains(o.polygon, now)) return now + drawn_off(picture, f, o.id, now);
     }
     return now;
   };

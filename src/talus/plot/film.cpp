@@ -1,8 +1,6 @@
 #include "talus/plot/film.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,10 +8,9 @@
 #include <cstdlib>
 
 #include "talus/base/error.h"
+#include "talus/base/spawn.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
-
-extern char** environ;  // NOLINT: POSIX
 
 namespace talus::plot {
 
@@ -53,21 +50,16 @@ void write_film(const std::vector<std::string>& frames, double seconds, const fs
       "ffmpeg",   "-nostdin", "-loglevel", "error", "-framerate",
       rate,       "-i",       pattern,     "-vf",   "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
       "-pix_fmt", "yuv420p",  "-y",        film};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   pid_t child = 0;
-  const int trouble = posix_spawnp(&child, "ffmpeg", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  if (trouble == 0) waitpid(child, &status, 0);
-  if (trouble != 0 || (WIFEXITED(status) && WEXITSTATUS(status) == 127))
+  try {
+    child = spawn({words.begin(), words.end()}, said);
+  } catch (const FileError&) {
     throw FileError(fmt::format(
         "{}: a film takes ffmpeg, which is not there: install it, or give a name that ends in .png",
         path.string()));
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw FileError(fmt::format("{}: ffmpeg failed: {}", path.string(), read_text_file(said)));
   write_file(path, read_text_file(film));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/spread.h"
 #include "talus/base/version.h"
 #include "talus/output/block_quantity.h"
 #include "talus/output/bolt_lines.h"
@@ -38,18 +39,6 @@ class Chunks {
   std::string html_;
   int count_ = 0;
 };
-
-// `count` of `n` places, spread evenly, the first and the last among them.
-std::vector<size_t> spread(size_t n, size_t count) {
-  std::vector<size_t> out;
-  if (n == 0 || count == 0) return out;
-  if (count >= n) count = n;
-  for (size_t k = 0; k < count; ++k) {
-    const size_t at = count == 1 ? n - 1 : (k * (n - 1) + (count - 1) / 2) / (count - 1);
-    if (out.empty() || out.back() != at) out.push_back(at);
-  }
-  return out;
-}
 
 // What a title says, so that the page need not take it apart.
 json column_of(const std::string& title) {

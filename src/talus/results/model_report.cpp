@@ -10,6 +10,7 @@
 #include "talus/model/joint_law.h"
 #include "talus/model/units.h"
 #include "talus/output/text_table.h"
+#include "talus/output/vtk.h"
 
 namespace talus {
 
@@ -18,19 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 
 const char* kind_name(BlockKind kind) {
-  switch (kind) {
-    case BlockKind::kDeformable:
-      return "deformable";
-    case BlockKind::kRigid:
-      return "rigid";
-    case BlockKind::kFixed:
-      return "fixed";
-    case BlockKind::kDriven:
-      return "driven";
-    case BlockKind::kRemoved:
-      return "removed";
-  }
-  return "";
+  return kind == BlockKind::kRemoved ? "removed" : kBlockKinds.at(static_cast<size_t>(kind));
 }
 
 ordered_json materials(const Scene& scene) {

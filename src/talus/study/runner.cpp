@@ -1,9 +1,7 @@
 #include "talus/study/runner.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -11,11 +9,10 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/base/spawn.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
 #include "talus/output/folder_lock.h"
-
-extern char** environ;
 
 namespace talus::study {
 
@@ -25,23 +22,6 @@ namespace {
 
 constexpr const char* kLog = "log.txt";
 constexpr size_t kMostMessage = 2000;
-
-// A process whose output goes into a file.
-pid_t spawn(const std::vector<std::string>& words, const fs::path& log) {
-  std::vector<char*> argv;
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  posix_spawn_file_actions_adddup2(&actions, 1, 2);
-  pid_t process = -1;
-  const int error = posix_spawn(&process, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) fail_file(words[0], "started", error);
-  return process;
-}
 
 // The end of what a process has said.
 std::string said(const fs::path& log) {

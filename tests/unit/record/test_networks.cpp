@@ -29,16 +29,16 @@ struct Network {
   Format format;
   std::string text;
   double unit;      // [m/s2] of a value
-  double rounding;  // of the text, in its unit
+  double rounding;  // half of the last digit of the text at 100.25 and 250.5, and a hair
   const char* component;
 };
 
 std::vector<Network> networks() {
-  return {{"ESM", Format::kEsm, esm_text(kValues, 0.005), 1e-2, 1e-6, ""},
-          {"GeoNet", Format::kGeonet, geonet_text(kValues, 0.02), 1e-3, 0.1, "N28W"},
-          {"CSMIP", Format::kCsmip, csmip_text(kValues, 0.01), 1e-2, 1e-6, "90 Deg"},
-          {"COSMOS", Format::kCosmos, cosmos_text(kValues, 0.005), 1e-2, 1e-3, ""},
-          {"SMC", Format::kSmc, smc_text(kValues, 0.005), 1e-2, 0.5, ""}};
+  return {{"ESM", Format::kEsm, esm_text(kValues, 0.005), 1e-2, 5.1e-7, ""},
+          {"GeoNet", Format::kGeonet, geonet_text(kValues, 0.02), 1e-3, 0.051, "N28W"},
+          {"CSMIP", Format::kCsmip, csmip_text(kValues, 0.01), 1e-2, 5.1e-6, "90 Deg"},
+          {"COSMOS", Format::kCosmos, cosmos_text(kValues, 0.005), 1e-2, 5.1e-5, ""},
+          {"SMC", Format::kSmc, smc_text(kValues, 0.005), 1e-2, 0.051, ""}};
 }
 
 double peak_of(const Record& r) {

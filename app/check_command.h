@@ -7,8 +7,8 @@
 
 namespace talus::app {
 
-/// Prints blocks, steps, time, memory and output of the model; with a folder, draws it there. Returns the
-/// exit code. Throws InputError, FileError.
-int check_command(const ModelArguments& args, const std::string& folder, bool force);
+/// Prints blocks, steps, time, memory and output of the model; with a folder, draws it there, and with
+/// `open` writes and opens the page of the section. Returns the exit code. Throws InputError, FileError.
+int check_command(const ModelArguments& args, const std::string& folder, bool force, bool open);
 
 }  // namespace talus::app

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "browser.h"
+#include "report_command.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/cut/blocks_file.h"
@@ -17,13 +19,15 @@
 #include "talus/output/result_folder.h"
 #include "talus/plot/cut_picture.h"
 #include "talus/plot/map_picture.h"
+#include "talus/report/section_page.h"
 #include "talus/run/check_monitors.h"
 #include "tell.h"
 
 namespace talus::app {
 
 int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
-                bool force) {
+                bool force, bool open) {
+  const std::string page = open ? page_text() : "";  // before a long cut is made for nothing
   check_result_folder(folder, force, ResultKind::kCut);
   const std::string text_of_file = read_text_file(file, kMostModelText);
   Findings map_findings(file, text_of_file);
@@ -37,8 +41,10 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   model.cut.blocks_file.clear();  // it is what is written here
   if (!model.shapes_readable) findings.throw_if_errors();
   if (model.regions.empty() && model.arches.empty())
-    findings.error({1, 1, ""}, "region", "the file has no [[region]] or [[arch]]: there is nothing to cut",
-                   "give the outline of the rock as [[region]] with name, polygon and material");
+    findings.error(
+        {1, 1, ""}, "region", "the file has no [[region]] or [[arch]]: there is nothing to cut",
+        "give the outline of the rock as [[region]] with name, polygon and material; blocks that are "
+        "given as such: talus check FILE -o DIR --open");
   const int errors = findings.error_count();
   const Cut cut = cut_or_read(model, findings);
   if (findings.error_count() > errors)
@@ -60,11 +66,14 @@ int cut_command(const std::string& file, const std::vector<std::string>& overrid
   out.write("report.txt", report);
   plot::write_cut_picture(model, cut, layout, out.note_picture("cut"));
   if (expanded.has_maps) plot::write_map_picture(expanded.report, out.note_picture("map"));
+  if (open) out.write("section.html", report::section_page(page, model, cut, layout, report));
   show(
-      "{}\nwritten to {}: cut.png and cut.svg (picture), {}blocks.json (for cut.blocks), blocks.csv, "
+      "{}\nwritten to {}: {}cut.png and cut.svg (picture), {}blocks.json (for cut.blocks), blocks.csv, "
       "slivers.csv, report.txt, cut.json, model.toml{}\n",
-      report, folder, expanded.has_maps ? "map.png and map.svg (maps before and after cleaning), " : "",
+      report, folder, open ? "section.html (to look into, in a browser), " : "",
+      expanded.has_maps ? "map.png and map.svg (maps before and after cleaning), " : "",
       expanded.has_maps ? " (the model with the sections made from its maps)" : "");
+  if (open) show_section_page(out.path() / "section.html");
   return kExitOk;
 }
 

@@ -7,6 +7,6 @@
 namespace talus::app {
 
 int cut_command(const std::string& file, const std::vector<std::string>& overrides, const std::string& folder,
-                bool force);
+                bool force, bool open);
 
 }  // namespace talus::app

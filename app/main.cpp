@@ -94,6 +94,10 @@ int verb_of_line(int argc, char** argv) {
   add_strict(*check_verb, model);
   check_verb->add_option("-o,--output", folder, "folder for a picture of the model, cut.png and cut.svg");
   check_verb->add_flag("--force", force, "replace the picture in that folder");
+  bool open = false;
+  const char* what_opens =
+      "write section.html too, a page to look into the section with, and open it in a browser";
+  check_verb->add_flag("--open", open, what_opens);
   check_verb->footer("Example: talus check examples/impact_bar/impact_bar.toml -o out/check");
 
   CLI::App* cut_verb = app.add_subcommand(
@@ -101,7 +105,10 @@ int verb_of_line(int argc, char** argv) {
   add_model_arguments(*cut_verb, model);
   cut_verb->add_option("-o,--output", folder, "folder for the results")->required();
   cut_verb->add_flag("--force", force, "replace the results in that folder");
-  cut_verb->footer("Example: talus cut examples/tunnel/tunnel.toml -o out/tunnel");
+  cut_verb->add_flag(
+      "--open", open,
+      "write section.html too, a page to look into the section with, and open it in a browser");
+  cut_verb->footer("Example: talus cut examples/tunnel/tunnel.toml -o out/tunnel --open");
 
   talus::app::ImportArguments import;
   CLI::App* import_verb = app.add_subcommand(
@@ -204,8 +211,8 @@ int verb_of_line(int argc, char** argv) {
   }
   check_finite(app);
   if (*run_verb) return talus::app::run_command(model, how);
-  if (*check_verb) return talus::app::check_command(model, folder, force);
-  if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force);
+  if (*check_verb) return talus::app::check_command(model, folder, force, open);
+  if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force, open);
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);
   if (*safety_verb) return talus::app::safety_command(model, safety);

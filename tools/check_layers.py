@@ -28,7 +28,7 @@ ALLOWED = {
     "run": "base geometry record model cut blocks rows contact supports solve step output",
     "results": "base geometry record model cut blocks rows contact supports solve step output audit plot run",
     "plot": "base geometry record model maps cut output",
-    "report": "base geometry output",
+    "report": "base geometry model cut output plot",
     "study": "base geometry model record output plot",
 }
 

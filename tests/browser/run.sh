@@ -1,5 +1,5 @@
 #!/bin/bash
-# Runs examples/bolted_slope, makes its report and drives it in a browser. Exit 77: there is no browser, driver or page.
+# Makes a report of examples/bolted_slope and others, and the page of a section, and drives them in a browser. Exit 77: there is no browser, driver or page.
 # Usage: tests/browser/run.sh BUILD_DIR
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -39,6 +39,8 @@ mkdir -p "$out"
 } >"$out/model.toml"
 "$build/app/talus" run "$out/model.toml" -o "$out/run" --quiet --set output.field_interval=0.02
 "$build/app/talus" report "$out/run" -o "$out/report.html"
+# the section before any run
+"$build/app/talus" cut "$here/../fixtures/section.toml" -o "$out/section" --open >/dev/null
 # several runs on one page: of a column that a support drives
 runs=()
 for k in 1 2 3 4 5 6; do
@@ -50,4 +52,6 @@ done
 "$build/app/talus" run "$here/../../examples/shaken_slope/shaken_slope.toml" -o "$out/live" --watch --quiet --set output.field_interval=0.25 &
 watched=$!
 trap 'kill $watched 2>/dev/null || true' EXIT
-NODE_PATH=$build/browser/node_modules node "$here/report.test.mjs" "$out/report.html" "$out/run" "$out/many.html" "$out/live/live.html"
+export NODE_PATH=$build/browser/node_modules
+node "$here/section.test.mjs" "$out/section/section.html" "$here/../fixtures/section.toml" || { [ $? -eq 77 ] || exit 1; }
+node "$here/report.test.mjs" "$out/report.html" "$out/run" "$out/many.html" "$out/live/live.html"

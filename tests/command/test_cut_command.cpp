@@ -158,6 +158,56 @@ TEST_CASE("command: cut writes every file and runs nothing, with a stage or with
   has(shell(f, fmt::format("$talus check {}", kTunnel)).text, "the file has no [[stage]]");
 }
 
+// A program in the place of the one that opens pages: it notes what it was given.
+std::string with_opener(const Folder& f) {
+  fs::create_directories(f / "bin");
+  write_file(f / "bin/xdg-open", "#!/bin/sh\necho \"$1\" > opened.part && mv opened.part opened\n");
+  fs::permissions(f / "bin/xdg-open", fs::perms::owner_all);
+  return "PATH=$PWD/bin:$PATH DISPLAY=:0 ";
+}
+
+TEST_CASE("command: --open writes the section as a page and opens it, of a cut and of a check") {
+  if (!page_was_built()) return;
+  const Folder f;
+  const std::string section = std::string(TALUS_SOURCE_DIR) + "/tests/fixtures/section.toml";
+  for (const char* verb : {"cut", "check"}) {
+    const Outcome o =
+        shell(f, with_opener(f) + fmt::format("$talus {} {} -o {} --open; for k in $(seq 100); do [ "
+                                              "-e opened ] && break; sleep 0.05; done; cat opened",
+                                              verb, section, verb));
+    CHECK(o.code == 0);
+    has(o.text, fmt::format("opened in a browser: {}/section.html", verb));
+    has(o.text, (f / verb / "section.html").string());  // what the opener was given
+    CHECK(read_text_file(f / verb / "section.html").find("talus-index") != std::string::npos);
+    fs::remove(f / "opened");
+    // the page belongs to the results: it goes with them
+    CHECK(shell(f, fmt::format("$talus {} {} -o {} --force", verb, section, verb)).code == 0);
+    CHECK(!fs::exists(f / verb / "section.html"));
+  }
+}
+
+TEST_CASE("command: --open without a screen says which file to open") {
+  if (!page_was_built()) return;
+  const Folder f;
+  const Outcome o = shell(f, fmt::format("DISPLAY= WAYLAND_DISPLAY= $talus cut {} -o out --open", kSettle));
+  CHECK(o.code == 0);
+  has(o.text, "open in a browser: out/section.html");
+  const Outcome none =
+      shell(f, fmt::format("DISPLAY=:0 PATH=/nowhere $talus cut {} -o out2 --open", kSettle));
+  CHECK(none.code == 0);
+  has(none.text, "open in a browser: out2/section.html");
+}
+
+TEST_CASE("command: check --open wants a folder, cut of blocks points to it") {
+  const Folder f;
+  const Outcome o = shell(f, fmt::format("$talus check {} --open", kSettle));
+  CHECK(o.code == 2);
+  has(o.text, "give it by -o DIR");
+  const Outcome blocks = shell(f, fmt::format("$talus cut {}impact_bar/impact_bar.toml -o out", kExamples));
+  CHECK(blocks.code == 3);
+  has(blocks.text, "talus check FILE -o DIR --open");
+}
+
 TEST_CASE("command: cut twice gives the same bytes, of every file") {
   const Folder f;
   for (const std::string name : {"tunnel", "slope", "cavern", "wall", "specimen", "arch", "settle"}) {

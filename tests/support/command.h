@@ -39,4 +39,13 @@ inline void has(const std::string& text, const std::string& part) {
   CHECK(text.find(part) != std::string::npos);
 }
 
+/// Whether there is a page of the report, for which npm has to be installed; says so where there is none.
+inline bool page_was_built() {
+  if (std::filesystem::exists(std::filesystem::path(TALUS_COMMAND).parent_path() /
+                              "../share/talus/report_page.html"))
+    return true;
+  MESSAGE("skipped: the page was not built, npm is not installed");
+  return false;
+}
+
 }  // namespace talus::test

@@ -95,7 +95,7 @@ inline void take_summary(const std::string& text) {
   run.name = "run";
   run.summary = report::parse_summary("summary.json", text);
   report::PageNotes notes;
-  report::report_page(std::string(report::kDataPlace), {run}, {}, notes);
+  report::report_page("<!-- talus: data -->", {run}, {}, notes);
 }
 
 /// What makes a saved state, or a wrong one of it.

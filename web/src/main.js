@@ -8,6 +8,8 @@ import { addChart, drawCharts, largestOf, moveTime, redrawCharts, save } from ".
 import { comparison } from "./compare.js";
 import { colours, learn, number, quantities, readableUnit, ticks, withUnit, words } from "./quantities.js";
 import { element, tableOf } from "./dom.js";
+import { followPointer, followSize, matchPixels } from "./pointer.js";
+import { showSection } from "./section.js";
 import { cardsOf, energyOf, listOf, modelOf, stagesOf, warningsOf, worstSteps } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
@@ -24,9 +26,15 @@ async function start() {
   setTheme();
   const index = await chunkJson("index");
   learn(index.words);
+  $("notices").textContent = document.getElementById("talus-notices").textContent.trim();
+  if (index.section) {
+    $("theme").addEventListener("change", setTheme);
+    systemDark.addEventListener("change", setTheme);
+    await showSection(index);
+    return;
+  }
   runs = index.runs.map((r) => new Run(r));
   $("made").textContent = `Made by ${index.program} from ${runs.map((r) => r.name).join(", ")}. Everything shown is in this file.`;
-  $("notices").textContent = document.getElementById("talus-notices").textContent.trim();
   view = new View($("canvas"), $("ground"));
   if (runs.length > 1) {
     $("run-choice").hidden = false;
@@ -105,7 +113,7 @@ async function showRun(i) {
   offerQuantities();
   offerReferences();
   $("picture").hidden = run.frames.length === 0;
-  resize();
+  matchPixels($("canvas"));
   if (run.frames.length) {
     $("slider").max = String(run.frames.length - 1);
     $("show-bolts").parentElement.hidden = !run.frames.some((f) => f.bolts && f.bolts.count);
@@ -522,12 +530,6 @@ function addSteps(steps) {
 
 // ---- the reader ----
 
-function resize() {
-  const canvas = $("canvas"), ratio = window.devicePixelRatio || 1;
-  const w = Math.round(canvas.clientWidth * ratio), h = Math.round(canvas.clientHeight * ratio);
-  if (canvas.width !== w || canvas.height !== h) canvas.width = w, canvas.height = h;
-}
-
 async function redraw() {
   if (!view.frame) return;
   const range = await rangeOf(frameIndex);
@@ -576,23 +578,10 @@ function listen() {
   $("forth").addEventListener("click", () => goTo(frameIndex + 1));
   $("slider").addEventListener("input", () => goTo(Number($("slider").value)));
 
-  let down = null;
-  canvas.addEventListener("pointerdown", (e) => { down = { x: e.offsetX, y: e.offsetY, moved: false }; canvas.setPointerCapture(e.pointerId); });
-  canvas.addEventListener("pointermove", (e) => {
-    if (!down) return;
-    if (!down.moved && Math.hypot(e.offsetX - down.x, e.offsetY - down.y) < 4) return;
-    view.pan(e.offsetX - down.x, e.offsetY - down.y);
-    down = { x: e.offsetX, y: e.offsetY, moved: true };
-    view.draw();
-  });
-  canvas.addEventListener("pointerup", (e) => {
-    const clicked = down && !down.moved;
-    down = null;
-    if (!clicked) return;
-    const contact = view.contactAt(e.offsetX, e.offsetY), block = view.blockAt(e.offsetX, e.offsetY);
+  followPointer(canvas, view, (x, y) => {
+    const contact = view.contactAt(x, y), block = view.blockAt(x, y);
     select(contact ? { contact } : block >= 0 ? { block } : null);
   });
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); view.zoom(Math.exp(-e.deltaY / 400), e.offsetX, e.offsetY); view.draw(); }, { passive: false });
   document.addEventListener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || /^(INPUT|SELECT|TEXTAREA|BUTTON|SUMMARY)$/.test(e.target.tagName) || !run.frames.length) return;
     const act = {
@@ -603,11 +592,7 @@ function listen() {
     e.preventDefault();
     act();
   });
-  let waiting = 0;
-  new ResizeObserver(() => {
-    clearTimeout(waiting);
-    waiting = setTimeout(() => { resize(); if (view.fitted) view.fit(); redraw(); }, 50);
-  }).observe(canvas);
+  followSize(canvas, view, redraw);
   let width = window.innerWidth;
   window.addEventListener("resize", () => { if (window.innerWidth !== width) width = window.innerWidth, redrawCharts(); });
   window.addEventListener("beforeprint", () => { drawCharts(); document.querySelectorAll("details").forEach((d) => { d.open = false; }); });

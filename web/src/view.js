@@ -99,8 +99,7 @@ export class View {
     const fills = this.classes_();
     context.clearRect(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
     this.paint_(fills, ink, paper);
-    if (this.show.bolts && this.bolts) this.drawBolts_(context);
-    if (this.show.forces && this.contacts) this.drawForces_(context);
+    this.drawOver_(context);
     this.drawSelection_(context, ink);
     this.drawScaleBar_(context, ink, paper);
     this.drawTime = performance.now() - start;
@@ -123,11 +122,19 @@ export class View {
     }
     this.painter.begin(paper, this.still);
     this.painter.blocks(s, places, tints, this.show.outlines && 2 * large > seen ? [20, 20, 20, 115] : null);
-    if (this.show.joints && this.contacts) this.paintJoints_();
+    this.paintLines_();
     this.painter.end();
   }
 
-  paintJoints_() {
+  // over the blocks, by the canvas
+  drawOver_(context) {
+    if (this.show.bolts && this.bolts) this.drawBolts_(context);
+    if (this.show.forces && this.contacts) this.drawForces_(context);
+  }
+
+  // joints, by the painter
+  paintLines_() {
+    if (!this.show.joints || !this.contacts) return;
     const lines = new Lines(), { slipped, open } = words.colours, orange = bytesOf(slipped), dark = bytesOf(open), least = words.least_drawn;
     this.eachJoint_((px, py, qx, qy, slip, opening) => {
       const alone = px === qx && py === qy, wide = 1 + 3 * slip;

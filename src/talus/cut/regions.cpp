@@ -21,7 +21,7 @@ bool holds(const Box& box, Vec2 p, double margin) {
 }
 
 CutRegion from_input(const RegionInput& in) {
-  CutRegion r{in.name, in.polygon, in.sides, in.material, in.joint, in.kind};
+  CutRegion r{in.name, in.polygon, in.sides, in.material, in.joint, in.kind, in.where};
   if (signed_area(r.polygon) < 0) {
     // the edge from corner n-1 to corner 0 stays last when the others turn round
     std::reverse(r.polygon.begin(), r.polygon.end());
@@ -31,7 +31,7 @@ CutRegion from_input(const RegionInput& in) {
 }
 
 CutRegion from_arch(const ArchInput& in) {
-  CutRegion r{in.name, arch_polygon(in), {}, in.material, in.joint, in.kind};
+  CutRegion r{in.name, arch_polygon(in), {}, in.material, in.joint, in.kind, in.where};
   const auto n = static_cast<size_t>(in.voussoirs);
   r.sides.assign(n, in.name + "-intrados");
   r.sides.push_back(in.name + "-start");

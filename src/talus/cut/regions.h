@@ -15,6 +15,7 @@ struct CutRegion {
   std::vector<std::string> sides;
   int material = -1, joint = -1;
   BlockKind kind = BlockKind::kDeformable;
+  Where where = {};
 };
 
 class RegionMap {

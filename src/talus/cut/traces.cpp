@@ -178,23 +178,25 @@ std::vector<Origin> all_origins(const Model& model, const RegionMap& regions) {
   std::vector<Origin> list;
   const auto glued = [&model](int joint) { return joint >= 0 ? joint : model.bonded_joint; };
   for (const OpeningInput& o : model.openings)
-    list.push_back({o.name, OriginKind::kOpening, o.kept ? glued(o.joint) : -1});
+    list.push_back({o.name, OriginKind::kOpening, o.kept ? glued(o.joint) : -1, o.where});
   for (const CutRegion& r : regions.list()) {
     for (const std::string& side : r.sides) {
       const auto known = [&side](const Origin& o) { return o.kind == OriginKind::kSide && o.name == side; };
-      if (std::none_of(list.begin(), list.end(), known)) list.push_back({side, OriginKind::kSide, -1});
+      if (std::none_of(list.begin(), list.end(), known))
+        list.push_back({side, OriginKind::kSide, -1, r.where});
     }
   }
-  for (const FaultInput& f : model.faults) list.push_back({f.name, OriginKind::kFault, f.joint});
-  for (const TracesInput& t : model.traces) list.push_back({t.name, OriginKind::kSurveyed, t.joint});
+  for (const FaultInput& f : model.faults) list.push_back({f.name, OriginKind::kFault, f.joint, f.where});
+  for (const TracesInput& t : model.traces) list.push_back({t.name, OriginKind::kSurveyed, t.joint, t.where});
   for (const MasonryInput& m : model.masonry) {
-    list.push_back({m.name + "-bed", OriginKind::kMasonry, m.bed_joint});
-    list.push_back({m.name + "-head", OriginKind::kMasonry, m.head_joint});
+    list.push_back({m.name + "-bed", OriginKind::kMasonry, m.bed_joint, m.where});
+    list.push_back({m.name + "-head", OriginKind::kMasonry, m.head_joint, m.where});
   }
-  for (const ArchInput& a : model.arches) list.push_back({a.name, OriginKind::kArch, a.joint});
+  for (const ArchInput& a : model.arches) list.push_back({a.name, OriginKind::kArch, a.joint, a.where});
   for (const TessellationInput& t : model.tessellations)
-    list.push_back({t.name, OriginKind::kTessellation, glued(t.joint)});
-  for (const JointSetInput& s : model.joint_sets) list.push_back({s.name, OriginKind::kJointSet, s.joint});
+    list.push_back({t.name, OriginKind::kTessellation, glued(t.joint), t.where});
+  for (const JointSetInput& s : model.joint_sets)
+    list.push_back({s.name, OriginKind::kJointSet, s.joint, s.where});
   return list;
 }
 

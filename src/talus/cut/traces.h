@@ -27,6 +27,7 @@ struct Origin {
   std::string name;
   OriginKind kind = OriginKind::kSide;
   int joint = -1;  // -1: that of the region
+  Where where = {};
 };
 
 struct Trace {

@@ -28,6 +28,7 @@ struct Material {
   double density = 0;                                         // [kg/m3]
   double young = std::numeric_limits<double>::quiet_NaN();    // [Pa], NaN when not given
   double poisson = std::numeric_limits<double>::quiet_NaN();  // [-]
+  Where where = {};
 };
 
 /// As the file gives them; what they mean is in joint_law.h.

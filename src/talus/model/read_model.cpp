@@ -137,7 +137,7 @@ class ModelReader : private SectionReader {
   void read_materials() {
     for_named("material", [this](const std::string& name, const Fields& f) {
       Material m;
-      m.name = name;
+      m.name = name, m.where = f.where();
       m.density = f.get("density", 1.0);
       // a value that was given but refused has its message already: 0 keeps it from being called missing
       m.young = f.get("young", f.given("young") ? 0 : m.young);

@@ -227,15 +227,25 @@ std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics&
   return out.dump(2) + "\n";
 }
 
-std::string cut_blocks_csv(const Model& model, const std::vector<BlockShape>& blocks) {
+std::vector<BlockRow> block_rows(const Model& model, const std::vector<BlockShape>& blocks) {
   const BlockSet set = block_set_of(model, blocks);
-  std::string out = "name,id,x [m],y [m],area [m2],width [m],length / width,edges,stable step [s]\n";
+  std::vector<BlockRow> rows;
   for (int i = 0; i < set.count; ++i) {
-    const BlockShape& b = blocks[static_cast<size_t>(i)];
-    const BlockNumbers n = numbers_of(b.polygon);
-    const Vec2 c = set.centroid[static_cast<size_t>(i)];
-    out += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{:.6g}\n", table_cell(b.name), b.id, c.x,
-                       c.y, n.area, n.width, n.aspect, b.polygon.size(), stable_step_of(set, i));
+    const auto k = static_cast<size_t>(i);
+    const BlockNumbers n = numbers_of(blocks[k].polygon);
+    rows.push_back({set.centroid[k], n.area, n.width, n.aspect, stable_step_of(set, i)});
+  }
+  return rows;
+}
+
+std::string cut_blocks_csv(const Model& model, const std::vector<BlockShape>& blocks) {
+  std::string out = "name,id,x [m],y [m],area [m2],width [m],length / width,edges,stable step [s]\n";
+  size_t i = 0;
+  for (const BlockRow& row : block_rows(model, blocks)) {
+    const BlockShape& b = blocks[i++];
+    out += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{:.6g}\n", table_cell(b.name), b.id,
+                       row.centroid.x, row.centroid.y, row.area, row.width, row.aspect, b.polygon.size(),
+                       row.step);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 // What a cut gave, in words, tables and as a machine-readable summary.
 
 #include <string>
+#include <vector>
 
 #include "talus/blocks/block_set.h"
 #include "talus/cut/layout.h"
@@ -39,6 +40,15 @@ std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& 
 
 /// The same numbers as JSON.
 std::string cut_summary(const Model& model, const Cut& cut, const CutStatistics& statistics);
+
+/// What may be asked of a block before any run.
+struct BlockRow {
+  Vec2 centroid;
+  double area = 0, width = 0, aspect = 0;  // [m2], [m], length over width
+  double step = 0;                         // stable step on its own [s]; infinite where it does not deform
+};
+/// [blocks] @pre materials of all blocks are complete
+std::vector<BlockRow> block_rows(const Model& model, const std::vector<BlockShape>& blocks);
 
 /// One row per block: name, place, area, width, aspect, edges, stable step.
 std::string cut_blocks_csv(const Model& model, const std::vector<BlockShape>& blocks);

@@ -156,8 +156,8 @@ void add_supports(const Model& model, const Places& places, Collection& all) {
     const auto add = [&](Symbol symbol, Color color, const char* what, Vec2 axis) {
       Condition& c = all.add(symbol, color, what, s.name, s.stages, axis);
       for (const Place& p : at)
-        c.marks.push_back(
-            {p.at, symbol == Symbol::kPin ? p.outward : along_axis(axis, p.outward), kArrowLength});
+        c.marks.push_back({p.at, symbol == Symbol::kPin ? p.outward : along_axis(axis, p.outward),
+                           kArrowLength, s.where.line});
     };
     const bool x = s.x.kind == Motion::kFixed, y = s.y.kind == Motion::kFixed;
     if (x && y) add(Symbol::kPin, kSupport, "held", kDown);
@@ -175,7 +175,7 @@ void add_boundaries(const Model& model, const Places& places, Collection& all) {
     Condition& band = all.add(Symbol::kBand, color, kind.title, b.name, b.stages);
     const auto add_edges = [&](const Selection& selection) {
       for (const auto& [from, to] : places.edges(selection))
-        band.marks.push_back({from, unit(to - from), norm(to - from)});
+        band.marks.push_back({from, unit(to - from), norm(to - from), b.where.line});
     };
     add_edges(b);
     if (kind.two_sided) add_edges(b.opposite);
@@ -184,7 +184,8 @@ void add_boundaries(const Model& model, const Places& places, Collection& all) {
                         : b.history_x < 0 ? "waves along y come in"
                                           : "waves along x and y come in";
     Condition& wave = all.add(Symbol::kArrow, kViscous, along, b.name, b.stages, {0, -1});
-    for (const Place& p : places.of(b)) wave.marks.push_back({p.at, -1.0 * p.outward, kArrowLength});
+    for (const Place& p : places.of(b))
+      wave.marks.push_back({p.at, -1.0 * p.outward, kArrowLength, b.where.line});
   }
 }
 
@@ -204,7 +205,7 @@ void add_loads(const Model& model, const Places& places, Collection& all) {
                                          : "traction",
                            l.name, l.stages, is_pressure ? Vec2{0, 1} : push);
     for (const Place& p : places.of(l))
-      c.marks.push_back({p.at, is_pressure ? -1.0 * p.outward : push, kArrowLength});
+      c.marks.push_back({p.at, is_pressure ? -1.0 * p.outward : push, kArrowLength, l.where.line});
   }
 }
 
@@ -213,14 +214,14 @@ void add_motions(const Model& model, const View& view, Collection& all) {
     const Vec2 middle = view.to_sheet(polygon_moments(b.polygon).centroid);
     if (moves(b.motion_x))
       all.add(Symbol::kTwoWay, kMotion, "moved along x", b.name)
-          .marks.push_back({middle, {1, 0}, kArrowLength});
+          .marks.push_back({middle, {1, 0}, kArrowLength, b.where.line});
     if (moves(b.motion_y))
       all.add(Symbol::kTwoWay, kMotion, "moved along y", b.name, {}, {0, 1})
-          .marks.push_back({middle, {0, 1}, kArrowLength});
+          .marks.push_back({middle, {0, 1}, kArrowLength, b.where.line});
     if (norm(b.velocity) > 0) {
       const Vec2 way = on_sheet(unit(b.velocity));
       all.add(Symbol::kArrow, kMotion, "starts at a velocity", b.name, {}, way)
-          .marks.push_back({middle + (kArrowLength / 2) * way, way, kArrowLength});
+          .marks.push_back({middle + (kArrowLength / 2) * way, way, kArrowLength, b.where.line});
     }
   }
   for (const GridInput& g : model.grids) {
@@ -228,7 +229,7 @@ void add_motions(const Model& model, const View& view, Collection& all) {
     const Vec2 own = 0.5 * (g.min + g.max), middle = g.place.apply(own, own),
                way = on_sheet(unit(g.velocity));
     all.add(Symbol::kArrow, kMotion, "starts at a velocity", g.name, {}, way)
-        .marks.push_back({view.to_sheet(middle) + (kArrowLength / 2) * way, way, kArrowLength});
+        .marks.push_back({view.to_sheet(middle) + (kArrowLength / 2) * way, way, kArrowLength, g.where.line});
   }
 }
 
@@ -243,7 +244,7 @@ void add_bolts(const Model& model, const View& view, Collection& all) {
                                         : std::vector<int>{};
     const Vec2 head = view.to_sheet(b.from), toe = view.to_sheet(b.to);
     all.add(Symbol::kBar, kBolts[at(b.type) % std::size(kBolts)], what, "", stages)
-        .marks.push_back({head, unit(toe - head), norm(toe - head)});
+        .marks.push_back({head, unit(toe - head), norm(toe - head), b.where.line});
   }
 }
 
@@ -251,7 +252,8 @@ void add_spans(const Model& model, const View& view, Collection& all) {
   for (const MonitorInput& m : model.monitors) {
     if (m.kind != MonitorKind::kConvergence) continue;
     const Vec2 a = view.to_sheet(m.point), b = view.to_sheet(m.other);
-    all.add(Symbol::kBar, kSpan, "measured length", m.name).marks.push_back({a, unit(b - a), norm(b - a)});
+    all.add(Symbol::kBar, kSpan, "measured length", m.name)
+        .marks.push_back({a, unit(b - a), norm(b - a), m.where.line});
   }
 }
 

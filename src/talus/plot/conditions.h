@@ -25,6 +25,7 @@ struct Mark {
   Vec2 at;
   Vec2 direction;     // unit: outward of pins, rollers and bands, along arrows and bars
   double length = 0;  // of arrows; of bands and bars, from `at`
+  int line = 0;       // of its section in the model file, 0: not there
 };
 
 /// Everything of one kind: an entry of the legend.

@@ -155,6 +155,7 @@ std::vector<Layer> make_lines(const Model& model, const Cut& cut, const Layout& 
     Layer& own = lines[place(o)];
     own.pen = pen_of(origin.kind, color, joint_width);
     own.label = label_of(cut, origin) + joint_text(model, cut, origin);
+    own.origins.push_back(static_cast<int>(o));
     color += place(o) >= kOthers && origin.kind != OriginKind::kConstruction;
     if (place(o) == kOpenings) names += (openings++ == 0 ? "" : ", ") + origin.name;
   }

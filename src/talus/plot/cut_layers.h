@@ -17,6 +17,7 @@ struct Layer {
   std::string label;
   std::vector<int> edges;
   std::vector<Polygon> polygons = {};  // [m]
+  std::vector<int> origins = {};       // of the cut that its lines come from
 };
 
 /// Width [px] that leaves the blocks to be seen, from an arch of 20 to a slope of 100 000: a share of the

@@ -10,9 +10,8 @@
 #include "talus/base/spread.h"
 #include "talus/base/version.h"
 #include "talus/output/block_quantity.h"
-#include "talus/output/bolt_lines.h"
-#include "talus/output/colours.h"
 #include "talus/output/columns.h"
+#include "talus/report/chunks.h"
 #include "talus/report/pack.h"
 #include "talus/report/packed_frames.h"
 
@@ -25,20 +24,6 @@ using json = nlohmann::ordered_json;
 constexpr size_t kContactFrames = 20;     // where frames of blocks do not all fit
 constexpr double kContactShare = 0.25;    // of the page, for contact points
 constexpr size_t kTableValues = 1500000;  // of one table, above that rows are left out
-
-// Data as elements of the page; others name them by number.
-class Chunks {
- public:
-  int add(const std::string& text) {
-    html_ += fmt::format("<script type=\"text/plain\" id=\"talus-{}\">{}</script>\n", count_, text);
-    return count_++;
-  }
-  const std::string& html() const { return html_; }
-
- private:
-  std::string html_;
-  int count_ = 0;
-};
 
 // What a title says, so that the page need not take it apart.
 json column_of(const std::string& title) {
@@ -282,48 +267,6 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
   return out;
 }
 
-template <class List>
-json colours_of(const List& list) {
-  json out = json::array();
-  for (const Rgb& c : list) out.push_back(fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]));
-  return out;
-}
-
-// What the page has to know of results in general: columns, quantities, names and colours.
-json words_of_results() {
-  json contacts = json::array(), quantities = json::array();
-  for (const ContactColumn& c : contact_columns()) {
-    if (c.page == InPage::kNot) continue;
-    std::string title = c.name;
-    std::replace(title.begin(), title.end(), '_', ' ');
-    contacts.push_back({{"key", c.name},
-                        {"title", title},
-                        {"unit", c.unit},
-                        {"by", unpacked_by(c.page)},
-                        {"shown", c.shown},
-                        {"names", c.names}});
-  }
-  for (const BlockQuantity& q : kBlockQuantities)
-    quantities.push_back(
-        {{"key", q.name}, {"title", q.title}, {"unit", q.unit}, {"signed", q.signed_values}});
-  const auto one = [](const Rgb& c) { return colours_of(std::array<Rgb, 1>{c})[0]; };
-  return {{"contact_columns", contacts},
-          {"quantities", quantities},
-          {"bolt_conditions", kBoltConditions},
-          {"colours",
-           {{"one_sided", colours_of(kOneSided)},
-            {"two_sided", colours_of(kTwoSided)},
-            {"palette", colours_of(kPalette)},
-            {"slipped", one(kSlippedColour)},
-            {"open", one(kOpenColour)},
-            {"force", one(kForceColour)},
-            {"bolt_pale", one(kBoltPale)},
-            {"bolt_dark", one(kBoltDark)},
-            {"bolt_pressed", one(kBoltPressed)},
-            {"bolt_ruptured", one(kBoltRuptured)}}},
-          {"least_drawn", kLeastDrawn}};
-}
-
 // The index of the page, in the order of the runs; their data in `chunks`.
 json index_of(const std::vector<RunFolder>& runs, const PageOptions& options, PageNotes& notes,
               Chunks& chunks) {
@@ -364,9 +307,6 @@ json index_of(const std::vector<RunFolder>& runs, const PageOptions& options, Pa
 
 std::string report_page(const std::string& page, const std::vector<RunFolder>& runs,
                         const PageOptions& options, PageNotes& notes) {
-  const size_t place = page.find(kDataPlace);
-  if (place == std::string::npos)
-    throw FileError("the page of the report has no place for data: build talus again");
   Chunks chunks;
   json index;
   try {
@@ -374,12 +314,7 @@ std::string report_page(const std::string& page, const std::vector<RunFolder>& r
   } catch (const json::exception& e) {
     throw FileError(fmt::format("summary.json has something else than talus writes there: {}", e.what()));
   }
-  const std::string data =
-      fmt::format("{}<script type=\"text/plain\" id=\"talus-index\">{}</script>\n", chunks.html(),
-                  compressed_text(index.dump(-1, ' ', false, json::error_handler_t::replace)));
-  std::string out = page;
-  out.replace(place, std::string_view(kDataPlace).size(), data);
-  return out;
+  return filled_page(page, chunks, index);
 }
 
 }  // namespace talus::report

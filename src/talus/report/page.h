@@ -26,11 +26,9 @@ struct PageNotes {
 };
 
 /// The page with the data of the runs; the first run is shown first.
-/// @param page  report_page.html, with the line kDataPlace where data go
+/// @param page  report_page.html, with the line "<!-- talus: data -->" where data go
 /// Throws FileError when a file of the results cannot be read or the page has no place for data.
 std::string report_page(const std::string& page, const std::vector<RunFolder>& runs,
                         const PageOptions& options, PageNotes& notes);
-
-inline constexpr const char* kDataPlace = "<!-- talus: data -->";
 
 }  // namespace talus::report

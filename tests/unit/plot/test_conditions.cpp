@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "talus/base/text_file.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 
@@ -177,6 +178,37 @@ convergence = [[-2, 0], [2, 0]]
   CHECK(near(bolts.marks[0].direction, {-1, 0}));
   CHECK(bolts.marks[0].length == doctest::Approx(300));
   CHECK(s.labelled("measured length: width").marks.size() == 1);
+}
+
+TEST_CASE("conditions: symbols and lines of a cut know the line of the file that they come from") {
+  const std::string file = std::string(TALUS_SOURCE_DIR) + "/tests/fixtures/section.toml",
+                    text = read_text_file(file);
+  Findings findings(file, text);
+  const Model model = read_model(file, text, {}, findings);
+  const Cut cut = cut_or_read(model, findings);
+  const Layout layout = checked_layout(model, cut, findings);
+  findings.throw_if_errors();
+  // the name that the section of a line has
+  const auto name_at = [&text](int line) {
+    size_t at = 0;
+    for (int k = 1; k < line; ++k) at = text.find('\n', at) + 1;
+    const size_t head = text.rfind("\n[", at), name = text.find("name = \"", head) + 8;
+    return text.substr(name, text.find('"', name) - name);
+  };
+  const auto name_of = [&](const std::string& label) {
+    for (const Condition& c : conditions_of(model, layout, kView))
+      if (c.label == label && !c.marks.empty()) return name_at(c.marks.front().line);
+    return std::string("not there");
+  };
+  CHECK(name_of("held along x: corner") == "corner");
+  CHECK(name_of("pressure: push") == "push");
+  CHECK(name_of("1 bolt of type bar") == "nail");
+  int faults = 0;
+  for (const Origin& o : cut.origins) {
+    CHECK(name_at(o.where.line) == (o.kind == OriginKind::kFault ? "crack" : "rock"));
+    faults += o.kind == OriginKind::kFault;
+  }
+  CHECK(faults == 1);
 }
 
 }  // namespace test_conditions

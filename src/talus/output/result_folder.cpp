@@ -15,6 +15,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/output/folder_lock.h"
+#include "talus/output/paraview_view.h"
 
 namespace talus {
 
@@ -35,7 +36,8 @@ struct Manifest {
 };
 
 bool is_frame(const std::string& name) {
-  return name.rfind("fields/", 0) == 0 && fs::path(name).extension() != ".pvd";
+  const fs::path end = fs::path(name).extension();
+  return name.rfind("fields/", 0) == 0 && (end == ".vtu" || end == ".vtp");
 }
 
 // Lets nobody else write lines while it exists; on a file system without locks it does nothing.
@@ -147,7 +149,7 @@ bool is_numbered(std::string_view name, std::string_view begin, size_t digits, s
 const std::array<std::vector<std::string>, 5> kFixedNames{
     {{"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv",
       "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html", "live.html", "fields/blocks.pvd",
-      "fields/contacts.pvd", "fields/bolts.pvd"},
+      "fields/contacts.pvd", "fields/bolts.pvd", kParaviewView},
      {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt", "map.svg",
       "map.png", "model.toml"},
      {"motion.csv", "spectrum.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",

@@ -4,6 +4,7 @@
 
 #include "talus/base/error.h"
 #include "talus/contact/pairs.h"
+#include "talus/output/paraview_view.h"
 #include "talus/results/histories.h"
 #include "talus/results/step_table.h"
 
@@ -55,7 +56,8 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +
                          static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
              frame * static_cast<double>(p.frames) + kJointRow * joint_rows + 5000 +
-             2 * (900 + 50 * corners + 60.0 * p.blocks);  // tables, frames, summary, two pictures
+             2 * (900 + 50 * corners + 60.0 * p.blocks) +
+             static_cast<double>(paraview_view().size());  // tables, frames, summary, two pictures, the view
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies
   const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {

@@ -169,7 +169,7 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         "does not slip, holds it; move the side away\n",
         side);
   out += fmt::format(
-      "  results         {0}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/blocks.pvd "
+      "  results         {0}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/view.py "
       "(ParaView)\n"
       "  next            talus report {0}\n",
       folder);

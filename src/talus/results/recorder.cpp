@@ -12,6 +12,7 @@
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/model/with_folder.h"
+#include "talus/output/paraview_view.h"
 #include "talus/results/model_report.h"
 #include "talus/results/problem_file.h"
 #include "talus/results/slip_report.h"
@@ -85,6 +86,7 @@ ResultFolder begin_results(ResultFolder folder, const Scene& scene) {
   folder.write("summary.json", running_text(scene), Reach::kDisk);
   folder.write("model.toml", model_to_keep(scene.model, folder.path()), Reach::kDisk);
   folder.make_folder("fields");
+  folder.write(kParaviewView, paraview_view());
   return folder;
 }
 

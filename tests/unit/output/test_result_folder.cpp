@@ -76,6 +76,7 @@ TEST_CASE("a folder of results: made, refused, replaced") {
                                         "steps.csv",
                                         "step_12.json",
                                         "fields/blocks.pvd",
+                                        "fields/view.py",
                                         "fields/blocks_000003.vtu",
                                         "fields/contacts_1234567.vtp",
                                         "saved/stage_01.h5",

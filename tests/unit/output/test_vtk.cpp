@@ -1,5 +1,7 @@
+#include "talus/output/bolt_lines.h"
 #include "talus/output/contact_points.h"
 #include "talus/output/frame_series.h"
+#include "talus/output/paraview_view.h"
 #include "talus/output/vtk.h"
 
 #include <doctest/doctest.h>
@@ -199,6 +201,19 @@ TEST_CASE("a frame of contacts") {
   CHECK(integers(xml, "offsets") == std::vector<int64_t>{1, 2});
   CHECK(has(xml, "NumberOfPoints=\"2\" NumberOfVerts=\"2\""));
   CHECK(doubles(contacts_vtp({}, 0), "Points", 3).empty());
+}
+
+TEST_CASE("the state file for ParaView asks for arrays that frames have") {
+  const Setup s;
+  const std::string frames =
+      blocks_vtu(s.blocks, s.state, s.state.rate) + contacts_vtp({}, 0) + bolts_vtp({}, 0);
+  const std::string script = paraview_view();
+  CHECK_FALSE(has(script, "@"));
+  for (const std::string name : {"displacement [m]", "force [N]", "state", "axial force [N]"}) {
+    INFO(name);
+    CHECK(has(script, "\"" + name + "\""));
+    CHECK(has(frames, "Name=\"" + name + "\""));
+  }
 }
 
 TEST_CASE("the collection lists every frame written so far") {

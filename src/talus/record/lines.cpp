@@ -26,9 +26,12 @@ size_t end_of_number(std::string_view token) {
 
 }  // namespace
 
-Lines split_lines(const std::string& file, const std::string& text) {
+Lines split_lines(const std::string& file, const std::string& whole) {
   Lines lines{file, {}};
-  if (text.find('\0') != std::string::npos)
+  // old media filled the last sector with zeros, or ended it with Ctrl-Z
+  const size_t last = whole.find_last_not_of(std::string_view("\0\x1a", 2));
+  const std::string_view text = std::string_view(whole).substr(0, last == std::string::npos ? 0 : last + 1);
+  if (text.find('\0') != std::string_view::npos)
     fail(
         lines, 0, "is not a text file",
         "records are text: PEER, K-NET, JMA, ESM, GeoNet, CSMIP, COSMOS, SMC or a table; SAC and miniSEED are not read");

@@ -164,7 +164,7 @@ TEST_CASE("networks: real files keep the peak that their headers tell") {
   int files = 0, silent = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string text = read_text_file(entry.path());
-    if (text.find('\0') != std::string::npos) continue;  // no text
+    if (text.find('\0') < text.find_last_not_of('\0')) continue;  // no text
     const Lines lines = split_lines(entry.path().string(), text);
     const auto format = recognised(lines);
     for (const Told& t : told) {

@@ -45,6 +45,12 @@ TEST_CASE("wrong record: the sound ones are accepted") {
   CHECK(message(kJma, {{}, "NS", "", {}}) == "(accepted)");
 }
 
+TEST_CASE("record: what old media put behind the end of a file is no part of it") {
+  for (const std::string& end : {std::string(500, '\0'), std::string("\x1a"), std::string("\x1a\0\0", 3)})
+    CHECK(message(kPeer + end, {}) == "(accepted)");
+  CHECK(message(std::string(500, '\0'), {}) == "r: error: is empty\n      = fetch or write the file again");
+}
+
 TEST_CASE("wrong record: each kind has its message") {
   struct Wrong {
     std::string text;

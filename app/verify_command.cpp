@@ -49,7 +49,8 @@ std::vector<std::string> cells_of(const std::string& line) {
 // residual | what | computed | exact | error | pass | stretch | reached
 void print_row(const std::vector<std::string>& c, bool markdown) {
   if (markdown)
-    fmt::print("| {} | {} | {} | {} | {} |\n", c[1], c[2], c[3], c[4], c[5]);
+    fmt::print("| {} | {} | {} | {} | {}{} |\n", c[1], c[2], c[3], c[4], c[5],
+               c.back() == "known defect" ? ", known defect" : "");
   else
     fmt::print("{:<62} {:>15} {:>15} {:>9} {:>8}\n", c[1], c[2], c[3], c[4], c[5]);
   std::fflush(stdout);

@@ -11,10 +11,9 @@ LIST = rf"({NUMBER}(?:[ \n/]*(?:,|to|and)[ \n/]*{NUMBER})*)"
 
 
 def numbers_in(theory):
-    """Sections and paragraphs, and equations, which stand at the right of their line."""
+    """Sections and paragraphs, and equations, which have a tag."""
     places = set(re.findall(r"^#+ (\d+(?:\.\d+)?)", theory, re.M)) | set(re.findall(r"^\*\*(\d+\.\d+)", theory, re.M))
-    return places, set(re.findall(rf"\((\d+\.\d+[a-z]?)\)\s*$", theory, re.M)) | set(
-        re.findall(rf"^    .*\((\d+\.\d+[a-z]?)\)[\s.;,]*$", theory, re.M))
+    return places, set(re.findall(r"\\tag\{(\d+\.\d+[a-z]?)\}", theory))
 
 
 def main():

@@ -240,7 +240,7 @@ void judge(const Case& c, const std::string& transform, double found, double mus
   for (const Known& k : kKnown)
     if (k.model == std::string(c.name) && k.transform == transform)
       allowed = std::max(allowed, 10 * k.measured);
-  fmt::print("residual | {:<58} | {:>15.9g} | {:>15.9g} | {:>9.2e} | {:>7.0e} | {:>7.0e} |{}\n",
+  fmt::print("residual | {:<58} | {:>15.9g} | {:>15.9g} | {:>9.2e} | {:>7.3g} | {:>7.3g} |{}\n",
              fmt::format("invariance: {}, {}", c.name, transform), found, 0.0, found, must, must,
              found <= must      ? ""
              : found <= allowed ? " known defect"

@@ -203,7 +203,7 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
   verb.add_option("-o,--output", args.output, "path of the figure without ending; without: DIR/plots/COLUMN");
   verb.add_option(
           "-l,--label", args.labels,
-          "legend text, one per folder in their order; with one folder and several columns, one per column")
+          "legend text, repeated for each folder in their order (-l A -l B); with one folder and several columns, for each column")
       ->allow_extra_args(false);
   verb.add_option("-r,--reference", args.references,
                   "CSV with times and the column to compare with, one per folder, drawn dashed")

@@ -182,8 +182,9 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   }
   const RunResult& result = run.result;
   // a state may have come with texts of somebody else's
-  say(out,
-      shown_name(closing_text(prepared.scene, result, recorder->joints(), name, recorder->audit()), "\n"));
+  say(out, shown_name(closing_text(prepared.scene, result, recorder->joints(), recorder->bolts(), name,
+                                   recorder->audit()),
+                      "\n"));
   if (args.profile) say(out, profile_text(result.profile, result.threads));
   if (!result.failure.empty())
     throw NumericalError(fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure,

@@ -77,6 +77,14 @@ test("opens with the answer: what summary.json says of joints, bolts and monitor
   const stages = await page.locator("#answer-stage option").allInnerTexts();
   await page.locator("#answer-stage").selectOption(stages[0]);
   assert.match(await page.locator("#answer caption").innerText(), new RegExp(stages[0]));
+  // all stages side by side: the same numbers
+  await page.locator("#answer-stage").selectOption({ label: "all, side by side" });
+  const heads = await page.locator("#answer th").allInnerTexts(), all = await page.locator("#answer tr", { hasText: "middle" }).filter({ hasText: "displacement x" }).locator("td").allInnerTexts();
+  const dynamic = summary.stages.at(-1).kind === "dynamic";
+  const column = heads.indexOf(`${stage}: ${dynamic ? "peak" : "at its end"}`), value = dynamic ? peak : told.at_end;
+  assert.ok(column > 1, heads.join());
+  assert.ok(Math.abs(Number(all[column]) * { m: 1, mm: 1e-3, "µm": 1e-6 }[all.at(-1)] - value) <= 6e-3 * Math.abs(value), `${all} of ${value}`);
+  await page.locator("#answer-stage").selectOption(stages[0]);
 });
 
 test("the slider seeks", async () => {

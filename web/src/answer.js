@@ -17,12 +17,14 @@ export function verdictsOf(run) {
       out.push(["joints", `${count(slipped, "joint")} slipped: ${left}accumulated slip at most ${withUnit(j["slip_largest [m]"], "m")}`]);
     } else out.push(["joints", "no joint slipped"]);
     const broken = j["broken_length [m]"], open = j["opening_largest [m]"], more = [];
-    if (broken > 0) more.push(`${withUnit(broken, "m")} of glued faces broke`);
+    if (broken > 0) more.push(`${withUnit(broken, "m")} of faces that were held together broke`);
     if (open > 0) more.push(`the widest open joint stands ${withUnit(open, "m")} open`);
     if (more.length) out.push(["cracks", more.join("; ")]);
   }
   const bolts = boltsOf(run);
   if (bolts) out.push(["bolts", bolts]);
+  const most = s.moved && s.moved.most;
+  if (most) out.push(["moved most", `${most.block}, ${withUnit(most["displacement [m]"], "m")} (${number(100 * most["share of its size"], 2)} % of its size)`]);
   if (s.moved && s.moved.blocks > 0)
     out.push(["moved", `${count(s.moved.blocks, "block")} moved by a tenth of their size or more, ${number(s.moved["area [m2]"], 3)} m² together`]);
   return out;
@@ -92,4 +94,24 @@ export function monitorTable(run, stage, onTime) {
   if (!rows.length) return null;
   return tableOf(`Monitors in stage "${stage}"`, ["monitor", "quantity", "peak", begin > 0 ? "at t [s] (of the stage)" : "at t [s]",
     dynamic ? "residual (mean of the last tenth)" : "at its end", "unit"], rows);
+}
+
+/** The table of all stages side by side: what monitors come to at the end of static ones, peak and residual of dynamic ones. */
+export function stagesTable(run) {
+  const names = answeredStages(run), columns = [], rows = new Map();
+  for (const name of names) {
+    const dynamic = ((run.summary.stages || []).find((s) => s.name === name) || {}).kind === "dynamic";
+    const parts = dynamic ? [[`${name}: peak`, (a) => a.peak], [`${name}: residual`, (a) => a.left]] : [[`${name}: at its end`, (a) => a.end]];
+    for (const a of answersOf(run, name)) {
+      const key = `${a.monitor} ${a.quantity}`;
+      if (!rows.has(key)) rows.set(key, { ...a, values: new Map() });
+      for (const [title, of] of parts) rows.get(key).values.set(title, of(a));
+    }
+    columns.push(...parts.map(([title]) => title));
+  }
+  const body = [...rows.values()].map((row) => {
+    const r = readableUnit(Math.max(...[...row.values.values()].map((v) => Math.abs(v ?? 0))), row.unit);
+    return [row.monitor, row.quantity, ...columns.map((c) => { const v = row.values.get(c); return Number.isFinite(v) ? number(v / r.factor, 3) : ""; }), r.unit];
+  });
+  return body.length ? tableOf("Monitors in all stages", ["monitor", "quantity", ...columns, "unit"], body) : null;
 }

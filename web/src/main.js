@@ -3,7 +3,7 @@
 import { chunkJson } from "./decode.js";
 import { Run } from "./run.js";
 import { View, contactKey } from "./view.js";
-import { answeredStages, monitorTable, verdictsOf } from "./answer.js";
+import { answeredStages, monitorTable, stagesTable, verdictsOf } from "./answer.js";
 import { addChart, drawCharts, largestOf, moveTime, redrawCharts, save } from "./charts.js";
 import { comparison } from "./compare.js";
 import { colours, learn, number, quantities, readableUnit, ticks, withUnit, words } from "./quantities.js";
@@ -134,14 +134,18 @@ async function showRun(i) {
   }
 }
 
+const kAllStages = "\u0000";  // no name of a stage
+
 // What the run says, in words and as the table of a stage.
 function showAnswer(stage) {
   const stages = answeredStages(run), chosen = stage || stages[stages.length - 1];
   const list = element("dl", { class: "verdicts" }, ...verdictsOf(run).flatMap(([name, text]) => [element("dt", {}, name), element("dd", { class: /NOT VALID|failed/.test(text) ? "bad" : undefined }, text)]));
   const choice = stages.length > 1 ? element("p", { class: "controls" }, element("label", {}, "stage ",
     element("select", { id: "answer-stage", onchange: (e) => { showAnswer(e.target.value); $("answer-stage").focus(); } },
-      ...stages.map((name) => element("option", { value: name, selected: name === chosen }, name))))) : "";
-  fill("answer", [list, choice, chosen ? monitorTable(run, chosen, run.frames.length ? goToTime : null) || "" : ""].filter(Boolean));
+      ...stages.map((name) => element("option", { value: name, selected: name === chosen }, name)),
+      element("option", { value: kAllStages, selected: chosen === kAllStages }, "all, side by side")))) : "";
+  const table = chosen === kAllStages ? stagesTable(run) : chosen ? monitorTable(run, chosen, run.frames.length ? goToTime : null) : null;
+  fill("answer", [list, choice, table || ""].filter(Boolean));
 }
 
 function fill(id, children) {

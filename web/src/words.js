@@ -57,7 +57,7 @@ export function cardsOf(run) {
     cards.push(["energy left over", number(s.energy_closure, 3), "of the largest term; good below 0.01"]);
   const j = s.joints;
   if (j && j.points > 0)
-    cards.push(["joints slipped", Number(j.slipped_joints ?? j.slipped).toLocaleString("en"), j["slip_largest [m]"] > 0 ? `by ${withUnit(j["slip_largest [m]"], "m")} at most` : ""]);
+    cards.push(["joints slipped", Number(j.slipped_joints ?? j.slipped).toLocaleString("en"), j["slip_largest [m]"] > 0 ? `accumulated ${withUnit(j["slip_largest [m]"], "m")} at most` : ""]);
   return cards;
 }
 

@@ -84,7 +84,7 @@ std::string survey_lines(const Cut& cut) {
   return out;
 }
 
-std::string sliver_lines(const Cut& cut, const CutStatistics& s) {
+std::string sliver_lines(const Model& model, const Cut& cut, const CutStatistics& s) {
   const SliverTable& t = cut.slivers;
   std::string out;
   for (size_t r = 0; r < t.limits.size(); ++r) {
@@ -104,7 +104,9 @@ std::string sliver_lines(const Cut& cut, const CutStatistics& s) {
     out += fmt::format("           {} deleted, {:.4g} m2 of rock lost\n", t.deleted, t.deleted_area);
   if (t.kept > 0)
     out += fmt::format("           {} kept{}\n", t.kept,
-                       t.merged > 0 ? ": at a free face, or between joints that merging must not open" : "");
+                       model.cut.slivers == SliverPolicy::kMerge
+                           ? ": at a free face, or between joints that merging must not open"
+                           : "");
   if (t.merged + t.deleted > 0)
     out += "           a mechanism may be hidden there: compare with slivers = \"keep\"\n";
   const auto share = [](const BlockStatistics& b) {
@@ -175,7 +177,7 @@ std::string cut_report(const Model& model, const Cut& cut, const CutStatistics& 
   int removed = 0;
   for (const OpeningInput& o : model.openings) removed += !o.kept;
   if (removed > 0) out += fmt::format("openings   {} taken out with {} blocks\n", removed, cut.taken_out);
-  out += sliver_lines(cut, s);
+  out += sliver_lines(model, cut, s);
   out += fmt::format("blocks     {}, {:.10g} m2 on a grid of {:.3g} m\n\n", s.after.count, s.after.total_area,
                      cut.grid);
   out += fmt::format("  {:<22}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "", "smallest", "1 %", "5 %",

@@ -106,8 +106,8 @@ Box box_of(const BlockPicture& picture, const Scenery& s) {
 }
 
 int foot_rows(const Scenery& s) {
-  return (s.quantity ? 3 : 1) + (s.slip > 0) + (s.opening > 0) + !s.bolts.empty() + !s.crosses.empty() +
-         !s.chains.empty() + (s.slip_arrows && s.slip > 0);
+  return (s.quantity ? 3 : 1) + (s.slip > 0) + (s.opening > 0) + !s.bolts.empty() + s.ruptured +
+         !s.crosses.empty() + !s.chains.empty() + (s.slip_arrows && s.slip > 0);
 }
 
 Sheet make_sheet(cairo_t* cr, const Box& box, const Scenery& scenery) {
@@ -347,6 +347,11 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
                      s.pressed > 0 ? ", pressed by at most " + with_unit(s.pressed, "N") : ""),
          x + sample);
     y += kRow;
+    if (s.ruptured) {
+      line(bolt_pen(s, {{}, {}, 0, true}));
+      text("bolts ruptured there", x + sample);
+      y += kRow;
+    }
   }
   if (!s.crosses.empty()) {
     line({of(kPressedColour), 1.1, {}});

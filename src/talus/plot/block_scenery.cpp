@@ -123,18 +123,30 @@ void take_bolts(const BlockPicture& picture, const BlockFrame& f, Scenery& s) {
     o.box = bounding_box(o.polygon);
     outlines.push_back(std::move(o));
   }
-  // an end moves with the block it lies in
-  const auto place = [&](Vec2 now) {
+  // a piece of bar moves with the block around its middle: its ends may lie on a face or in an open joint
+  const auto block_around = [&](Vec2 now) {
     for (const Outline& o : outlines) {
       const bool near =
           now.x >= o.box.min.x && now.x <= o.box.max.x && now.y >= o.box.min.y && now.y <= o.box.max.y;
-      if (near && contains(o.polygon, now)) return now + drawn_off(picture, f, o.id, now);
+      if (near && contains(o.polygon, now)) return o.id;
     }
-    return now;
+    return -1;
   };
+  std::vector<int> block(b.size(), -1);
+  for (size_t i = 0; i < b.size(); ++i)
+    if (!b.crossing[i]) block[i] = block_around(0.5 * (b.from[i] + b.to[i]));
+  const auto place = [&](Vec2 now, int around) {
+    return around < 0 ? now : now + drawn_off(picture, f, around, now);
+  };
+  const auto meet = [](Vec2 p, Vec2 q) { return norm(p - q) <= 1e-9 * (1 + norm(p)); };
   for (size_t i = 0; i < b.size(); ++i) {
-    s.bolts.push_back({place(b.from[i]), place(b.to[i]), b.axial_force[i], b.condition[i] == 2});
+    // across a joint it hangs between the pieces beside it
+    int first = block[i], last = block[i];
+    if (b.crossing[i] && i > 0 && meet(b.to[i - 1], b.from[i])) first = block[i - 1];
+    if (b.crossing[i] && i + 1 < b.size() && meet(b.to[i], b.from[i + 1])) last = block[i + 1];
+    s.bolts.push_back({place(b.from[i], first), place(b.to[i], last), b.axial_force[i], b.condition[i] == 2});
     s.tension = std::max(s.tension, b.axial_force[i]), s.pressed = std::max(s.pressed, -b.axial_force[i]);
+    s.ruptured = s.ruptured || b.condition[i] == 2;
   }
 }
 

@@ -44,6 +44,7 @@ struct Scenery {
   std::vector<Chain> chains;
   bool slip_arrows = false;
   double slip = 0, opening = 0, tension = 0, pressed = 0, stress = 0, force = 0;  // the largest
+  bool ruptured = false;                                                          // some bolt is
   bool residual = true;  // the slip is what is left of it, not all of it to and fro
   const BlockQuantity* quantity = nullptr;
   std::string against;  // what displacements are told against, "": the start

@@ -153,8 +153,19 @@ void set_ticks(cairo_t* cr, Axis& axis, int target) {
   }
 }
 
-// As many ticks as fit beside each other with their labels.
-void set_x_ticks(cairo_t* cr, Axis& axis, double width) {
+// As many ticks as fit beside each other with their labels; kinds have one each.
+void set_x_ticks(cairo_t* cr, const std::vector<std::string>& names, Axis& axis, double width) {
+  if (!names.empty()) {
+    axis.ticks = {};
+    axis.labels.clear(), axis.widest_label = 0;
+    const double room = std::max(10.0, width / static_cast<double>(names.size()) - 8);
+    for (size_t k = 0; k < names.size(); ++k) {
+      axis.ticks.values.push_back(static_cast<double>(k + 1));
+      axis.labels.push_back(fit_text(cr, names[k], room));
+      axis.widest_label = std::max(axis.widest_label, text_width(cr, axis.labels.back()));
+    }
+    return;
+  }
   for (int target = std::clamp(static_cast<int>(width / 65), 2, 40); target >= 2; --target) {
     set_ticks(cr, axis, target);
     const double spacing = axis.ticks.step / axis.range.length() * width;
@@ -245,7 +256,7 @@ Layout make_layout(cairo_t* cr, const Figure& figure) {
     set_ticks(cr, layout.y, std::clamp(static_cast<int>(plot_height / 36), 2, 40));
     const double left = kMargin + y_label_width + layout.y.widest_label + kTickLength + 4;
     layout.plot = {left, header, layout.width - left - kMargin, layout.height - header - below};
-    set_x_ticks(cr, layout.x, layout.plot.w);
+    set_x_ticks(cr, figure.x_names, layout.x, layout.plot.w);
     layout.plot.w -= std::max(0.0, layout.x.widest_label / 2 - kMargin + 4);  // a label at the right end
     layout.legend = legend_entries(cr, figure, layout.width - kMargin - left);
     place_legend(layout.legend, layout.width, layout.plot);
@@ -255,7 +266,7 @@ Layout make_layout(cairo_t* cr, const Figure& figure) {
     layout.plot.h += missing;
     plot_height = layout.plot.h;
   }
-  set_x_ticks(cr, layout.x, layout.plot.w);
+  set_x_ticks(cr, figure.x_names, layout.x, layout.plot.w);
   layout.x_label = fit_text(cr, figure.x_label, layout.plot.w);
   layout.y_label = fit_text(cr, figure.y_label, layout.plot.h);
   set_font(cr, kTitleSize, true);

@@ -30,6 +30,7 @@ struct Figure {
   std::string x_label, y_label;  // with units, e.g. "t [ms]"
   std::vector<Curve> curves;
   std::optional<double> x_min, x_max, y_min, y_max;  // in the units of the axes
+  std::vector<std::string> x_names;                  // of x = 1, 2 ...: kinds and no numbers; empty: numbers
   double width = 760, height = 460;  // px; the height grows if a long legend would squeeze the plot area
 };
 

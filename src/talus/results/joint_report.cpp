@@ -6,7 +6,9 @@
 #include <map>
 
 #include "talus/base/error.h"
+#include "talus/blocks/in_situ.h"
 #include "talus/contact/bonds.h"
+#include "talus/contact/find.h"
 
 namespace talus {
 
@@ -40,6 +42,46 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   return out;
 }
 
+// The pair of blocks that a contact belongs to.
+const ContactPair& pair_of(const State& state, size_t contact) {
+  const auto after =
+      std::upper_bound(state.pairs.begin(), state.pairs.end(), contact,
+                       [](size_t k, const ContactPair& p) { return k < static_cast<size_t>(p.begin); });
+  auto pair = after - 1;
+  while (pair->count == 0) --pair;  // those without points begin where the next one does
+  return *pair;
+}
+
+// Slip that is left: how far the corner has gone along the side from where it was at the start, elastic slip apart. By
+// the places of the blocks and not by adding up steps, so that what a joint went while it stood open counts too.
+// Contacts of blocks that met later have no such place: theirs is added up (theory 4.19).
+double residual_slip(const Scene& scene, const Instant& i, size_t k) {
+  const State& state = i.state;
+  const Contact& c = state.contacts[k];
+  const ContactPair& pair = pair_of(state, k);
+  if (!pair.from_start) return c.slip_signed;
+  const BlockSet& blocks = scene.blocks;
+  const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
+  const Vec2 corner = blocks.corner(c.key.corner()), b0 = blocks.corner({c.key.block_b, c.key.edge}),
+             edge = blocks.corner(blocks.end_of(c.key.on())) - b0;
+  const CornerEdge over = corner_over_edge(blocks, state, c.key.corner(), c.key.on());
+  // as block b sees it: against the place of b where the corner was
+  const Vec2 there = (blocks.centroid[a] - blocks.centroid[b]) + corner;
+  const Vec2 gone = displacement_at(state, a, corner) - displacement_at(state, b, there);
+  double closure = 0;  // elastic slip by the stress of the ground, at the start
+  if (scene.model.in_situ.given && c.joint >= 0 && (pair.shares_face || c.length > 0)) {
+    const double height = blocks.centroid[b].y + b0.y + std::clamp(over.along, 0.0, 1.0) * edge.y;
+    closure = scene.laws[static_cast<size_t>(c.joint)]
+                  .closure(in_situ_stress(scene.model.in_situ, scene.model.gravity, height),
+                           turn_right(edge) / norm(edge))
+                  .y;
+  }
+  // what contacts remember is already that of the end of the step
+  const PointRows& row = i.work.rows.points[i.work.rows.range(Family::kContact).begin + k];
+  const double to_come = i.work.clock.dt * relative_velocity(row, state.rate)[1];
+  return dot(turn_right(over.normal), gone) + to_come + closure - c.stretch;
+}
+
 JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   const Contact& c = i.state.contacts[k];
   JointPoint out;
@@ -48,7 +90,7 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   out.set = set_of(scene, c.key.block_b, c.key.edge);
   if (out.set.empty()) out.set = set_of(scene, c.key.block_a, c.key.vertex);
   out.length = c.length;
-  out.slip = c.slip, out.slip_signed = c.slip_signed;
+  out.slip = c.slip, out.slip_signed = residual_slip(scene, i, k);
   if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip);
   out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
   const double noticed =
@@ -155,7 +197,10 @@ void JointSummary::look(const Scene& scene, const State& state) {
   broken_by_set.assign(by_set.begin(), by_set.end());
   for (int b = 0; b < scene.blocks.count; ++b) {
     const auto k = static_cast<size_t>(b);
-    if (scene.blocks.removed(b) || norm(state.displacement[k]) < kMoved * scene.blocks.size[k]) continue;
+    if (scene.blocks.removed(b)) continue;
+    const double share = norm(state.displacement[k]) / scene.blocks.size[k];
+    if (share > moved_share) moved_share = share, moved_most = b;
+    if (share < kMoved) continue;
     moved_area += scene.blocks.size[k] * scene.blocks.size[k];
     ++moved_blocks;
   }
@@ -164,14 +209,15 @@ void JointSummary::look(const Scene& scene, const State& state) {
 void JointSummary::add(const JointPoint& p) {
   ++points;
   slip_area += p.slip * p.length;
-  if (!p.face && p.slip > 0) {
-    const auto at = std::find_if(slip_by_set.begin(), slip_by_set.end(),
-                                 [&p](const auto& one) { return one.first == p.set; });
-    if (at == slip_by_set.end())
-      slip_by_set.emplace_back(p.set, p.slip);
+  const auto take = [&p](auto& by_set, double slip) {
+    const auto at =
+        std::find_if(by_set.begin(), by_set.end(), [&p](const auto& one) { return one.first == p.set; });
+    if (at == by_set.end())
+      by_set.emplace_back(p.set, slip);
     else
-      at->second = std::max(at->second, p.slip);
-  }
+      at->second = std::max(at->second, slip);
+  };
+  if (!p.face && p.slip > 0) take(slip_by_set, p.slip), take(residual_by_set, p.residual_slip());
   intact += p.is(JointState::kIntact);
   slipped += p.is(JointState::kSlipped);
   open += p.is(JointState::kOpen);
@@ -217,8 +263,10 @@ void exchange_summary(auto& x, auto& s, const std::string& name) {
   x(name + ".slipped_joints", s.slipped_joints);
   x(name + ".slip_area", s.slip_area), x(name + ".broken", s.broken);
   x(name + ".moved_area", s.moved_area), x(name + ".moved_blocks", s.moved_blocks);
+  x(name + ".moved_most", s.moved_most), x(name + ".moved_share", s.moved_share);
   exchange_sets(x, s.broken_by_set, name + ".broken_set"),
-      exchange_sets(x, s.slip_by_set, name + ".slip_set");
+      exchange_sets(x, s.slip_by_set, name + ".slip_set"),
+      exchange_sets(x, s.residual_by_set, name + ".residual_set");
   exchange_point(x, s.largest, name + ".largest");
   exchange_point(x, s.most_residual, name + ".most_residual");
 }
@@ -235,7 +283,8 @@ void JointSummary::load(Loader& from, const std::string& name, const Scene& scen
            p.joint < static_cast<int>(scene.model.joints.size());
   };
   // the others have no place
-  if ((!(largest.slip <= 0) && !known(largest)) || (slipped_joints != 0 && !known(most_residual)))
+  if ((!(largest.slip <= 0) && !known(largest)) || (slipped_joints != 0 && !known(most_residual)) ||
+      moved_most < -1 || moved_most >= scene.blocks.count)
     throw FileError(
         fmt::format("\"{}\" of the saved state speaks of blocks or joints that there are not", name));
 }

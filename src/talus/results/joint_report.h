@@ -50,9 +50,12 @@ struct JointSummary {
   double broken = 0;         // length of faces that have broken [m]
   std::vector<std::pair<std::string, double>>
       broken_by_set;  // by what they were cut along, "" where by nothing [m]
-  std::vector<std::pair<std::string, double>> slip_by_set;  // the largest [m]
+  std::vector<std::pair<std::string, double>> slip_by_set,
+      residual_by_set;    // the largest, accumulated and residual [m]
   double moved_area = 0;  // of blocks that have moved by a tenth of their size or more since the start [m2]
   int moved_blocks = 0;
+  int moved_most = -1;     // block that has gone furthest, as share of its size; -1: none goes
+  double moved_share = 0;  // that share
 
   /// What of the instant is no matter of points: broken faces, blocks that have moved.
   void look(const Scene& scene, const State& state);

@@ -109,7 +109,8 @@ void Progress::finish() {
 }
 
 std::string closing_text(const Scene& scene, const RunResult& r, const JointSummary& joints,
-                         const std::string& folder, const std::optional<audit::Report>& audit) {
+                         const BoltSummary& bolts, const std::string& folder,
+                         const std::optional<audit::Report>& audit) {
   std::string out;
   const char* ending = !r.failure.empty() ? "failed"
                        : r.interrupted    ? "interrupted; the results up to then are valid"
@@ -158,11 +159,20 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
                          s.steps, s.unbalanced);
   }
   if (r.broken_faces > 0)
-    out += fmt::format("  broken          {} of {} glued faces\n", r.broken_faces, scene.bonds.faces.size());
+    out += fmt::format(
+        "  broken          {} of {} faces held together (bonded, or by cohesion or tensile strength)\n",
+        r.broken_faces, scene.bonds.faces.size());
   if (joints.slipped_joints > 0)
-    out += fmt::format("  slipped         {} joint{}, by {:.3g} m at most: {}; all in slips.csv\n",
+    out += fmt::format("  slipped         {} joint{}, residual slip {:.3g} m at most: {}; all in slips.csv\n",
                        joints.slipped_joints, joints.slipped_joints == 1 ? "" : "s",
                        joints.most_residual.residual_slip(), place_text(scene, joints.most_residual));
+  if (bolts.bolts > 0) out += fmt::format("  bolts           {}\n", bolts.text());
+  constexpr double kWorthALine = 1e-3;  // of its size
+  if (joints.moved_share > kWorthALine)
+    out += fmt::format("  moved most      {}, {:.3g} m ({:.2g} % of its size)\n",
+                       scene.blocks.name[static_cast<size_t>(joints.moved_most)],
+                       joints.moved_share * scene.blocks.size[static_cast<size_t>(joints.moved_most)],
+                       100 * joints.moved_share);
   if (const std::string side = free_field_side(scene, joints); !side.empty())
     out += fmt::format(
         "  WARNING         the largest slip ends at the free-field side \"{}\": the ground beyond, which "

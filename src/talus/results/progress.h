@@ -46,6 +46,7 @@ void say(std::FILE* out, const std::string& text);
 
 /// Closing lines of a run: what happened and how far to trust it.
 std::string closing_text(const Scene& scene, const RunResult& result, const JointSummary& joints,
-                         const std::string& folder, const std::optional<audit::Report>& audit = std::nullopt);
+                         const BoltSummary& bolts, const std::string& folder,
+                         const std::optional<audit::Report>& audit = std::nullopt);
 
 }  // namespace talus

@@ -264,8 +264,8 @@ Archive Recorder::archive_of(const Standing& standing, const State& state) const
 }
 
 std::string Recorder::summary_of(const RunResult& result) const {
-  return summary_text(scene_, result, notes_, block_frames_.count(), joint_summary_, &histories_, model_,
-                      audit());
+  return summary_text(scene_, result, notes_, block_frames_.count(), joint_summary_, bolt_summary_,
+                      &histories_, model_, audit());
 }
 
 void Recorder::flush_tables() {
@@ -409,7 +409,9 @@ void Recorder::write_bolts(const Instant& i) {
   const int stage = i.last ? i.stage : i.stage - 1;
   if (bolt_table_.empty()) bolt_table_ = csv_head(bolt_columns());
   const std::string& name = scene_.model.stages[static_cast<size_t>(stage)].name;
-  for (const BoltLine& line : bolt_lines(scene_, i.state, stage))
+  const std::vector<BoltLine> lines = bolt_lines(scene_, i.state, stage);
+  bolt_summary_ = BoltSummary::of(lines);
+  for (const BoltLine& line : lines)
     bolt_table_ += csv_row(bolt_columns(), BoltRow{line, name, i.state.time});
   folder_.write("bolts.csv", bolt_table_, Reach::kDisk);
 }

@@ -8,6 +8,7 @@
 #include "talus/output/csv.h"
 #include "talus/output/frame_series.h"
 #include "talus/results/auditor.h"
+#include "talus/results/bolt_summary.h"
 #include "talus/results/frames.h"
 #include "talus/results/histories.h"
 #include "talus/results/joint_report.h"
@@ -51,6 +52,8 @@ class Recorder : public Observer {
 
   /// Joints at the end of the last stage that has ended.
   const JointSummary& joints() const { return joint_summary_; }
+  /// The same of bolts.
+  const BoltSummary& bolts() const { return bolt_summary_; }
 
   /// What the audit found; none with `audit = false`.
   std::optional<audit::Report> audit() const;
@@ -127,6 +130,7 @@ class Recorder : public Observer {
   std::optional<Auditor> auditor_;
   FrameSeries block_frames_, contact_frames_, bolt_frames_;
   std::string bolt_table_;  // bolts.csv so far
+  BoltSummary bolt_summary_;
   Due due_;
   std::string joints_, slips_;  // joints.csv and slips.csv so far
   JointSummary joint_summary_;

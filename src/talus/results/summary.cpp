@@ -71,8 +71,8 @@ nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<aud
 }  // namespace
 
 std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes& notes, int frames,
-                         const JointSummary& joints, const Histories* histories, const std::string& model,
-                         const std::optional<audit::Report>& audit) {
+                         const JointSummary& joints, const BoltSummary& bolts, const Histories* histories,
+                         const std::string& model, const std::optional<audit::Report>& audit) {
   using nlohmann::ordered_json;
   const BlockSet& b = scene.blocks;
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
@@ -129,9 +129,23 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   j["joints"]["slip_times_length [m2]"] = joints.slip_area;
   j["joints"]["broken_length [m]"] = joints.broken;
   for (const auto& [set, slip] : joints.slip_by_set) j["joints"]["slip_largest_by_set [m]"][set] = slip;
+  for (const auto& [set, slip] : joints.residual_by_set)
+    j["joints"]["residual_slip_largest_by_set [m]"][set] = slip;
   for (const auto& [set, length] : joints.broken_by_set)
     j["joints"]["broken_length_by_set [m]"][set] = length;
+  if (bolts.bolts > 0)
+    j["bolts"] = {{"count", bolts.bolts},
+                  {"yielded", bolts.yielded},
+                  {"ruptured", bolts.ruptured},
+                  {"tension_largest [N]", bolts.tension},
+                  {"tension_largest_in", bolts.tension_in}};
   j["moved"] = {{"blocks", joints.moved_blocks}, {"area [m2]", joints.moved_area}};
+  if (joints.moved_most >= 0) {
+    const auto k = static_cast<size_t>(joints.moved_most);
+    j["moved"]["most"] = {{"block", b.name[k]},
+                          {"displacement [m]", joints.moved_share * b.size[k]},
+                          {"share of its size", joints.moved_share}};
+  }
   if (joints.largest.slip > 0) j["joints"]["slip_largest_at"] = where(joints.largest);
   j["joints"]["slipped_joints"] = joints.slipped_joints;
   if (joints.slipped_joints > 0) {

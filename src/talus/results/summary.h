@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/audit/findings.h"
+#include "talus/results/bolt_summary.h"
 #include "talus/results/histories.h"
 #include "talus/results/joint_report.h"
 #include "talus/run/branch.h"
@@ -22,8 +23,8 @@ struct RunNotes {
 /// Text of summary.json.
 /// @param model  model_in_numbers() of the scene as it began, as text
 std::string summary_text(const Scene& scene, const RunResult& result, const RunNotes& notes, int frames,
-                         const JointSummary& joints = {}, const Histories* histories = nullptr,
-                         const std::string& model = "{}",
+                         const JointSummary& joints = {}, const BoltSummary& bolts = {},
+                         const Histories* histories = nullptr, const std::string& model = "{}",
                          const std::optional<audit::Report>& audit = std::nullopt);
 
 }  // namespace talus

@@ -73,10 +73,42 @@ std::string base_line(const Scene& scene, const BoundaryInput& b, int axis) {
   const LayerResponse r = level_response(layers, axis == 0 ? z.shear : z.pressure, f);
   double height = 0;
   for (const WaveLayer& l : layers) height += l.height;
-  return head + fmt::format(
-                    ";\n             level ground as above ({:g}, {:g}), {:.4g} m high, would move at the "
-                    "surface {:.3f} and at the base {:.3f} times the outcrop motion at its main {:.3g} Hz\n",
-                    foot.x, foot.y, height, r.surface, r.base, f);
+  return head +
+         fmt::format(
+             ";\n             level ground as above ({:g}, {:g}), {:.4g} m high, would move at the "
+             "surface, free, {:.3f} and at the base {:.3f} times the outcrop motion at its main {:.3g} Hz\n",
+             foot.x, foot.y, height, r.surface, r.base, f);
+}
+
+// What a viscous edge sends back of a pressure wave that comes straight in from rock with joints: its dashpots are those
+// of the rock alone (theory 4.11).
+std::string edge_line(const Scene& scene, const BoundaryInput& b) {
+  constexpr double kWorthALine = 0.02;
+  const std::vector<SelectedEdge> edges = outer_edges(scene.layout, b).edges;
+  if (edges.empty()) return "";
+  const SelectedEdge& e = edges[edges.size() / 2];
+  const BlockShape& shape = scene.layout.blocks[static_cast<size_t>(e.block)];
+  if (shape.kind != BlockKind::kDeformable) return "";
+  std::string trouble;
+  const Ground g = ground_at(scene.model, scene.layout, shape, shape.material, trouble);
+  if (!trouble.empty()) return "";
+  const size_t axis = std::abs(e.normal().x) > std::abs(e.normal().y) ? 0 : 1;
+  const double modulus = g.stiffness[axis][axis], shear = g.stiffness[2][2];
+  const double inside = std::sqrt(g.density * modulus),
+               behind = impedance(scene.model, material_behind(b, scene.layout, e.block)).pressure;
+  const double returned = (inside - behind) / (inside + behind);
+  if (std::abs(returned) < kWorthALine) return "";
+  const double poisson = (modulus - 2 * shear) / (2 * (modulus - shear)), young = 2 * shear * (1 + poisson);
+  const std::string equal =
+      scene.model.plane == Plane::kStrain && poisson > -1 && poisson < 0.5
+          ? fmt::format(
+                "; a material that takes it has young = \"{:.4g} GPa\", poisson = {:.3g} and this density",
+                young / 1e9, poisson)
+          : "";
+  return fmt::format(
+      "  edge       \"{}\": {:.2g} % of a pressure wave that comes straight in returns: behind the edge {:.4g} kPa s/m, before it, "
+      "with its joints, {:.4g} kPa s/m{}\n",
+      b.name, 100 * std::abs(returned), behind / 1e3, inside / 1e3, equal);
 }
 
 }  // namespace
@@ -111,9 +143,20 @@ double dominant_frequency(const History& history) {
         std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(kSamples));
     std::complex<double> at = 1, sum = 0;
     for (const double x : v) sum += x * at, at *= turn;
-    if (std::abs(sum) > largest) largest = std::abs(sum), best = static_cast<double>(k) / span;
+    if (std::abs(sum) > largest) largest = std::abs(sum), best = static_cast<double>(k);
   }
-  return best;
+  // between the frequencies of the window, whose length is no matter of the motion
+  constexpr int kFiner = 16;
+  double finest = best;
+  for (int j = -kFiner + 1; best > 0 && j < kFiner; ++j) {
+    const double k = best + static_cast<double>(j) / kFiner;
+    const std::complex<double> turn =
+        std::polar(1.0, -2 * std::numbers::pi * k / static_cast<double>(kSamples));
+    std::complex<double> at = 1, sum = 0;
+    for (const double x : v) sum += x * at, at *= turn;
+    if (std::abs(sum) > largest) largest = std::abs(sum), finest = k;
+  }
+  return finest / span;
 }
 
 std::string base_report(const Scene& scene) {
@@ -122,6 +165,7 @@ std::string base_report(const Scene& scene) {
     if (b.kind != BoundaryKind::kViscous) continue;
     for (const int axis : {0, 1})
       if ((axis == 0 ? b.history_x : b.history_y) >= 0) text += base_line(scene, b, axis);
+    text += edge_line(scene, b);
   }
   return text;
 }

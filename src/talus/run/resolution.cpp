@@ -177,8 +177,8 @@ void check_resolution(const Scene& scene, Findings& findings) {
             r.per_wavelength, r.frequency, 100 * record::kVelocityShare, kFewestPerWavelength, r.speed,
             scene.blocks.name[static_cast<size_t>(r.block)], r.size),
         fmt::format(
-            "use blocks of at most {:.3g} m there, or take out what lies above {:.3g} Hz (talus record "
-            "--low-pass)",
+            "use blocks of at most {:.3g} m there, or take out what lies above {:.3g} Hz (of a record: talus record "
+            "--low-pass; of an expression: a lower frequency)",
             r.size * r.per_wavelength / kFewestPerWavelength,
             r.frequency * r.per_wavelength / kFewestPerWavelength));
   }

@@ -9,6 +9,7 @@
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
 #include "talus/base/memory_reserve.h"
+#include "talus/base/rank.h"
 #include "talus/contact/pairs.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
@@ -72,6 +73,7 @@ class Runner {
       show_end();
     } catch (const NumericalError& e) {
       result_.failure = e.what();
+      if (result_.no_rest) show_unrest();
     }
     result_.candidate_rebuilds = state_.candidates.rebuilds;
     result_.threads = work_.workers.threads();
@@ -266,6 +268,8 @@ class Runner {
     for (size_t k = 0; k < state_.rate.size(); ++k)
       farthest =
           std::max(farthest, norm(state_.rate[k].a) * std::max(left, stage.duration) / scene_.blocks.size[k]);
+    if (farthest > StepsFromRest::kFarToGo && !goes_anywhere(std::max(left, stage.duration)))
+      return chatter(stage);
     if (farthest > StepsFromRest::kFarToGo)
       return fmt::format(
           "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
@@ -276,6 +280,38 @@ class Runner {
         "Blocks ring against each other without going anywhere. Give stage.{0}.elasticity = \"implicit\" or "
         "some contact.alpha, or a larger stage.{0}.unbalanced",
         stage.name);
+  }
+
+  // Whether some block, at the pace it had since the last look, gets anywhere in `time`: what chatters is fast and stays.
+  bool goes_anywhere(double time) const {
+    const double since = state_.time - look_.time;
+    if (look_.place.size() != state_.displacement.size() || since <= 0) return true;
+    for (size_t k = 0; k < look_.place.size(); ++k)
+      if (norm(state_.displacement[k] - look_.place[k]) * time / since >
+          StepsFromRest::kFarToGo * scene_.blocks.size[k])
+        return true;
+    return false;
+  }
+
+  // Which block keeps a stage from rest though nothing goes anywhere.
+  std::string chatter(const StageInput& stage) const {
+    size_t fastest = 0;
+    double most = -1;
+    std::vector<double> areas;
+    for (size_t k = 0; k < state_.rate.size(); ++k) {
+      if (!scene_.blocks.moves_freely(static_cast<int>(k))) continue;
+      areas.push_back(scene_.blocks.size[k] * scene_.blocks.size[k]);
+      const double pace = norm(state_.rate[k].a) / scene_.blocks.size[k];
+      if (pace > most) most = pace, fastest = k;
+    }
+    const double area = scene_.blocks.size[fastest] * scene_.blocks.size[fastest];
+    const Vec2 at = scene_.blocks.centroid[fastest] + state_.displacement[fastest];
+    return fmt::format(
+        "Block \"{}\" ({:.3g} m2, the median is {:.3g}) chatters at ({:.4g}, {:.4g}), with {:.2g} m/s, and since t = {:.4g} s no block "
+        "has gone anywhere: more duration will not help. Give stage.{}.integration = \"implicit\" (from rest to rest), a "
+        "shorter time_step, or move the joints that make so small a block",
+        scene_.blocks.name[fastest], area, median(std::move(areas)), at.x, at.y, norm(state_.rate[fastest].a),
+        look_.time, stage.name);
   }
 
   // The force that the error of a step is on the block with the largest unbalanced force [N].
@@ -294,6 +330,7 @@ class Runner {
     // while forces are let go of, balance says nothing
     rest.best = !is_relaxed(stage, n) ? 0 : rest.best > 0 ? std::min(rest.best, now) : now;
     if (++rest.steps % kRestLook != 0) return false;
+    look_ = {state_.time, state_.displacement};
     const double progress = rest.before > 0 ? rest.best / rest.before : 0;
     const bool at_sharpest = rest.sharper <= kSharpest;
     rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
@@ -346,6 +383,14 @@ class Runner {
     if (stage.from_rest) return stage.relaxation.empty() || state_.relaxed >= stage.relaxation.back().y;
     return stage.relaxation.empty() ||
            plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
+  }
+
+  // A stage without rest ends between two sound steps: the instant is shown like that of any end, with its pictures.
+  void show_unrest() {
+    try {
+      show_end();
+    } catch (const NumericalError&) {  // the run has failed already, and says why
+    }
   }
 
   // The last instant has its forces too, found on a copy so that the state stays between two steps.
@@ -439,6 +484,11 @@ class Runner {
   StepReport last_;
   StepSettings settings_;
   StepWork work_;
+  // where blocks were when rest was last looked for
+  struct Look {
+    double time = 0;
+    std::vector<Vec2> place;
+  } look_;
   RunResult result_;
 };
 

@@ -345,8 +345,9 @@ class Search {
     } else if (run.failure.empty() && !run.interrupted) {
       trial.outcome = "at rest", trial.stands = true;
     } else if (!run.no_rest) {
-      throw NumericalError(fmt::format("trial at {} {:g} says nothing of safety: {}", name_of(input_.by),
-                                       factor, run.failure));
+      throw NumericalError(
+          fmt::format("trial at {} {:g} says nothing of safety: {}", name_of(input_.by), factor,
+                      run.interrupted ? "it was stopped before it came to rest or failed" : run.failure));
     } else {
       trial.stands = watch.only_needles_move(scene.model.stages.back().unbalanced);
       trial.outcome = trial.stands ? "needles move" : "no rest";

@@ -216,10 +216,21 @@ class Figures {
     if (x.empty()) return;
     plot::Figure figure;
     figure.title = fmt::format("{} over {}", study_.answers[k].name, axis.name);
-    figure.x_label = numbers ? axis.title() : axis.name + ": " + numbered(axis);
+    figure.x_label = axis.title();
     figure.y_label = study_.answers[k].name;
     const Span sx = span_of(x), sy = span_of(y);
     figure.x_min = sx.least - 0.05 * sx.width(), figure.x_max = sx.most + 0.05 * sx.width();
+    if (!numbers) {
+      constexpr double kMostNames = 12;  // that have room; more stand as numbers
+      figure.x_label = next > kMostNames ? axis.name + ": " + numbered(axis) : axis.name;
+      figure.x_names.resize(static_cast<size_t>(next));
+      for (const auto& [shown, at] : place)
+        figure.x_names[static_cast<size_t>(at) - 1] = next > kMostNames ? fmt::format("{:g}", at) : shown;
+      figure.x_min = 0.5, figure.x_max = next + 0.5;
+    }
+    // where all are one value the axis is wide, and not the marks
+    if (sy.least == sy.most)
+      figure.y_min = sy.least - 0.5 * sy.width(), figure.y_max = sy.most + 0.5 * sy.width();
     const size_t other = told_apart_by(a);
     if (other < study_.axes.size()) {
       lines(figure, k, a, other, place, numbers, sx.width(), sy.width());

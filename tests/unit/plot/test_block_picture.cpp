@@ -73,6 +73,27 @@ std::vector<Chunk> chunks_of(const std::string& png) {
 
 }  // namespace
 
+TEST_CASE(
+    "pictures: displacements drawn several times take bolts along, also where they end on a face or in an open joint") {
+  BlockPicture p = two_blocks(0.1);
+  p.deformation = 5;
+  BoltPieces b;
+  // through the left block from its face to the joint, across it, and through the right block, which has gone up by 0.1
+  b.from = {{0, 0.5}, {1, 0.5}, {1, 0.6}}, b.to = {{1, 0.5}, {1, 0.6}, {2, 0.6}};
+  b.axial_force = {1, 2, 3}, b.shear_force = {0, 0, 0}, b.elongation = {0, 0, 0};
+  b.condition = {0, 1, 2}, b.crossing = {0, 1, 0};
+  p.bolts = b;
+  const Scenery s = scenery_of(p);
+  REQUIRE(s.bolts.size() == 3);
+  CHECK(norm(s.bolts[0].from - Vec2{0, 0.5}) < 1e-15);
+  CHECK(norm(s.bolts[0].to - Vec2{1, 0.5}) < 1e-15);
+  CHECK(norm(s.bolts[1].from - Vec2{1, 0.5}) < 1e-15);  // with the left block
+  CHECK(norm(s.bolts[1].to - Vec2{1, 1.0}) < 1e-15);    // with the right one, which is drawn 0.5 up
+  CHECK(norm(s.bolts[2].from - Vec2{1, 1.0}) < 1e-15);
+  CHECK(norm(s.bolts[2].to - Vec2{2, 1.0}) < 1e-15);
+  CHECK(s.ruptured);
+}
+
 TEST_CASE("pictures: displacements drawn several times take joints along") {
   BlockPicture p = two_blocks(0.1);
   p.deformation = 5;

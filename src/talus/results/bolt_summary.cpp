@@ -1,0 +1,29 @@
+#include "talus/results/bolt_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace talus {
+
+BoltSummary BoltSummary::of(const std::vector<BoltLine>& lines) {
+  BoltSummary s;
+  std::map<std::string, int> worst;
+  for (const BoltLine& line : lines) {
+    int& own = worst[line.bolt];
+    own = std::max(own, line.condition);
+    if (line.axial > s.tension) s.tension = line.axial, s.tension_in = line.bolt;
+  }
+  s.bolts = static_cast<int>(worst.size());
+  for (const auto& [bolt, condition] : worst) s.yielded += condition == 1, s.ruptured += condition == 2;
+  return s;
+}
+
+std::string BoltSummary::text() const {
+  std::string out = fmt::format("{} of {} ruptured, {} yielded", ruptured, bolts, yielded);
+  if (tension > 0) out += fmt::format("; largest tension {:.3g} kN in {}", tension / 1e3, tension_in);
+  return out;
+}
+
+}  // namespace talus

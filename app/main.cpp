@@ -51,6 +51,16 @@ void add_model_arguments(CLI::App& verb, ModelArguments& args) {
       ->allow_extra_args(false);
 }
 
+void add_formulation(CLI::App& verb, ModelArguments& args) {
+  verb.add_option_function<std::string>(
+          "--formulation",
+          [&args](const std::string& name) {
+            args.overrides.push_back("model.formulation=\"" + name + "\"");
+          },
+          "contact_forces, or penalty: conventional DDA, for comparison; as model.formulation")
+      ->check(CLI::IsMember({"contact_forces", "penalty"}));
+}
+
 void add_strict(CLI::App& verb, ModelArguments& args) {
   verb.add_flag("--strict", args.strict, "take warnings of the model for errors");
 }
@@ -85,12 +95,14 @@ int verb_of_line(int argc, char** argv) {
   bool force = false, json = false;
   CLI::App* run_verb = app.add_subcommand("run", "run a model and write a folder of results");
   add_model_arguments(*run_verb, model);
+  add_formulation(*run_verb, model);
   add_strict(*run_verb, model);
   talus::app::add_run_arguments(*run_verb, how);
 
   CLI::App* check_verb =
       app.add_subcommand("check", "check a model and predict its steps, memory and output; runs nothing");
   add_model_arguments(*check_verb, model);
+  add_formulation(*check_verb, model);
   add_strict(*check_verb, model);
   check_verb->add_option("-o,--output", folder, "folder for a picture of the model, cut.png and cut.svg");
   check_verb->add_flag("--force", force, "replace the picture in that folder");

@@ -82,6 +82,7 @@ double strain_energy_density(const PlaneModuli& k, const Mat2& H) { return elast
 Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
   const auto k = static_cast<size_t>(i);
   if (blocks.kind[k] != BlockKind::kDeformable) return {};
+  if (!state.carried_stress.empty()) return state.carried_stress[k];
   const Mat2& H = state.strain_part[k];
   const Mat2 T0 = initial_stress_of(state, k), F = kIdentity + H;
   return (1 / det(F)) * (elastic_state(blocks.moduli[k], H, T0).stress * transpose(F));

@@ -199,6 +199,12 @@ struct State {
   std::vector<Vec2> displacement_start;  // [count] from which displacements are counted; empty: 0 [m]
   std::vector<Mat2> strain_part_start;   // [count] the same of F - I
 
+  // of conventional DDA (theory 13), empty else: Cauchy stress that blocks carry from step to step [count] [Pa],
+  // acceleration and its gradient in the shape of now, where the scheme goes by it [count]
+  std::vector<Mat2> carried_stress;
+  std::vector<BlockRate> acceleration;
+  double strain_work = 0;  // work that went into strains since the start [J]
+
   WorkDone work;               // through the middle of the step before
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
   double largest_kinetic = 0;  // since the start of the stage [J]

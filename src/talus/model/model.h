@@ -301,6 +301,23 @@ struct SafetyInput {
   Where where;
 };
 
+/// How blocks, contacts and time become equations.
+enum class Formulation { kContactForces, kPenalty };
+
+/// Of formulation = "penalty" alone.
+struct PenaltyInput {
+  double normal_stiffness =
+      std::numeric_limits<double>::quiet_NaN();  // per thickness [Pa], NaN: by Young's modulus
+  double shear_share = 0.4;                      // shear stiffness over normal stiffness
+  double support_stiffness =
+      std::numeric_limits<double>::quiet_NaN();  // per thickness [Pa], NaN: the normal one
+  bool exact_rotation = false;
+  bool mean_acceleration = false;
+  double dynamic_factor = 1;  // of dynamic stages
+  int most_iterations = 6;
+  double largest_displacement = 0.02;  // of a step, share of half the height of the model
+};
+
 struct Model {
   // made and taken apart in one file: here every file of the program would hold that code
   Model();
@@ -320,6 +337,8 @@ struct Model {
   double thickness = 1;
   Plane plane = Plane::kStrain;
   Inertia inertia = Inertia::kConsistent;
+  Formulation formulation = Formulation::kContactForces;
+  PenaltyInput penalty;
   Vec2 gravity;
   Where where_gravity;  // of [model] when it is not given
 

@@ -16,6 +16,7 @@
 #include "talus/model/read_cut.h"
 #include "talus/model/read_history_file.h"
 #include "talus/model/read_mesh.h"
+#include "talus/model/read_penalty.h"
 #include "talus/model/read_stages.h"
 #include "talus/model/section_reader.h"
 #include "talus/model/variables.h"
@@ -56,6 +57,7 @@ class ModelReader : private SectionReader {
     read_monitors();
     read_output();
     read_safety();
+    read_penalty_section(source_, model_, findings_);
     for (const BlockInput& b : model_.blocks)
       check_material_of(b.kind, b.material, b.where, "block." + b.name);
     for (const GridInput& g : model_.grids) check_material_of(g.kind, g.material, g.where, "grid." + g.name);
@@ -129,6 +131,8 @@ class ModelReader : private SectionReader {
     model_.thickness = f.get("thickness", 1.0);
     model_.plane = f.get<std::string>("plane") == "stress" ? Plane::kStress : Plane::kStrain;
     model_.inertia = f.get<std::string>("inertia") == "lumped" ? Inertia::kLumped : Inertia::kConsistent;
+    model_.formulation =
+        f.get<std::string>("formulation") == "penalty" ? Formulation::kPenalty : Formulation::kContactForces;
     model_.gravity = f.get<Vec2>("gravity");
     model_.where_gravity = f.where("gravity");
     check_gravity();

@@ -41,7 +41,10 @@ SectionSpec boundary_section() {
        {.name = "material",
         .type = K::kName,
         .refers_to = "material",
-        .doc = "Of the medium behind the edge; none: that of each block at the edge."},
+        .doc =
+            "Of the medium behind the edge; none: that of each block at the edge, without its joints. In rock with joints a viscous edge then "
+            "returns part of a wave that comes straight in: `talus check` tells how much, and a material that takes it. Of `free_field` the rock of "
+            "the column, which is softened by the joints of the rock beside it: give no softened material there."},
        {.name = "velocity_x",
         .type = K::kName,
         .refers_to = "history",

@@ -74,7 +74,60 @@ std::vector<SectionSpec> sections_of_model() {
          .choices = {"consistent", "lumped"},
          .doc = "Moments of inertia of deformable blocks: exact, or three times as large (bonded continua "
                 "only: a wave along a bar is then exact at Courant number 1, a free block bounces with e = "
-                "0.5 instead of 0.75)."}}},
+                "0.5 instead of 0.75)."},
+        {.name = "formulation",
+         .type = K::kChoice,
+         .default_text = "\"contact_forces\"",
+         .choices = {"contact_forces", "penalty"},
+         .doc =
+             "`contact_forces`: they are the unknowns of an explicit step. `penalty`: conventional DDA, implicit steps with "
+             "penalty springs and open-close iteration (theory 13), for comparison; boundaries, bolts, driven blocks, damping and "
+             "relaxation are refused then."}}},
+
+      {"penalty",
+       SectionShape::kTable,
+       "Conventional DDA: what `model.formulation = \"penalty\"` goes by (theory 13).",
+       {{.name = "normal_stiffness",
+         .dimension = D::kStress,
+         .range = kPositive,
+         .doc =
+             "Stiffness of the normal spring of a contact point, per thickness; none: 40 times the largest Young's modulus. Usual are 10 to 100 times Young's modulus. Joints with a "
+             "normal_stiffness of their own keep it along faces."},
+        {.name = "shear_share",
+         .range = {.min = 0, .max = 10, .min_open = true},
+         .default_text = "0.4",
+         .doc = "Stiffness of the shear spring over that of the normal spring."},
+        {.name = "support_stiffness",
+         .dimension = D::kStress,
+         .range = kPositive,
+         .doc = "Stiffness of the springs that hold supported points, per thickness; none: the normal stiffness."},
+        {.name = "rotation",
+         .type = K::kChoice,
+         .default_text = "\"linear\"",
+         .choices = {"linear", "exact"},
+         .doc =
+             "`linear`: as first published; blocks grow as they turn, and stress keeps its axes. `exact`: displacements and stress turn "
+             "with the block."},
+        {.name = "scheme",
+         .type = K::kChoice,
+         .default_text = "\"constant_acceleration\"",
+         .choices = {"constant_acceleration", "mean_acceleration"},
+         .doc =
+             "Newmark's beta and gamma: 1/2 and 1, as first published, which loses energy; or 1/4 and 1/2, which loses none."},
+        {.name = "dynamic_factor",
+         .range = {.min = 0, .max = 1},
+         .default_text = "1",
+         .doc =
+             "Share of the velocity that goes on from step to step in dynamic stages; static stages have 0."},
+        {.name = "max_iterations",
+         .type = K::kInteger,
+         .range = {.min = 1, .max = 1000},
+         .default_text = "6",
+         .doc = "Open-close iterations of a step before it is cut to a third."},
+        {.name = "largest_displacement",
+         .range = {.min = 0, .max = 1, .min_open = true},
+         .default_text = "0.02",
+         .doc = "Displacement of a step above which it is cut, as share of half the height of the model."}}},
 
       {"material",
        SectionShape::kNamed,

@@ -376,6 +376,7 @@ void Recorder::fails(const Instant& i) {
 std::string Recorder::write_dump(const Instant& i) {
   constexpr size_t kMostPoints = 200000;
   if (i.work.rows.points.size() > kMostPoints && i.state.step != dump_step_) return "";
+  if (scene_.model.formulation == Formulation::kPenalty) return "";  // there are no such equations
   const std::string name = dump_name(i.state.step);
   folder_.write(name, problem_text(i));
   return name;

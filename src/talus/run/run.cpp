@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <optional>
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
@@ -13,6 +14,8 @@
 #include "talus/contact/pairs.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
+#include "talus/penalty/penalty_settings.h"
+#include "talus/penalty/penalty_step.h"
 #include "talus/run/check_monitors.h"
 #include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
@@ -56,6 +59,7 @@ class Runner {
     for (const StagePlan& plan : plans)
       scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
     work_.workers = workers;
+    if (scene.model.formulation == Formulation::kPenalty) penalty_.emplace(scene_, work_);
   }
 
   RunResult run(const Standing* from) {
@@ -65,6 +69,8 @@ class Runner {
     size_t first = 0;
     try {
       const InPart part(work_.profile, Profile::kRest);
+      if (penalty_ && state_.carried_stress.empty())
+        begin_penalty(scene_, penalty_settings(scene_, 0).scheme, state_);
       if (from) {
         go_on(*from);
         first = result_.stages.size();
@@ -143,6 +149,7 @@ class Runner {
     double advance = plan.dt;
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
+    if (penalty_) penalty_->stand(penalty_settings(scene_, index), plan.dt, state_);
     StepsFromRest from_rest(scene_, work_, state_);
 
     for (int64_t n = out.steps; n < plan.steps; ++n) {
@@ -153,8 +160,9 @@ class Runner {
       }
       if (stage.from_rest && state_.time >= out.begin + stage.duration) break;
       settings_.sharper = state_.rest.sharper;
-      StepReport report = stage.from_rest ? from_rest.kick(stage, out.begin, plan.dt, settings_, advance)
-                                          : kick(scene_, settings_, plan.dt, work_, state_);
+      StepReport report = penalty_          ? penalty_->report(state_)
+                          : stage.from_rest ? from_rest.kick(stage, out.begin, plan.dt, settings_, advance)
+                                            : kick(scene_, settings_, plan.dt, work_, state_);
       if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance / plan.dt_bound);
       show({scene_, state_, work_, report, plan, advance, index, n == 0, false, n});
       go_on_or_fail(index, n, advance, report);
@@ -195,7 +203,10 @@ class Runner {
                            : result_.stages.back().begin + plan.dt * static_cast<double>(n + 1);
     try {
       note(report, state_);
-      drift(scene_, end, work_, state_, report);
+      if (penalty_)
+        penalty_->step(penalty_settings(scene_, index), end, settings_.histories_run, state_);
+      else
+        drift(scene_, end, work_, state_, report);
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
@@ -399,7 +410,8 @@ class Runner {
     const int index = static_cast<int>(result_.stages.size()) - 1;
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     State copy = state_;
-    const StepReport report = kick(scene_, settings_, plan.dt, work_, copy);
+    const StepReport report =
+        penalty_ ? penalty_->report(copy) : kick(scene_, settings_, plan.dt, work_, copy);
     note(report, copy);
     // a run that is stopped between two stages has not shown the begin of the second
     const bool at_start = result_.stages.back().steps == 0;
@@ -489,6 +501,7 @@ class Runner {
     double time = 0;
     std::vector<Vec2> place;
   } look_;
+  std::optional<PenaltySteps> penalty_;  // of formulation = "penalty"
   RunResult result_;
 };
 

@@ -153,6 +153,12 @@ double ledger_energy(const Scene& scene, const State& state) {
     const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
     const BlockRate& v = state.rate[k];
+    if (!state.carried_stress
+             .empty()) {  // conventional DDA: everything is of one instant, strains have their own sum
+      sum += 0.5 * work(momentum(blocks, k, v), v) -
+             blocks.mass[k] * dot(scene.model.gravity, state.displacement[k]);
+      continue;
+    }
     const ElasticState elastic =
         blocks.kind[k] == BlockKind::kDeformable
             ? elastic_state(blocks.moduli[k], state.strain_part[k], initial_stress_of(state, k))

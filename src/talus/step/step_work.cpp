@@ -8,6 +8,8 @@ namespace talus {
 
 BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
   TALUS_ASSERT(work.rate_before.size() == state.rate.size() && i < state.rate.size());
+  // conventional DDA: velocities are those of the instant
+  if (!state.carried_stress.empty()) return state.rate[i];
   return state.dt_before > 0 ? mean(work.rate_before[i], state.rate[i]) : work.rate_before[i];
 }
 

@@ -54,9 +54,10 @@ int check_command(const ModelArguments& args, const std::string& folder, bool fo
   const Prediction p = predict(run.scene, run.plans);
   fmt::print("{}: no errors, {} warning{}\n", args.file, findings.warning_count(),
              findings.warning_count() == 1 ? "" : "s");
-  fmt::print("  blocks     {}; {} faces held together, {} contact points at the start, {} supported points{}\n",
-             p.blocks, p.bond_faces, p.contacts, p.supported,
-             p.boundary > 0 ? fmt::format(", {} points at boundaries", p.boundary) : "");
+  fmt::print(
+      "  blocks     {}; {} faces held together, {} contact points at the start, {} supported points{}\n",
+      p.blocks, p.bond_faces, p.contacts, p.supported,
+      p.boundary > 0 ? fmt::format(", {} points at boundaries", p.boundary) : "");
   fmt::print("{}{}", base_report(run.scene), resolution_report(run.scene));
   for (size_t i = 0; i < run.plans.size(); ++i) {
     const StagePlan& plan = run.plans[i];

@@ -93,8 +93,8 @@ TEST_CASE("command: check predicts and runs nothing") {
   const Folder f;
   const Outcome o = shell(f, fmt::format("$talus check {}", kBar));
   CHECK(o.code == 0);
-  for (const char* part :
-       {"no errors", "11; 9 faces held together", "135 steps", "stable limit 0.0004743 s", "memory", "output"})
+  for (const char* part : {"no errors", "11; 9 faces held together", "135 steps", "stable limit 0.0004743 s",
+                           "memory", "output"})
     has(o.text, part);
   size_t files = 0;
   for ([[maybe_unused]] const auto& e : fs::directory_iterator(f / "")) ++files;

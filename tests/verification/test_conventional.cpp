@@ -57,7 +57,8 @@ TEST_CASE("conventional DDA: below its friction angle the block stands") {
   // friction goes by pressure that the springs only take up in the first steps: a start that no step shortens away
   const std::vector<double>& x = r.column("block.displacement_x [m]");
   check_below("conventional DDA: slip at the start of what stands [m]", std::abs(x.back()), 1e-4, 1e-5);
-  check_below("conventional DDA: creep in the second half [m]", std::abs(x.back() - x[x.size() / 2]), 1e-9, 1e-12);
+  check_below("conventional DDA: creep in the second half [m]", std::abs(x.back() - x[x.size() / 2]), 1e-9,
+              1e-12);
 }
 
 // Compression under its own weight: strain at height y is rho g (h - y) / E' where the sides are free.

@@ -100,7 +100,8 @@ std::vector<SectionSpec> sections_of_model() {
         {.name = "support_stiffness",
          .dimension = D::kStress,
          .range = kPositive,
-         .doc = "Stiffness of the springs that hold supported points, per thickness; none: the normal stiffness."},
+         .doc =
+             "Stiffness of the springs that hold supported points, per thickness; none: the normal stiffness."},
         {.name = "rotation",
          .type = K::kChoice,
          .default_text = "\"linear\"",

@@ -18,6 +18,7 @@
 #include "audit_command.h"
 #include "check_command.h"
 #include "command_pages.h"
+#include "compare_command.h"
 #include "cut_command.h"
 #include "help.h"
 #include "import_command.h"
@@ -122,6 +123,12 @@ int verb_of_line(int argc, char** argv) {
       "write section.html too, a page to look into the section with, and open it in a browser");
   cut_verb->footer("Example: talus cut examples/tunnel/tunnel.toml -o out/tunnel --open");
 
+  talus::app::CompareArguments compare;
+  CLI::App* compare_verb = app.add_subcommand(
+      "compare",
+      "how far two results are apart: histories, joints and the ledger, as a table and an exit code");
+  talus::app::add_compare_arguments(*compare_verb, compare);
+
   talus::app::ImportArguments import;
   CLI::App* import_verb = app.add_subcommand(
       "import", "sections of a model file from a drawing or map (DXF, shapefile, GeoPackage, GeoJSON)");
@@ -224,6 +231,7 @@ int verb_of_line(int argc, char** argv) {
   check_finite(app);
   if (*run_verb) return talus::app::run_command(model, how);
   if (*check_verb) return talus::app::check_command(model, folder, force, open);
+  if (*compare_verb) return talus::app::compare_command(compare);
   if (*cut_verb) return talus::app::cut_command(model.file, model.overrides, folder, force, open);
   if (*new_verb) return talus::app::new_command(start);
   if (*import_verb) return talus::app::import_command(import);

@@ -18,6 +18,7 @@ enum ExitCode : int {
   kExitNumerical = 5,  // no convergence, non-finite numbers, an inverted block
   kExitResources = 7,  // no memory, or no threads
   kExitNotValid = 8,   // the run ended, and the audit says that its results are not valid
+  kExitDiffers = 9,    // two results are further apart than they may be (talus compare)
   kExitSignal = 128    // and the number of the signal that ended it; results up to then are valid
 };
 

@@ -142,7 +142,10 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
 CsvTable histories_of(const std::string& folder) {
   const fs::path file = fs::path(folder) / "histories.csv";
   std::error_code ec;
-  if (!fs::is_directory(folder, ec)) throw FileError(fmt::format("{}: there is no such folder", folder));
+  if (!fs::is_directory(folder, ec))
+    throw FileError(fmt::format(
+        "{}: there is no such folder; an option that takes several values is repeated for each: -c A -c B, -l A -l B",
+        folder));
   if (!fs::exists(file, ec)) {
     if (!fs::exists(fs::path(folder) / "summary.json", ec))
       throw FileError(fmt::format("{}: holds no results of talus run: histories.csv is missing", folder));

@@ -18,7 +18,7 @@ export function verdictsOf(run) {
     } else out.push(["joints", "no joint slipped"]);
     const broken = j["broken_length [m]"], open = j["opening_largest [m]"], more = [];
     if (broken > 0) more.push(`${withUnit(broken, "m")} of faces that were held together broke`);
-    if (open > 0) more.push(`the widest open joint stands ${withUnit(open, "m")} open`);
+    if (open > 0) more.push(`the widest open joint of blocks still near each other stands ${withUnit(open, "m")} open (wider gaps: \`crack\` monitors)`);
     if (more.length) out.push(["cracks", more.join("; ")]);
   }
   const bolts = boltsOf(run);

@@ -96,6 +96,8 @@ class ActionReader : private SectionReader {
     b.material = refer(f, "material", model_.materials, "material");
     b.history_x = history(f, "velocity_x");
     b.history_y = history(f, "velocity_y");
+    check_quantity(f, "velocity_x", b.history_x, model_.histories, "velocity");
+    check_quantity(f, "velocity_y", b.history_y, model_.histories, "velocity");
     b.outcrop = f.get<std::string>("motion") == "outcrop";
     const auto hold = f.get<std::string>("static");
     b.hold = hold == "roller" ? StaticHold::kRoller : hold == "free" ? StaticHold::kFree : StaticHold::kFixed;
@@ -176,6 +178,7 @@ class ActionReader : private SectionReader {
     if (!f.has(key)) return {};
     if (!f.holds<std::string>(key)) return {-1, f.get<double>(key)};
     const int i = history(f, key);
+    if (key.starts_with("acceleration")) check_quantity(f, key, i, model_.histories, "acceleration");
     return i < 0 ? Signal{} : Signal{i, 1};
   }
 

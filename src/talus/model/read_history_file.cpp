@@ -5,6 +5,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/record/history_file.h"
+#include "talus/record/units.h"
 
 namespace talus {
 
@@ -30,6 +31,9 @@ std::string read_history_file(const Fields& fields, const std::string& folder, H
     bare.unit = fields.get<std::string>("unit");
     record::HistoryColumn column =
         record::read_history_text(path.string(), text, fields.get<std::string>("column"), bare);
+    const record::Title title = record::parse_title(column.title);
+    const record::MotionUnit* unit = record::find_unit(title.unit_text.value_or(bare.unit));
+    if (unit) history.quantity = record::name_of(unit->quantity);
     history.time = std::move(column.time);
     history.value = std::move(column.value);
   } catch (const InputError& e) {

@@ -96,7 +96,8 @@ std::vector<SectionSpec> run_sections() {
          .dimension = D::kLength,
          .doc =
              "Two points [[x0, y0], [x1, y1]] on either side of a crack: how far the second has moved from the first along the "
-             "line between them at the start (opening), and to the left of it (sliding)."},
+             "line between them at the start (opening), and to the left of it (sliding). Put them into the two blocks beside one joint, on a "
+             "line across it: on a diagonal, opening and sliding mix once blocks have gone far."},
         {.name = "spectrum",
          .type = K::kBool,
          .default_text = "false",
@@ -194,7 +195,10 @@ std::vector<SectionSpec> run_sections() {
              "Factor (angle, share) at which the model should stand; tried first. None: 0.5; tilt 1, acceleration 0.01."},
         {.name = "highest",
          .range = kPositive,
-         .doc = "The same at which it should fail; tried second. None: 4; tilt 60, acceleration 1."},
+         .doc =
+             "The same at which it should fail; tried second. None: 4; tilt 60, acceleration 1. Each trial puts its whole step on at once: "
+             "joints with cohesion or tensile strength may break under the overshoot, and the answer then depends on `lowest` and "
+             "`highest` by some percent. Try two brackets."},
         {.name = "tolerance",
          .range = {.min = 1e-6, .max = 10},
          .doc =

@@ -159,7 +159,27 @@ class SectionReader {
                       "let it begin at 0");
     if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
       out.history = refer_name(m.history, f.where(key), f.path_of(key), histories, "history");
+    check_quantity(f, key, out.history, histories,
+                   m.kind == MotionText::kVelocity ? "velocity" : "displacement");
     return out;
+  }
+
+  // A history whose file says by its unit that it is another quantity of motion.
+  void check_quantity(const Fields& f, std::string_view key, int history,
+                      const std::vector<History>& histories, std::string_view wanted) {
+    if (history < 0) return;
+    const History& h = histories[static_cast<size_t>(history)];
+    if (h.quantity.empty() || h.quantity == wanted) return;
+    const auto a = [](std::string_view what) {
+      return fmt::format("{} {}", what == "acceleration" ? "an" : "a", what);
+    };
+    findings_.error(
+        f.where(key), f.path_of(key),
+        fmt::format("wants {}; history \"{}\" is {}, by the unit in its file", a(wanted), h.name,
+                    a(h.quantity)),
+        fmt::format(
+            "name a column of the file that is {} in history.{}.column (talus record writes all three)",
+            a(wanted), h.name));
   }
 
   Placement placement(const Fields& f) {

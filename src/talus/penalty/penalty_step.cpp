@@ -236,11 +236,22 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool his
     ++report.iterations;
     for (size_t i = 0; i < n; ++i) displacement_[i] = part_of(solution_, i);
     int changes = 0;
+    bool friction = false;
     for (size_t k = 0; k < springs_.size(); ++k)
-      changes += follow(displacement_[static_cast<size_t>(springs_[k].block_a)],
-                        displacement_[static_cast<size_t>(springs_[k].block_b)], rows_[k], springs_[k]);
+      switch (follow(displacement_[static_cast<size_t>(springs_[k].block_a)],
+                     displacement_[static_cast<size_t>(springs_[k].block_b)], rows_[k], springs_[k])) {
+        case Change::kState:
+          ++changes;
+          break;
+        case Change::kFriction:
+          friction = true;
+          break;
+        case Change::kNone:
+          break;
+      }
     report.changes += changes;
-    if (changes > 0) continue;
+    // by the last one the states stand, and what friction goes by is as near as it comes
+    if (changes > 0 || (friction && turn + 1 < settings.most_iterations)) continue;
     double farthest = 0;
     for (size_t i = 0; i < n; ++i)
       farthest = std::max(farthest, std::hypot(displacement_[i][0], displacement_[i][1]));

@@ -131,13 +131,13 @@ SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {
 }
 
 // Theory 13.4.
-bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
+Change follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
   s.gap_after = s.gap + dot(rows.a[0], a) + dot(rows.b[0], b);
   s.slip_step = dot(rows.a[1], a) + dot(rows.b[1], b);
   const double normal = -s.stiffness[0] * s.gap_after, shear = -s.stiffness[1] * (s.slip + s.slip_step);
   if (s.glued) {
     s.force = {normal, shear};
-    return false;
+    return Change::kNone;
   }
   const SpringState before = s.state;
   const double went_by = s.pressing;
@@ -145,34 +145,34 @@ bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
   s.force = {};
   switch (before) {
     case SpringState::kOpen:
-      if (s.gap_after >= 0) return false;
+      if (s.gap_after >= 0) return Change::kNone;
       // it sticks where it comes in
       s.state = SpringState::kStuck, s.slip = 0;
-      return true;
+      return Change::kState;
     case SpringState::kStuck:
       if (normal <= -s.bears.tension) {
         s.state = SpringState::kOpen;
-        return true;
+        return Change::kState;
       }
       s.force = {normal, shear};
-      if (std::abs(shear) <= s.bears.limit(normal)) return false;
+      if (std::abs(shear) <= s.bears.limit(normal)) return Change::kNone;
       s.state = SpringState::kSliding, s.side = shear > 0 ? -1 : 1;
-      return true;
+      return Change::kState;
     case SpringState::kSliding:
       if (normal <= 0) {
         s.state = SpringState::kOpen;
-        return true;
+        return Change::kState;
       }
       s.force = {normal, -s.side * s.bears.limit(went_by)};
       if (s.slip_step * s.side < 0) {
         // it came back: it sticks, with the force that it slid with
         s.state = SpringState::kStuck;
         s.slip = s.side * s.bears.limit(went_by) / s.stiffness[1];
-        return true;
+        return Change::kState;
       }
-      return std::abs(normal - went_by) > kSamePressure * normal;
+      return std::abs(normal - went_by) > kSamePressure * normal ? Change::kFriction : Change::kNone;
   }
-  return false;
+  return Change::kNone;
 }
 
 }  // namespace talus

@@ -42,8 +42,10 @@ struct SpringRows {
 };
 SpringRows rows_of(const Spring& spring, const BlockSet& blocks);
 
-/// Gap, slip, forces and state that the displacements of an iteration make. Whether the state is another one, or
-/// friction goes by another pressure (by more than a thousandth).
-bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& spring);
+/// What an iteration changed: nothing; the pressure that friction goes by (by more than a thousandth); the state.
+enum class Change : char { kNone, kFriction, kState };
+
+/// Gap, slip, forces and state that the displacements of an iteration make.
+Change follow(const Six& a, const Six& b, const SpringRows& rows, Spring& spring);
 
 }  // namespace talus

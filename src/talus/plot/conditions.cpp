@@ -250,9 +250,9 @@ void add_bolts(const Model& model, const View& view, Collection& all) {
 
 void add_spans(const Model& model, const View& view, Collection& all) {
   for (const MonitorInput& m : model.monitors) {
-    if (m.kind != MonitorKind::kConvergence) continue;
+    if (m.kind != MonitorKind::kConvergence && m.kind != MonitorKind::kCrack) continue;
     const Vec2 a = view.to_sheet(m.point), b = view.to_sheet(m.other);
-    all.add(Symbol::kBar, kSpan, "measured length", m.name)
+    all.add(Symbol::kBar, kSpan, m.kind == MonitorKind::kCrack ? "crack gauge" : "measured length", m.name)
         .marks.push_back({a, unit(b - a), norm(b - a), m.where.line});
   }
 }

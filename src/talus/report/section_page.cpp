@@ -227,7 +227,7 @@ json things_json(const Model& model, const Cut& cut, const Layout& layout) {
 json monitors_json(const Model& model) {
   json out = json::array();
   for (const MonitorInput& m : model.monitors)
-    if (m.kind == MonitorKind::kPoint || m.kind == MonitorKind::kCrack)
+    if (m.kind == MonitorKind::kPoint)
       out.push_back({{"name", m.name}, {"at", {m.point.x, m.point.y}}, {"line", m.where.line}});
   return out;
 }

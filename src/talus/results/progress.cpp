@@ -130,6 +130,10 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
         0.0 - r.energy.work[Cause::kContactClosing]);
   }
+  if (r.penalty > 0)
+    out += fmt::format(
+        "  penalty         normal springs of {:.3g} N/m; {} of {} steps cut, {} parts in all; deepest penetration {:.3g} m\n",
+        r.penalty, r.cut_steps, r.steps, r.parts, r.penetration);
   if (r.closed_share > 0.05)
     out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);
   if (audit) {

@@ -133,6 +133,11 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
     j["joints"]["residual_slip_largest_by_set [m]"][set] = slip;
   for (const auto& [set, length] : joints.broken_by_set)
     j["joints"]["broken_length_by_set [m]"][set] = length;
+  if (r.penalty > 0)
+    j["penalty"] = {{"normal_stiffness [N/m]", r.penalty},
+                    {"steps_cut", r.cut_steps},
+                    {"parts", r.parts},
+                    {"penetration_deepest [m]", r.penetration}};
   if (bolts.bolts > 0)
     j["bolts"] = {{"count", bolts.bolts},
                   {"yielded", bolts.yielded},

@@ -204,7 +204,7 @@ class Runner {
     try {
       note(report, state_);
       if (penalty_)
-        penalty_->step(penalty_settings(scene_, index), end, settings_.histories_run, state_);
+        step_by_penalty(index, end);
       else
         drift(scene_, end, work_, state_, report);
     } catch (const NumericalError&) {
@@ -213,6 +213,14 @@ class Runner {
       observer_.fails({scene_, state_, work_, report, plan, advance, index, n == 0, true, n});
       throw;
     }
+  }
+
+  void step_by_penalty(int index, double end) {
+    const PenaltySettings settings = penalty_settings(scene_, index);
+    const PenaltyReport p = penalty_->step(settings, end, settings_.histories_run, state_);
+    result_.penalty = settings.stiffness[0];
+    result_.cut_steps += p.parts > 1, result_.parts += p.parts;
+    result_.penetration = std::max(result_.penetration, p.penetration);
   }
 
   // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not

@@ -87,6 +87,8 @@ void exchange_standing(auto& x, auto& standing) {
   x("run.worst_error_row", r.worst_error_row), x("run.deepest_drift", r.deepest_drift);
   x("run.closed_share", r.closed_share), x("run.closed_time", r.closed_time),
       x("run.closed_row", r.closed_row);
+  x("run.penalty", r.penalty), x("run.cut_steps", r.cut_steps), x("run.parts", r.parts);
+  x("run.penetration", r.penetration);
   x("run.energy", r.energy);
   x("run.largest_left_over", r.largest_left_over), x("run.largest_energy", r.largest_energy);
   x("run.wall_seconds", r.wall_seconds), x("run.cpu_seconds", r.cpu_seconds);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <nlohmann/json.hpp>
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
@@ -31,6 +32,17 @@ std::string said(const fs::path& log) {
   if (text.size() > kMostMessage) text = "... " + text.substr(text.size() - kMostMessage);
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   return text;
+}
+
+// Why the audit does not accept a run, from its summary.
+std::string not_valid_because(const fs::path& attempt) {
+  try {
+    const auto summary = nlohmann::json::parse(read_text_file(attempt / "summary.json"));
+    for (const auto& warning : summary.at("warnings"))
+      if (const auto text = warning.get<std::string>(); text.rfind("audit:", 0) == 0) return text;
+  } catch (const std::exception&) {  // then the run says it itself
+  }
+  return "";
 }
 
 std::string status_of(int exit_code) {
@@ -107,6 +119,7 @@ void Runner::ended(Job job, int status, bool stopped) {
   }
   RunRecord record{job.number, status_of(code), code, wall_now() - job.begun, this_host(), said(log)};
   if (code == kExitOk) record.message.clear();  // warnings stand in its summary
+  if (code == kExitNotValid && record.message.empty()) record.message = not_valid_because(job.attempt);
   fs::create_directories(job.attempt, ec);
   if (settings_.report && record.status == "finished") {
     const pid_t process = spawn({settings_.program, "report", job.attempt.string()}, log);

@@ -30,9 +30,10 @@ class Case {
   }
 
   // The model with one history of these keys, and a load that it drives.
-  Model read(const std::string& keys, const std::vector<std::string>& overrides = {}) {
-    const std::string text =
-        "talus = 1\n[history.h]\n" + keys + "\n[[load]]\nname = \"shake\"\nacceleration_x = \"h\"\n";
+  // @param use  by which that takes it; a force asks for no quantity
+  Model read(const std::string& keys, const std::vector<std::string>& overrides = {},
+             const std::string& use = "point = [0, 0]\nforce_x = \"h\"\n") {
+    const std::string text = "talus = 1\n[history.h]\n" + keys + "\n[[load]]\nname = \"shake\"\n" + use;
     const std::string file = (folder_ / "model.toml").string();
     Findings findings(file, text);
     Model model = read_model(file, text, overrides, findings);
@@ -185,6 +186,29 @@ TEST_CASE("history file: each kind of wrong input has its message") {
     INFO("keys:\n", w.keys, "\nmessage:\n", c.message, "\nshould hold:\n", w.part);
     CHECK(c.message.find(w.part) != std::string::npos);
   }
+}
+
+TEST_CASE("history file: a column of another quantity than what it drives is refused") {
+  Case c;
+  c.write("m.csv", kTable);
+  const auto of = [](const std::string& column) { return "file = \"m.csv\"\ncolumn = \"" + column + "\"\n"; };
+  const std::string shake = "acceleration_x = \"h\"\n";
+  c.read(of("acceleration"), {}, shake);
+  CHECK(c.message == "");
+  c.read(of("v_cm_s"), {}, shake);
+  CHECK(
+      c.message.find(
+          "load.shake.acceleration_x: wants an acceleration; history \"h\" is a velocity, by the unit in its file") !=
+      std::string::npos);
+  const std::string table = "point = [0, 0]\nforce_x = 1\n[[support]]\nname = \"s\"\npoint = [0, 0]\n";
+  c.read(of("acceleration"), {}, table + "x = { velocity = \"h\" }\n");
+  CHECK(c.message.find("support.s.x: wants a velocity; history \"h\" is an acceleration") !=
+        std::string::npos);
+  c.read(of("v_cm_s"), {}, table + "x = { displacement = \"h\" }\n");
+  CHECK(c.message.find("support.s.x: wants a displacement; history \"h\" is a velocity") !=
+        std::string::npos);
+  c.read(of("v_cm_s"), {}, table + "x = { velocity = \"h\" }\n");
+  CHECK(c.message == "");
 }
 
 }  // namespace test_history_file

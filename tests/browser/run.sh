@@ -48,10 +48,10 @@ for k in 1 2 3 4 5 6; do
   runs+=("$out/wave_$k")
 done
 "$build/app/talus" report "${runs[@]}" -o "$out/many.html"
+export NODE_PATH=$build/browser/node_modules
+node "$here/section.test.mjs" "$out/section/section.html" "$here/../fixtures/section.toml" || { [ $? -eq 77 ] || exit 1; }
 # a run that goes on, and its page
 "$build/app/talus" run "$here/../../examples/shaken_slope/shaken_slope.toml" -o "$out/live" --watch --quiet --set output.field_interval=0.25 &
 watched=$!
 trap 'kill $watched 2>/dev/null || true' EXIT
-export NODE_PATH=$build/browser/node_modules
-node "$here/section.test.mjs" "$out/section/section.html" "$here/../fixtures/section.toml" || { [ $? -eq 77 ] || exit 1; }
 node "$here/report.test.mjs" "$out/report.html" "$out/run" "$out/many.html" "$out/live/live.html"

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "support/model_text.h"
 #include "support/run_case.h"
@@ -122,21 +123,71 @@ TEST_CASE("conventional DDA: what it does not know is refused by its key") {
 }
 
 TEST_CASE("conventional DDA: the same bits for any number of threads") {
-  const std::string text = read_text_file(kExample);
+  // some hundred blocks and pairs, so that threads have shares
+  const std::string file = std::string(TALUS_SOURCE_DIR) + "/studies/comparison/tunnel.toml",
+                    text = read_text_file(file);
   std::vector<double> first;
   for (const int threads : {1, 2, 3}) {
     Findings findings("m.toml", text);
-    PreparedRun run = prepare_run("m.toml", text, {"stage.slide.duration=\"0.1 s\""}, findings);
+    PreparedRun run = prepare_run("m.toml", text, {"model.formulation=\"penalty\""}, findings);
     State state = start_state(run.scene);
     struct Nobody : Observer {
       void at(const Instant&) override {}
     } nobody;
     run_stages(run.scene, run.plans, state, nobody, Workers(threads));
-    std::vector<double> now{state.displacement[1].x, state.displacement[1].y, state.strain_part[1].xy,
-                            state.carried_stress[1].yy, state.rate[1].a.x};
+    std::vector<double> now;
+    for (size_t k = 0; k < state.displacement.size(); ++k)
+      now.insert(now.end(), {state.displacement[k].x, state.displacement[k].y, state.strain_part[k].xy,
+                             state.carried_stress[k].yy});
     if (first.empty()) first = now;
     CHECK(now == first);
   }
+}
+
+TEST_CASE("conventional DDA: a run that is stopped and goes on has the bits of one that is not") {
+  const std::string text = read_text_file(kExample);
+  const std::vector<std::string> overrides{"penalty.scheme=\"mean_acceleration\"",
+                                           "stage.slide.duration=\"0.2 s\""};
+  // stops before a step, and keeps the state
+  struct Stopper : Observer {
+    int64_t at_step = -1;
+    std::vector<std::vector<double>> rows;
+    std::optional<Standing> standing;
+    std::optional<State> state;
+    int64_t step = 0;
+    void at(const Instant& i) override {
+      step = i.state.step;
+      std::vector<double> row{i.state.time, i.state.displacement[1].x, i.state.rate[1].a.x,
+                              i.report.energy.left_over};
+      for (const Impulse& p : i.work.rows.impulse) row.insert(row.end(), {p[0], p[1]});
+      for (const PointRows& p : i.work.rows.points) row.insert(row.end(), {p.normal.x, p.arm_a.x, p.arm_b.y});
+      if (rows.empty() || rows.back()[0] < row[0]) rows.push_back(row);
+    }
+    bool stop() override { return at_step >= 0 && step == at_step; }
+    void keep_state(const Standing& s, const State& now) override { standing = s, state = now; }
+  };
+  const auto prepared = [&] {
+    Findings findings("m.toml", text);
+    return prepare_run("m.toml", text, overrides, findings);
+  };
+  Stopper whole;
+  PreparedRun p = prepared();
+  State state = start_state(p.scene);
+  run_stages(p.scene, p.plans, state, whole);
+  Stopper first;
+  first.at_step = 40;
+  PreparedRun q = prepared();
+  State half = start_state(q.scene);
+  run_stages(q.scene, q.plans, half, first);
+  REQUIRE(first.standing);
+  PreparedRun r = prepared();
+  Stopper second;
+  State rest = *first.state;
+  continue_stages(r.scene, r.plans, *first.standing, rest, second);
+  REQUIRE(second.rows.size() > 10);
+  CHECK(whole.rows.size() > second.rows.size());
+  for (size_t k = 1; k <= second.rows.size(); ++k)
+    CHECK(whole.rows[whole.rows.size() - k] == second.rows[second.rows.size() - k]);
 }
 
 }  // namespace test_conventional

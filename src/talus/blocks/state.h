@@ -160,6 +160,15 @@ struct RestWatch {
   int whole = 0;       // such steps in a row that were not halved
 };
 
+/// What an implicit step leaves out of balance, and how it moved (of conventional DDA).
+struct StepJudged {
+  double unbalanced = 0;   // largest unbalanced force of a block / mean force on blocks
+  double worst_force = 0;  // [N]
+  double moving = 0;       // kinetic energy of the way of the step [J]
+  double nudge = 0;        // StepReport::nudge [J]
+  int worst_block = -1, iterations = 0;
+};
+
 struct State {
   // made and taken apart in one file: here every file of the program would hold that code
   State();
@@ -203,7 +212,9 @@ struct State {
   // acceleration and its gradient in the shape of now, where the scheme goes by it [count]
   std::vector<Mat2> carried_stress;
   std::vector<BlockRate> acceleration;
-  double strain_work = 0;  // work that went into strains since the start [J]
+  std::vector<BlockRate> rate_old;  // rates before the last step
+  StepJudged judged;                // the last step, which the instant after it is judged by
+  double strain_work = 0;           // work that went into strains since the start [J]
 
   WorkDone work;               // through the middle of the step before
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]

@@ -96,11 +96,17 @@ void each_field(Is<RestWatch> auto& r, auto&& f) {
   f("length", length), f("whole", whole);
 }
 
+void each_field(Is<StepJudged> auto& j, auto&& f) {
+  auto& [unbalanced, worst_force, moving, nudge, worst_block, iterations] = j;
+  f("unbalanced", unbalanced), f("worst_force", worst_force), f("moving", moving), f("nudge", nudge);
+  f("worst_block", worst_block), f("iterations", iterations);
+}
+
 void each_field(Is<State> auto& s, auto&& f) {
   auto& [time, step, history_time, dt_before, displacement, strain_part, angle, rate, row_force, bond_force,
          face, supports, boundaries, ties, bolts, column_displacement, column_rate, candidates, pairs,
          contacts, initial_stress, kept_force, relaxed, displacement_start, strain_part_start, carried_stress,
-         acceleration, strain_work, work, energy_start, largest_kinetic, rest] = s;
+         acceleration, rate_old, judged, strain_work, work, energy_start, largest_kinetic, rest] = s;
   f("time", time), f("step", step), f("history_time", history_time), f("dt_before", dt_before);
   f("displacement", displacement), f("strain_part", strain_part), f("angle", angle), f("rate", rate);
   f("row_force", row_force), f("bond_force", bond_force), f("face", face);
@@ -109,8 +115,8 @@ void each_field(Is<State> auto& s, auto&& f) {
   f("candidates", candidates), f("pairs", pairs), f("contacts", contacts);
   f("initial_stress", initial_stress), f("kept_force", kept_force), f("relaxed", relaxed);
   f("displacement_start", displacement_start), f("strain_part_start", strain_part_start);
-  f("carried_stress", carried_stress), f("acceleration", acceleration), f("strain_work", strain_work),
-      f("work", work);
+  f("carried_stress", carried_stress), f("acceleration", acceleration), f("rate_old", rate_old);
+  f("judged", judged), f("strain_work", strain_work), f("work", work);
   f("energy_start", energy_start), f("largest_kinetic", largest_kinetic), f("rest", rest);
 }
 

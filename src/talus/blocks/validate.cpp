@@ -146,6 +146,9 @@ void validate(const State& s, const BlockSet& blocks) {
   promise_length(s.angle, n, "angles"), promise_length(s.rate, n, "rates");
   promise_length(s.row_force, n, "forces of rows");
   promise_length_or_none(s.initial_stress, n, "initial stresses");
+  promise_length_or_none(s.carried_stress, n, "stresses that blocks carry");
+  promise_length_or_none(s.acceleration, s.carried_stress.size(), "accelerations");
+  promise_length_or_none(s.rate_old, s.carried_stress.size(), "rates before the last step");
   promise_length_or_none(s.kept_force, n, "forces of excavated blocks");
   promise_length_or_none(s.displacement_start, n, "displacements at the start");
   promise_length(s.strain_part_start, s.displacement_start.size(), "strains at the start");

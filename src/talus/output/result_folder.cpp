@@ -150,12 +150,12 @@ const std::array<std::vector<std::string>, 5> kFixedNames{
     {{"summary.json", "model.toml", "histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv",
       "blocks.csv", "blocks_start.svg", "blocks_end.svg", "report.html", "live.html", "fields/blocks.pvd",
       "fields/contacts.pvd", "fields/bolts.pvd", kParaviewView},
-     {"cut.json", "cut.svg", "cut.png", "blocks.json", "blocks.csv", "slivers.csv", "report.txt", "map.svg",
-      "map.png", "model.toml"},
+     {"cut.json", "cut.svg", "cut.png", "section.html", "blocks.json", "blocks.csv", "slivers.csv",
+      "report.txt", "map.svg", "map.png", "model.toml"},
      {"motion.csv", "spectrum.csv", "record.json", "acceleration.svg", "acceleration.png", "velocity.svg",
       "velocity.png", "displacement.svg", "displacement.png", "spectrum.svg", "spectrum.png"},
      {"safety.json", "safety.csv", "model.toml"},
-     {"cut.svg", "cut.png"}}};
+     {"cut.svg", "cut.png", "section.html"}}};
 
 const std::vector<std::string>& fixed_names(ResultKind kind) {
   return kFixedNames[static_cast<size_t>(kind)];

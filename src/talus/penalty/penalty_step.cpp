@@ -22,9 +22,10 @@ Six part_of(const std::vector<double>& x, size_t block) {
 
 Mat2 shape_of(const State& state, size_t i) { return kIdentity + state.strain_part[i]; }
 
-// Velocity of a block in its shape of now.
-Six velocity_of(const State& state, size_t i) {
-  return six_of(state.rate[i].a, state.rate[i].G * inverse(shape_of(state, i)));
+// Velocity of a block in its shape of now; the spin of one that does not deform is that already.
+Six velocity_of(const BlockSet& blocks, const State& state, size_t i) {
+  const BlockRate& v = state.rate[i];
+  return six_of(v.a, blocks.kind[i] == BlockKind::kDeformable ? v.G * inverse(shape_of(state, i)) : v.G);
 }
 
 }  // namespace
@@ -43,41 +44,59 @@ PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bo
   report.parts = 0;
   int cuts = 0;
   double part = end - state.time;
-  while (state.time < end) {
-    const double left = end - state.time;
-    // the last part ends on the step's end
-    const double dt = part >= left * (1 - 1e-9) ? left : part;
-    State before = state;
-    if (try_part(settings, dt, histories_run, state, report)) {
-      state.time = dt == left ? end : before.time + dt;
-      ++report.parts;
-      if (cuts > 0) --cuts, part = std::min(3 * part, end - state.time);
-      continue;
+  const State begun = state;
+  try {
+    while (state.time < end) {
+      const double left = end - state.time;
+      // the last part ends on the step's end
+      const double dt = part >= left * (1 - 1e-9) ? left : part;
+      State before = state;
+      if (try_part(settings, dt, histories_run, state, report)) {
+        state.time = dt == left ? end : before.time + dt;
+        ++report.parts;
+        if (cuts > 0) --cuts, part = std::min(3 * part, end - state.time);
+        continue;
+      }
+      state = std::move(before);
+      if (++cuts > settings.most_cuts)
+        throw NumericalError(fmt::format(
+            "open-close iteration does not end at t = {:.9g} s, step {}, in a {} of the step: {} contacts. A smaller "
+            "time_step or another penalty stiffness may help",
+            state.time, state.step, fmt::format("{:.2g}th", std::pow(3.0, settings.most_cuts)),
+            springs_.size()));
+      part = dt / 3;
     }
-    state = std::move(before);
-    if (++cuts > settings.most_cuts)
-      throw NumericalError(fmt::format(
-          "open-close iteration does not end at t = {:.9g} s, step {}, in a {} of the step: {} contacts. A smaller "
-          "time_step or another penalty stiffness may help",
-          state.time, state.step, fmt::format("{:.2g}th", std::pow(3.0, settings.most_cuts)),
-          springs_.size()));
-    part = dt / 3;
+  } catch (const NumericalError&) {
+    state = begun;  // what is left is the instant at which the step began
+    throw;
   }
   ++state.step;
-  iterations_ = report.iterations;
+  state.judged.iterations = report.iterations;
   return report;
+}
+
+void PenaltySteps::seek_contacts(State& state) {
+  const LookAhead ahead{work_.clock, work_.rate_before};
+  renew_pairs(scene_.blocks, scene_.bonds, scene_.laws, ahead, work_.workers, state);
+  update_contacts(scene_.blocks, scene_.bonds, scene_.layout, scene_.laws, ahead, work_.workers, state);
 }
 
 void PenaltySteps::stand(const PenaltySettings& settings, double dt, State& state) {
   work_.clock = {dt, dt, 0, state.history_time, false, false};
-  work_.rate_before = state.rate;
+  work_.rate_before = state.rate_old.empty() ? state.rate : state.rate_old;
+  // blocks that the stage takes out, or the first instant of all
+  if (state.candidates.reach.empty()) seek_contacts(state);
+  show(settings, dt, state);
+}
+
+// Rows and places of an instant, with what contacts and supports remember.
+void PenaltySteps::show(const PenaltySettings& settings, double dt, State& state) {
   gather_springs(scene_, state, settings.stiffness, springs_);
   for (Spring& s : springs_) {
     const auto k = static_cast<size_t>(s.index);
     s.force = s.glued ? state.bond_force[k] : state.contacts[k].force;
     s.gap_after = s.gap;
   }
-  held_.clear();
   write_rows(dt, state);
 }
 
@@ -86,9 +105,7 @@ void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& sta
   const Model& model = scene_.model;
   const auto n = static_cast<size_t>(blocks.count);
   work_.rate_before = state.rate;
-  const LookAhead ahead{work_.clock, work_.rate_before};
-  renew_pairs(blocks, scene_.bonds, scene_.laws, ahead, work_.workers, state);
-  update_contacts(blocks, scene_.bonds, scene_.layout, scene_.laws, ahead, work_.workers, state);
+  seek_contacts(state);
   gather_springs(scene_, state, settings.stiffness, springs_);
   rows_.resize(springs_.size());
   for (size_t k = 0; k < springs_.size(); ++k) rows_[k] = rows_of(springs_[k], blocks);
@@ -114,15 +131,21 @@ void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& sta
       for (size_t a = 0; a < 6; ++a)
         for (size_t b = 0; b < 6; ++b)
           if (a > 2 || b > 2) mass[6 * a + b] = a == b ? blocks.mass[i] : 0;
-    const Six v = velocity_of(state, i);
-    Six a0{};
-    if (!state.acceleration.empty()) {
-      const BlockRate& a = state.acceleration[i];
-      a0 = six_of(a.a, a.G);
-    }
+    const Six v = velocity_of(blocks, state, i);
     for (size_t j = 0; j < 36; ++j) k[j] = mass[j] / (beta * dt * dt);
     const BlockForce push{load[i].f + blocks.mass[i] * (model.gravity + acceleration[i]), load[i].Q};
-    outside_[i] = six_of(push, F);
+    outside_[i] = six_of(push, deforms ? F : kIdentity);  // of others forces are on arms as they lie
+    Six a0{};
+    if (!state.acceleration.empty()) {
+      if (state.dt_before == 0) {  // at the start by what acts then; contacts are not asked yet
+        BlockForce all = push;
+        if (deforms)
+          all.Q += (-blocks.volume[i] * det(F)) * (state.carried_stress[i] * transpose(inverse(F)));
+        const BlockRate begins = accelerate(blocks, i, all);
+        state.acceleration[i] = {begins.a, deforms ? begins.G * inverse(F) : begins.G};
+      }
+      a0 = six_of(state.acceleration[i].a, state.acceleration[i].G);
+    }
     Six force = outside_[i];
     force += mass * ((1 / (beta * dt)) * v);
     force += mass * ((0.5 / beta - 1) * a0);
@@ -269,7 +292,8 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
   const auto n = static_cast<size_t>(blocks.count);
   const auto [beta, gamma] = settings.scheme;
   WorkDone& work = state.work;
-  unbalanced_ = worst_force_ = moving_ = nudge_ = 0, worst_block_ = -1;
+  state.judged.unbalanced = state.judged.worst_force = state.judged.moving = state.judged.nudge = 0,
+  state.judged.worst_block = -1;
   double forces = 0;
   int moving = 0;
   std::vector<double> by_springs(n, 0);
@@ -284,7 +308,7 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
         throw NumericalError(fmt::format("the motion of block \"{}\" is not finite at t = {:.9g} s, step {}",
                                          blocks.name[i], state.time, state.step));
     const Mat2 F = shape_of(state, i);
-    const Six v0 = velocity_of(state, i);
+    const Six v0 = velocity_of(blocks, state, i);
     Six a0{};
     if (!state.acceleration.empty()) a0 = six_of(state.acceleration[i].a, state.acceleration[i].G);
     Six v1 = (gamma / (beta * dt)) * d, a1 = (1 / (beta * dt * dt)) * d;
@@ -296,11 +320,12 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
     const Six inertia = mass_tile(blocks.mass[i], second) * a1;
     const double unbalanced =
         std::hypot(inertia[0], inertia[1]) + std::abs(inertia[2]) / std::max(blocks.size[i], 1e-300);
-    if (unbalanced > worst_force_) worst_force_ = unbalanced, worst_block_ = static_cast<int>(i);
+    if (unbalanced > state.judged.worst_force)
+      state.judged.worst_force = unbalanced, state.judged.worst_block = static_cast<int>(i);
     const double acting = 0.5 * (std::hypot(outside_[i][0], outside_[i][1]) + by_springs[i]);
     forces += acting, ++moving;
-    nudge_ += 0.125 * dt * dt * acting * acting / blocks.mass[i];
-    moving_ += 0.5 * dot((1 / dt) * d, mass_tile(blocks.mass[i], second) * ((1 / dt) * d));
+    state.judged.nudge += 0.125 * dt * dt * acting * acting / blocks.mass[i];
+    state.judged.moving += 0.5 * dot((1 / dt) * d, mass_tile(blocks.mass[i], second) * ((1 / dt) * d));
 
     const Six weight{
         blocks.mass[i] * scene_.model.gravity.x, blocks.mass[i] * scene_.model.gravity.y, 0, 0, 0, 0};
@@ -335,7 +360,7 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
     const double share = 1 - settings.dynamic_factor * settings.dynamic_factor;
     if (share > 0) work[Cause::kDamping] -= share * 0.5 * dot(lost, mass_tile(blocks.mass[i], second) * lost);
   }
-  unbalanced_ = forces > 0 ? worst_force_ / (forces / moving) : 0;
+  state.judged.unbalanced = forces > 0 ? state.judged.worst_force / (forces / moving) : 0;
   for (const Held& held : held_) {
     const auto i = static_cast<size_t>(scene_.supported[static_cast<size_t>(held.point)].block);
     std::array<double, 2> force{};
@@ -363,9 +388,11 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
     c.memory = closed ? Contact::kWhole : Contact::kNone;
     c.stretch = 0;
     if (s.state == SpringState::kSliding) {
+      c.stretch = -s.force[1] / s.stiffness[1];
       c.anchor = std::numeric_limits<double>::quiet_NaN();
       c.slip += std::abs(s.slip_step), c.slip_signed += s.slip_step;
     } else if (closed) {
+      c.stretch = s.slip + s.slip_step;
       const CornerEdge over = corner_over_edge(blocks, state, c.key.corner(), c.key.on());
       const Vec2 edge = blocks.corner(blocks.end_of(c.key.on())) - blocks.corner({c.key.block_b, c.key.edge});
       c.anchor = -over.along * norm(edge) - (s.slip + s.slip_step);
@@ -374,7 +401,8 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
   update_bonds(blocks, scene_.bonds, scene_.laws, dt, work_.workers, state);
   state.history_time = work_.clock.history_end();
   state.dt_before = dt;
-  write_rows(dt, state);
+  state.rate_old = work_.rate_before;
+  show(settings, dt, state);
 }
 
 // What the springs carry as rows, which observers read.
@@ -405,14 +433,15 @@ void PenaltySteps::write_rows(double dt, State& state) {
           std::max(0.0, -s.gap_after) / std::min(blocks.thinness[a], blocks.thinness[b])};
     }
   }
-  for (const Held& held : held_) {
-    const SupportedPoint& point = scene_.supported[static_cast<size_t>(held.point)];
+  for (size_t i = 0; i < scene_.supported.size(); ++i) {
+    const SupportedPoint& point = scene_.supported[i];
+    if (!point.active || !blocks.moves_freely(point.block)) continue;
     PointRows p;
     p.block_a = point.block;
     p.arm_a = acting_arm(blocks, state, static_cast<size_t>(point.block), point.arm);
     p.normal = {1, 0};
-    const auto& force = state.supports[static_cast<size_t>(held.point)].force;
-    rows.add(p, {force[0] * dt, -force[1] * dt}, {Family::kSupport, held.point});
+    const auto& force = state.supports[i].force;
+    rows.add(p, {force[0] * dt, -force[1] * dt}, {Family::kSupport, static_cast<int>(i)});
   }
   rows.finish();
 }
@@ -422,16 +451,17 @@ StepReport PenaltySteps::report(const State& state) const {
   StepReport r;
   r.contacts = static_cast<int>(state.contacts.size());
   for (const Contact& c : state.contacts) r.closed += c.force[0] != 0;
-  r.solve.iterations = iterations_;
+  r.solve.iterations = state.judged.iterations;
   for (size_t k = 0; k < work_.places.size(); ++k)
     if (work_.places[k].closed > r.closed_share) {
       r.closed_share = work_.places[k].closed;
       r.closed_row = static_cast<int>(work_.rows.range(Family::kContact).begin + k);
     }
-  r.unbalanced = unbalanced_, r.worst_force = worst_force_, r.worst_block = worst_block_, r.nudge = nudge_;
+  r.unbalanced = state.judged.unbalanced, r.worst_force = state.judged.worst_force,
+  r.worst_block = state.judged.worst_block, r.nudge = state.judged.nudge;
   Energy& e = r.energy;
   e.kinetic = kinetic_energy(blocks, state.rate);
-  e.moving = std::max(moving_, e.kinetic);
+  e.moving = std::max(state.judged.moving, e.kinetic);
   e.strain = state.strain_work;
   for (size_t i = 0; i < state.displacement.size(); ++i)
     if (blocks.moves_freely(static_cast<int>(i)))

@@ -48,7 +48,8 @@ class PenaltySteps {
   /// positive definite, or a block is turned inside out.
   PenaltyReport step(const PenaltySettings& settings, double end, bool histories_run, State& state);
 
-  /// Rows and places as they stand at the begin of a stage, with the forces that contacts remember.
+  /// Rows and places as they stand at the begin of a stage, or where a run goes on, with the forces that contacts
+  /// remember.
   void stand(const PenaltySettings& settings, double dt, State& state);
 
   /// Ledger and contacts as they stand at state.time.
@@ -58,9 +59,11 @@ class PenaltySteps {
   bool try_part(const PenaltySettings& settings, double dt, bool histories_run, State& state,
                 PenaltyReport& report);
   void gather(const PenaltySettings& settings, double dt, State& state);
+  void seek_contacts(State& state);
   void find_pattern();
   void assemble(const BlockSet& blocks);
   void finish(const PenaltySettings& settings, double dt, State& state, PenaltyReport& report);
+  void show(const PenaltySettings& settings, double dt, State& state);
   void write_rows(double dt, State& state);
 
   const Scene& scene_;
@@ -81,8 +84,6 @@ class PenaltySteps {
     double off[2] = {0, 0}, stiffness[2] = {0, 0};
   };
   std::vector<Held> held_;
-  double unbalanced_ = 0, worst_force_ = 0, moving_ = 0, nudge_ = 0;
-  int worst_block_ = -1, iterations_ = 0;
 };
 
 }  // namespace talus

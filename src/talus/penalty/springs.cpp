@@ -13,6 +13,10 @@ namespace {
 // Change of the force that friction goes by, as share of it, below which an iteration has converged.
 constexpr double kSamePressure = 1e-3;
 
+// Gaps and slips of a step below this share of the smaller block change no state: the rounding of what hardly touches
+// would open and close it without end.
+constexpr double kSamePlace = 1e-10;
+
 Vec2 arm_now(const State& state, int block, Vec2 X) {
   return X + state.strain_part[static_cast<size_t>(block)] * X;
 }
@@ -79,6 +83,8 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   s.arm_b = arm_now(state, c.key.block_b, foot);
   for (int k = 0; k < 2; ++k)
     s.stiffness[static_cast<size_t>(k)] = stiffness_of(law, k, area, stiffness[static_cast<size_t>(k)]);
+  s.same = kSamePlace * std::min(blocks.size[static_cast<size_t>(c.key.block_a)],
+                                 blocks.size[static_cast<size_t>(c.key.block_b)]);
   const Vec2 closure = closure_of(scene, pair, c, s, edge, foot);
   s.gap = over.gap + closure.x;
   const double place = -over.along * norm(edge);
@@ -86,9 +92,9 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   s.pressing = std::max(0.0, c.force[0]);
   if (c.memory == Contact::kNone) {
     // what touches from the start sticks with the stress of the ground
-    s.slip = state.step == 0 ? closure.y : 0;
-    s.state = state.step == 0 && s.gap < 0 ? SpringState::kStuck : SpringState::kOpen;
-    s.pressing = state.step == 0 ? std::max(0.0, -s.stiffness[0] * s.gap) : 0;
+    s.slip = state.dt_before == 0 ? closure.y : 0;
+    s.state = state.dt_before == 0 && s.gap < 0 ? SpringState::kStuck : SpringState::kOpen;
+    s.pressing = state.dt_before == 0 ? std::max(0.0, -s.stiffness[0] * s.gap) : 0;
   } else if (c.force[0] > 0 || s.gap < 0) {
     const bool slid = std::isnan(c.anchor) || c.memory == Contact::kPassed;
     s.state = slid && c.force[1] != 0 ? SpringState::kSliding : SpringState::kStuck;
@@ -145,26 +151,26 @@ Change follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
   s.force = {};
   switch (before) {
     case SpringState::kOpen:
-      if (s.gap_after >= 0) return Change::kNone;
+      if (s.gap_after >= -s.same) return Change::kNone;
       // it sticks where it comes in
       s.state = SpringState::kStuck, s.slip = 0;
       return Change::kState;
     case SpringState::kStuck:
-      if (normal <= -s.bears.tension) {
+      if (normal <= -s.bears.tension - s.stiffness[0] * s.same) {
         s.state = SpringState::kOpen;
         return Change::kState;
       }
       s.force = {normal, shear};
-      if (std::abs(shear) <= s.bears.limit(normal)) return Change::kNone;
+      if (std::abs(shear) <= s.bears.limit(normal) + s.stiffness[1] * s.same) return Change::kNone;
       s.state = SpringState::kSliding, s.side = shear > 0 ? -1 : 1;
       return Change::kState;
     case SpringState::kSliding:
-      if (normal <= 0) {
+      if (s.gap_after > s.same) {
         s.state = SpringState::kOpen;
         return Change::kState;
       }
       s.force = {normal, -s.side * s.bears.limit(went_by)};
-      if (s.slip_step * s.side < 0) {
+      if (s.slip_step * s.side < -s.same) {
         // it came back: it sticks, with the force that it slid with
         s.state = SpringState::kStuck;
         s.slip = s.side * s.bears.limit(went_by) / s.stiffness[1];

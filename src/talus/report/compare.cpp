@@ -74,6 +74,11 @@ void compare_histories(const RunFolder& a, const RunFolder& b, Comparison& out) 
       out.notes.push_back(fmt::format("stage \"{}\" is in {} alone", s.name, a.name));
       continue;
     }
+    const double la = s.end - s.begin, lb = same->end - same->begin;
+    if (s.dynamic && std::abs(la - lb) > 1e-9 * std::max(la, lb))
+      out.notes.push_back(
+          fmt::format("stage \"{}\" is {:g} s long in {} and {:g} s in {}: compared as far as both go",
+                      s.name, la, a.name, lb, b.name));
     const Rows ra = rows_of(ta, s), rb = rows_of(tb, *same);
     if (ra.from == ra.to || rb.from == rb.to) continue;
     for (size_t c = 0; c < a.histories.columns.size(); ++c) {
@@ -91,7 +96,11 @@ void compare_histories(const RunFolder& a, const RunFolder& b, Comparison& out) 
         const double t = ta[r] - s.begin;
         if (s.dynamic && t > same->end - same->begin) break;
         const double w = s.dynamic ? value_at(tb, vb, rb, same->begin + t) : vb[rb.to - 1];
-        if (!std::isfinite(va[r]) || !std::isfinite(w)) continue;
+        if (!std::isfinite(va[r]) && !std::isfinite(w)) continue;
+        if (std::isfinite(va[r]) != std::isfinite(w)) {  // one of them knows it, the other does not
+          d.most = std::numeric_limits<double>::infinity(), d.at = t;
+          continue;
+        }
         take(d, va[r], w, t);
         squares += (va[r] - w) * (va[r] - w), ++count;
       }
@@ -131,7 +140,11 @@ void compare_joints(const RunFolder& a, const RunFolder& b, Comparison& out) {
     for (const auto& [key, sum] : sums) {
       if (key.first != s.name) continue;
       const auto same = others.find(key);
-      if (same == others.end()) continue;
+      if (same == others.end()) {
+        out.notes.push_back(fmt::format("joint \"{}\" has points in stage \"{}\" of {} alone", key.second,
+                                        key.first, a.name));
+        continue;
+      }
       for (size_t k = 0; k < 2; ++k) {
         Difference d{"joints", s.name,
                      fmt::format("{}: {} forces added up [N]", key.second, k == 0 ? "normal" : "shear")};
@@ -163,6 +176,12 @@ double Difference::share() const {
 
 Comparison compare_runs(const RunFolder& a, const RunFolder& b) {
   Comparison out;
+  for (const RunFolder* run : {&a, &b}) {
+    if (const std::string status = run->summary.value("status", ""); status != "finished")
+      out.notes.push_back(fmt::format("{} is {}", run->name, status.empty() ? "without a status" : status));
+    if (run->summary.contains("valid") && run->summary["valid"] == false)
+      out.notes.push_back(fmt::format("{} is not valid, by its audit", run->name));
+  }
   compare_histories(a, b, out);
   compare_joints(a, b, out);
   compare_ledgers(a, b, out);

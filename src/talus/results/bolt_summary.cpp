@@ -20,6 +20,18 @@ BoltSummary BoltSummary::of(const std::vector<BoltLine>& lines) {
   return s;
 }
 
+namespace {
+
+void exchange(auto& x, auto& s, const std::string& name) {
+  x(name + ".bolts", s.bolts), x(name + ".yielded", s.yielded), x(name + ".ruptured", s.ruptured);
+  x(name + ".tension", s.tension), x(name + ".tension_in", s.tension_in);
+}
+
+}  // namespace
+
+void BoltSummary::save(Saver& to, const std::string& name) const { exchange(to, *this, name); }
+void BoltSummary::load(Loader& from, const std::string& name) { exchange(from, *this, name); }
+
 std::string BoltSummary::text() const {
   std::string out = fmt::format("{} of {} ruptured, {} yielded", ruptured, bolts, yielded);
   if (tension > 0) out += fmt::format("; largest tension {:.3g} kN in {}", tension / 1e3, tension_in);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/output/archive.h"
 #include "talus/output/bolt_lines.h"
 
 namespace talus {
@@ -17,6 +18,9 @@ struct BoltSummary {
   static BoltSummary of(const std::vector<BoltLine>& lines);
   /// "4 of 10 ruptured, 6 yielded; largest tension 390 kN in face[8]"
   std::string text() const;
+  /// Under names that begin with `name`.
+  void save(Saver& to, const std::string& name) const;
+  void load(Loader& from, const std::string& name);
 };
 
 }  // namespace talus

@@ -52,6 +52,18 @@ const ContactPair& pair_of(const State& state, size_t contact) {
   return *pair;
 }
 
+// Whether the corner of a contact lay at its side when the run began: else it has no place there to count from.
+bool lay_there(const BlockSet& blocks, const ContactKey& key) {
+  constexpr double kNear = 0.02;  // of the smaller block, as far as contacts are sought
+  const auto a = static_cast<size_t>(key.block_a), b = static_cast<size_t>(key.block_b);
+  const Vec2 from = blocks.corner({key.block_b, key.edge}),
+             side = blocks.corner(blocks.end_of(key.on())) - from;
+  const Vec2 at = (blocks.centroid[a] - blocks.centroid[b]) + blocks.corner(key.corner()) - from;
+  const double length = norm(side), near = kNear * std::min(blocks.size[a], blocks.size[b]);
+  return std::abs(cross(side, at)) <= near * length && dot(side, at) >= -near * length &&
+         dot(side, at) <= (length + near) * length;
+}
+
 // Slip that is left: how far the corner has gone along the side from where it was at the start, elastic slip apart. By
 // the places of the blocks and not by adding up steps, so that what a joint went while it stood open counts too.
 // Contacts of blocks that met later have no such place: theirs is added up (theory 4.19).
@@ -59,7 +71,7 @@ double residual_slip(const Scene& scene, const Instant& i, size_t k) {
   const State& state = i.state;
   const Contact& c = state.contacts[k];
   const ContactPair& pair = pair_of(state, k);
-  if (!pair.from_start) return c.slip_signed;
+  if (!pair.from_start || !lay_there(scene.blocks, c.key)) return c.slip_signed;
   const BlockSet& blocks = scene.blocks;
   const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
   const Vec2 corner = blocks.corner(c.key.corner()), b0 = blocks.corner({c.key.block_b, c.key.edge}),
@@ -78,7 +90,8 @@ double residual_slip(const Scene& scene, const Instant& i, size_t k) {
   }
   // what contacts remember is already that of the end of the step
   const PointRows& row = i.work.rows.points[i.work.rows.range(Family::kContact).begin + k];
-  const double to_come = i.work.clock.dt * relative_velocity(row, state.rate)[1];
+  const bool at_once = !state.carried_stress.empty();  // conventional DDA remembers the instant itself
+  const double to_come = at_once ? 0 : i.work.clock.dt * relative_velocity(row, state.rate)[1];
   return dot(turn_right(over.normal), gone) + to_come + closure - c.stretch;
 }
 

@@ -117,12 +117,13 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
                                           : "finished";
   out += fmt::format("{}: {} blocks, {} steps, {} wall, {} CPU\n", ending, scene.blocks.count, r.steps,
                      readable_seconds(r.wall_seconds), readable_seconds(r.cpu_seconds));
-  if (r.steps > 0) {
+  if (r.steps > 0 && r.penalty == 0)
     out += fmt::format(
         "  contact error   worst {:.2e} m at t = {:.4g} s; {} of {} steps above the tolerance; {:.1f} "
         "iterations a step, at most {}\n",
         r.worst_error, r.worst_error_time, r.failed_steps, r.steps,
         static_cast<double>(r.iterations) / static_cast<double>(r.steps), r.most_iterations);
+  if (r.steps > 0) {
     out += fmt::format(
         "  energy ledger   {:.2e} of its largest term ({:.3g} J) left over, {}; closing contacts took {:.4g} "
         "J\n",

@@ -160,6 +160,7 @@ std::unique_ptr<Recorder> Recorder::branch_off(const Scene& scene, ResultFolder 
   auto recorder = std::make_unique<Recorder>(scene, std::move(folder), std::move(notes));
   Loader from(parent);
   recorder->joint_summary_.load(from, "recorder.joints", scene);
+  recorder->bolt_summary_.load(from, "recorder.bolts");
   if (origin.same_monitors) recorder->histories_.load(from);
   if (origin.same_output) {
     Due::exchange(from, recorder->due_);
@@ -180,6 +181,7 @@ void Recorder::load(const Archive& saved) {
   Loader from(saved);
   Due::exchange(from, due_);
   joint_summary_.load(from, "recorder.joints", scene_);
+  bolt_summary_.load(from, "recorder.bolts");
   histories_.load(from);
   if (auditor_) auditor_->load(from);
   std::vector<double> times;
@@ -252,6 +254,7 @@ Archive Recorder::archive_of(const Standing& standing, const State& state) const
   Saver to(archive);
   Due::exchange(to, due_);
   joint_summary_.save(to, "recorder.joints");
+  bolt_summary_.save(to, "recorder.bolts");
   histories_.save(to);
   if (auditor_) auditor_->save(to);
   to("recorder.frames", block_frames_.times());
@@ -362,6 +365,7 @@ void Recorder::fails(const Instant& i) {
   const bool there = !block_frames_.times().empty() && block_frames_.times().back() >= i.state.time;
   const FrameTexts texts = there ? frame_texts(scene_, i) : write_frame(i);
   write_joints(i, i.stage);
+  bolt_summary_ = BoltSummary::of(bolt_lines(scene_, i.state, i.stage));
   if (!scene_.model.output.pictures) return;
   std::string picture;
   try {

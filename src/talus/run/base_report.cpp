@@ -150,6 +150,7 @@ double dominant_frequency(const History& history) {
   double finest = best;
   for (int j = -kFiner + 1; best > 0 && j < kFiner; ++j) {
     const double k = best + static_cast<double>(j) / kFiner;
+    if (k < 1) continue;  // that would be the mean
     const std::complex<double> turn =
         std::polar(1.0, -2 * std::numbers::pi * k / static_cast<double>(kSamples));
     std::complex<double> at = 1, sum = 0;

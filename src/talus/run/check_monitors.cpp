@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "talus/base/text.h"
@@ -23,6 +24,25 @@ void check_point(const Layout& layout, Vec2 point, const Where& where, const std
   }
   findings.error(where, path, fmt::format("({:g}, {:g}) lies outside every block", point.x, point.y),
                  fmt::format("the nearest block, \"{}\", is {:.3g} m away", name, nearest));
+}
+
+// A point of a block that a stage takes out tells nothing from then on.
+void warn_of_dug(const Model& model, const Layout& layout, Vec2 point, const Where& where,
+                 const std::string& path, Findings& findings) {
+  const int block = block_of_point(layout, point);
+  if (block < 0) return;
+  for (const StageInput& stage : model.stages)
+    for (const std::string& name : stage.excavate) {
+      const std::vector<int> out = layout.blocks_called(name);
+      if (std::find(out.begin(), out.end(), block) == out.end()) continue;
+      findings.warning(
+          where, path,
+          fmt::format(
+              "({:g}, {:g}) lies in block \"{}\", which stage \"{}\" takes out: it tells nothing from then on",
+              point.x, point.y, layout.blocks[static_cast<size_t>(block)].name, stage.name),
+          "to follow the rock that stays, move the point a little into it");
+      return;
+    }
 }
 
 // What a monitor is relative to: a support, a free field, or blocks.
@@ -52,6 +72,8 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
     const bool of_two = m.kind == MonitorKind::kConvergence || m.kind == MonitorKind::kCrack;
     if (m.kind == MonitorKind::kPoint || of_two) check_point(layout, m.point, m.where, path, findings);
     if (of_two) check_point(layout, m.other, m.where, path, findings);
+    if (m.kind == MonitorKind::kPoint || of_two) warn_of_dug(model, layout, m.point, m.where, path, findings);
+    if (of_two) warn_of_dug(model, layout, m.other, m.where, path, findings);
     if (m.kind == MonitorKind::kCentroid && layout.blocks_called(m.target_a).empty())
       unknown_block(layout, m.target_a, m.where, path, findings);
     for (const Vec2 point : m.relative_to_points)

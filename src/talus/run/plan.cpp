@@ -77,6 +77,17 @@ double joint_time(const Scene& scene, const BlockSet& b) {
   });
 }
 
+// Conventional DDA has no stable limit, and damps what a step does not resolve. Static stages know no inertia: a block of
+// median size falls by some thousandths of itself in a step.
+double step_by_penalty(const Model& model, const BlockSet& blocks, const StageInput& stage, double crossing) {
+  constexpr double kFiner = 8, kShareOfFall = 0.02;
+  if (stage.kind == StageKind::kDynamic) return crossing / kFiner;
+  const double size =
+      median_of_deformable(blocks, [&blocks](int i) { return blocks.size[static_cast<size_t>(i)]; });
+  const double g = norm(model.gravity);
+  return g > 0 && std::isfinite(size) ? kShareOfFall * std::sqrt(size / g) : crossing;
+}
+
 void limit_by_column(const Scene& scene, const StageInput& stage, const ColumnStep& column, StagePlan& plan,
                      Findings& findings) {
   if (column.dt < plan.dt_bound) {
@@ -138,7 +149,9 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
             : ColumnStep{};
     double wanted =
         std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
-    if (stage.implicit)
+    if (scene.model.formulation == Formulation::kPenalty)
+      wanted = step_by_penalty(scene.model, blocks, stage, wanted);
+    else if (stage.implicit)
       wanted = std::min(wanted, (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks));
     if (!std::isnan(stage.time_step)) {
       wanted = stage.time_step;

@@ -274,6 +274,11 @@ class Runner {
 
   // What keeps a stage from resting, and the key to change.
   std::string why_no_rest(const StageInput& stage, const StageResult& out) const {
+    if (penalty_)
+      return fmt::format(
+          "By conventional DDA a static stage forgets its velocities at every step: a longer stage.{}.duration or time_step "
+          "brings it further; what slides or falls never rests (blocks_end.svg)",
+          stage.name);
     const double dt = plans_[result_.stages.size() - 1].dt;
     const double floor = solver_leaves(last_, dt);
     if (floor > 0.5 * last_.worst_force)
@@ -287,9 +292,13 @@ class Runner {
     for (size_t k = 0; k < state_.rate.size(); ++k)
       farthest =
           std::max(farthest, norm(state_.rate[k].a) * std::max(left, stage.duration) / scene_.blocks.size[k]);
-    if (farthest > StepsFromRest::kFarToGo && !goes_anywhere(std::max(left, stage.duration)))
-      return chatter(stage);
-    if (farthest > StepsFromRest::kFarToGo)
+    const bool stays = !goes_anywhere(std::max(left, stage.duration));
+    const int fastest = fastest_block();
+    // forces of the others are in balance: it is the one that swings
+    if (farthest > StepsFromRest::kFarToGo && stays && fastest >= 0 &&
+        (last_.unbalanced <= 2 * stage.unbalanced || last_.worst_block == fastest))
+      return chatter(stage, static_cast<size_t>(fastest));
+    if (farthest > StepsFromRest::kFarToGo && !stays)
       return fmt::format(
           "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
           "duration of the stage. Look at blocks_end.svg and slips.csv; if it is on its way to rest, give "
@@ -312,17 +321,24 @@ class Runner {
     return false;
   }
 
-  // Which block keeps a stage from rest though nothing goes anywhere.
-  std::string chatter(const StageInput& stage) const {
-    size_t fastest = 0;
+  // The block that moves at most of its size a second; -1: none is free.
+  int fastest_block() const {
+    int fastest = -1;
     double most = -1;
-    std::vector<double> areas;
     for (size_t k = 0; k < state_.rate.size(); ++k) {
       if (!scene_.blocks.moves_freely(static_cast<int>(k))) continue;
-      areas.push_back(scene_.blocks.size[k] * scene_.blocks.size[k]);
       const double pace = norm(state_.rate[k].a) / scene_.blocks.size[k];
-      if (pace > most) most = pace, fastest = k;
+      if (pace > most) most = pace, fastest = static_cast<int>(k);
     }
+    return fastest;
+  }
+
+  // A block keeps a stage from rest though nothing goes anywhere.
+  std::string chatter(const StageInput& stage, size_t fastest) const {
+    std::vector<double> areas;
+    for (size_t k = 0; k < state_.rate.size(); ++k)
+      if (scene_.blocks.moves_freely(static_cast<int>(k)))
+        areas.push_back(scene_.blocks.size[k] * scene_.blocks.size[k]);
     const double area = scene_.blocks.size[fastest] * scene_.blocks.size[fastest];
     const Vec2 at = scene_.blocks.centroid[fastest] + state_.displacement[fastest];
     return fmt::format(
@@ -349,7 +365,8 @@ class Runner {
     // while forces are let go of, balance says nothing
     rest.best = !is_relaxed(stage, n) ? 0 : rest.best > 0 ? std::min(rest.best, now) : now;
     if (++rest.steps % kRestLook != 0) return false;
-    look_ = {state_.time, state_.displacement};
+    look_ = std::move(latest_look_);
+    latest_look_ = {state_.time, state_.displacement};
     const double progress = rest.before > 0 ? rest.best / rest.before : 0;
     const bool at_sharpest = rest.sharper <= kSharpest;
     rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
@@ -417,6 +434,9 @@ class Runner {
     if (result_.stages.empty()) return;
     const int index = static_cast<int>(result_.stages.size()) - 1;
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    // a run that goes on behind its last stage has shown nothing yet
+    if (penalty_ && work_.rate_before.size() != state_.rate.size())
+      penalty_->stand(penalty_settings(scene_, index), plan.dt, state_);
     State copy = state_;
     const StepReport report =
         penalty_ ? penalty_->report(copy) : kick(scene_, settings_, plan.dt, work_, copy);
@@ -508,7 +528,7 @@ class Runner {
   struct Look {
     double time = 0;
     std::vector<Vec2> place;
-  } look_;
+  } look_, latest_look_;                 // the look before the latest, and that
   std::optional<PenaltySteps> penalty_;  // of formulation = "penalty"
   RunResult result_;
 };

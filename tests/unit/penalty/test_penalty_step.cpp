@@ -113,6 +113,32 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("penalty: a rigid block keeps its spin, and a load beside its middle turns it as by hand") {
+  PenaltySettings how;
+  Course spin(kHead + block_text("b", kUnit, "rigid", "spin = 3"), how);
+  for (int n = 0; n < 100; ++n) spin.step(0.01);
+  CHECK(spin.state.rate[0].G.yx == doctest::Approx(3).epsilon(1e-9));
+  CHECK(spin.state.angle[0] == doctest::Approx(3).epsilon(1e-9));
+  // 100 N upwards at its right side: 50 N m on 2000 kg / 6 m2; the force keeps its direction, the arm turns by little
+  Course load(
+      kHead + block_text("b", kUnit, "rigid") + "[[load]]\nname = \"l\"\npoint = [1, 0.5]\nforce_y = 100\n",
+      how);
+  for (int n = 0; n < 100; ++n) load.step(0.01);
+  CHECK(load.state.angle[0] == doctest::Approx(0.5 * 50 / (2000.0 / 6)).epsilon(2e-3));
+  CHECK(load.moved(0).y == doctest::Approx(0.5 * 100 / 2000).epsilon(1e-9));
+}
+
+TEST_CASE("penalty: by the mean acceleration a fall is exact from the first step on") {
+  PenaltySettings how;
+  how.scheme = {0.25, 0.5};
+  Course c("talus = 1\n[model]\ngravity = [0, -10]\n" + kHead.substr(kHead.find('\n') + 1) +
+               block_text("b", kUnit, "deformable"),
+           how);
+  for (int n = 0; n < 100; ++n) c.step(0.01);
+  CHECK(c.moved(0).y == doctest::Approx(-5).epsilon(1e-9));
+  CHECK(c.state.rate[0].a.y == doctest::Approx(-10).epsilon(1e-9));
+}
+
 TEST_CASE("penalty: a block sinks by its weight over the stiffness of the springs under it") {
   const double stiffness = 2e7, weight = 2000 * 9.81;
   PenaltySettings how = with_springs(stiffness, stiffness);

@@ -73,7 +73,8 @@ TEST_CASE("command: compare with wrong input") {
   CHECK(shell(f, "$talus compare a file").code == 4);
   CHECK(shell(f, "$talus compare a a --rtol -1").code == 2);
   std::filesystem::create_directories(f / "other");
-  write_file(f / "other/summary.json", "{\"status\": \"finished\", \"stages\": [{\"name\": \"rest\", \"kind\": \"static\"}]}");
+  write_file(f / "other/summary.json",
+             "{\"status\": \"finished\", \"stages\": [{\"name\": \"rest\", \"kind\": \"static\"}]}");
   const Outcome o = shell(f, "$talus compare a other");
   CHECK(o.code == 4);
   has(o.text, "have nothing in common");

@@ -69,7 +69,7 @@ struct History {
   std::vector<double> time;      // [s] strictly rising
   std::vector<double> value;     // SI
   std::vector<double> integral;  // of value, from time[0] to time[i]
-  std::string quantity = {};     // "acceleration", "velocity" or "displacement" where a file says so by a unit
+  std::string quantity = {};  // "acceleration", "velocity" or "displacement" where a file says so by a unit
   Where where;
 
   double value_at(double t) const;

@@ -46,7 +46,7 @@ struct RunResult {
   double penalty = 0;
   int64_t cut_steps = 0, parts = 0;
   double penetration = 0;
-  std::string failure;   // text of the NumericalError that ended the run, "" otherwise
+  std::string failure;  // text of the NumericalError that ended the run, "" otherwise
   double wall_seconds = 0, cpu_seconds = 0;
   int threads = 1;
   Profile profile;

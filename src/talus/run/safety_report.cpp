@@ -17,6 +17,25 @@ std::string safety_line(const SafetyTrial& t) {
                      t.block);
 }
 
+namespace {
+
+// Whether the trial that failed first did so by want of rest, though hardly more moved than in the one that stands: then
+// it may be the way to rest that failed, and not what is built.
+const SafetyTrial* doubtful(const SafetyResult& r) {
+  constexpr double kHardlyMore = 10;
+  const auto at = [&r](double factor, bool stands) -> const SafetyTrial* {
+    for (const SafetyTrial& t : r.trials)
+      if (t.factor == factor && t.stands == stands) return &t;
+    return nullptr;
+  };
+  const SafetyTrial *failed = at(r.fails, false), *stood = at(r.stands, true);
+  if (r.fails <= 0 || !failed || failed->outcome != "no rest") return nullptr;
+  if (stood && failed->displacement > kHardlyMore * stood->displacement) return nullptr;
+  return failed;
+}
+
+}  // namespace
+
 std::string safety_text(const Model& model, const SafetyResult& r) {
   const char* what = name_of(model.safety.by);
   int loose = 0;
@@ -29,6 +48,11 @@ std::string safety_text(const Model& model, const SafetyResult& r) {
   else
     out = fmt::format("{}: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n", what, r.factor(),
                       r.stands, r.fails, r.trials.size());
+  if (const SafetyTrial* t = doubtful(r))
+    out += fmt::format(
+        "DOUBTFUL: the trial at {:g} failed because it did not come to rest; \"{}\" had moved by {:.3g} m, hardly more than where it stands. "
+        "The answer may be too low: compare with a shorter stage.time_step, integration = \"implicit\", and joints without stiffness\n",
+        t->factor, t->block, t->displacement);
   if (loose > 0)
     out += fmt::format(
         "in {} trials needles moved that do not vote (docs/theory.md 4.20): if they matter, give "

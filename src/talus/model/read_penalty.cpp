@@ -44,7 +44,7 @@ class PenaltyReader : private SectionReader {
       if (j.dilation_angle > 0) refuse_at(j.where, "joint." + j.name + ".dilation_angle", "no joint dilates");
       if (j.restitution >= 0)
         refuse_at(j.where, "joint." + j.name + ".restitution", "no restitution can be given");
-      if (j.kind > 1)
+      if (j.kind > kBondedJoint)
         refuse_at(j.where, "joint." + j.name + ".kind", "only frictional and bonded joints are known");
     }
     for (const StageInput& s : model_.stages) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 
@@ -41,7 +42,7 @@ double half_height(const BlockSet& blocks) {
 
 }  // namespace
 
-PenaltySettings penalty_settings(const Scene& scene, int stage) {
+PenaltySettings penalty_settings(const Scene& scene, const StageInput& stage) {
   const PenaltyInput& in = scene.model.penalty;
   const double thickness = scene.blocks.thickness;
   PenaltySettings s;
@@ -51,8 +52,7 @@ PenaltySettings penalty_settings(const Scene& scene, int stage) {
   if (in.mean_acceleration) s.scheme = {0.25, 0.5};
   s.exact_rotation = in.exact_rotation;
   s.most_iterations = in.most_iterations;
-  const bool is_static = scene.model.stages[static_cast<size_t>(stage)].kind == StageKind::kStatic;
-  s.dynamic_factor = is_static ? 0 : in.dynamic_factor;
+  s.dynamic_factor = stage.kind == StageKind::kStatic ? 0 : in.dynamic_factor;
   s.largest_displacement = in.largest_displacement * half_height(scene.blocks);
   return s;
 }

@@ -6,6 +6,6 @@
 namespace talus {
 
 /// Stiffnesses, scheme and limits of a stage; static stages forget their velocities (dynamic factor 0).
-PenaltySettings penalty_settings(const Scene& scene, int stage);
+PenaltySettings penalty_settings(const Scene& scene, const StageInput& stage);
 
 }  // namespace talus

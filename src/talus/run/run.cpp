@@ -70,7 +70,7 @@ class Runner {
     try {
       const InPart part(work_.profile, Profile::kRest);
       if (penalty_ && state_.carried_stress.empty())
-        begin_penalty(scene_, penalty_settings(scene_, 0).scheme, state_);
+        begin_penalty(scene_, penalty_settings(scene_, scene_.model.stages[0]).scheme, state_);
       if (from) {
         go_on(*from);
         first = result_.stages.size();
@@ -125,6 +125,7 @@ class Runner {
                  .implicit = stage.implicit,
                  .from_rest = stage.from_rest,
                  .keep_guess = true};
+    if (penalty_) penalty_settings_ = penalty_settings(scene_, stage);
     work_.mobility.clear();  // of other inertias
   }
 
@@ -149,7 +150,7 @@ class Runner {
     double advance = plan.dt;
     StageResult& out = result_.stages.back();
     observer_.stage_begins(scene_, index, plan);
-    if (penalty_) penalty_->stand(penalty_settings(scene_, index), plan.dt, state_);
+    if (penalty_) penalty_->stand(penalty_settings_, plan.dt, state_);
     StepsFromRest from_rest(scene_, work_, state_);
 
     for (int64_t n = out.steps; n < plan.steps; ++n) {
@@ -204,7 +205,7 @@ class Runner {
     try {
       note(report, state_);
       if (penalty_)
-        step_by_penalty(index, end);
+        step_by_penalty(end);
       else
         drift(scene_, end, work_, state_, report);
     } catch (const NumericalError&) {
@@ -215,10 +216,9 @@ class Runner {
     }
   }
 
-  void step_by_penalty(int index, double end) {
-    const PenaltySettings settings = penalty_settings(scene_, index);
-    const PenaltyReport p = penalty_->step(settings, end, settings_.histories_run, state_);
-    result_.penalty = settings.stiffness[0];
+  void step_by_penalty(double end) {
+    const PenaltyReport p = penalty_->step(penalty_settings_, end, settings_.histories_run, state_);
+    result_.penalty = penalty_settings_.stiffness[0];
     result_.cut_steps += p.parts > 1, result_.parts += p.parts;
     result_.penetration = std::max(result_.penetration, p.penetration);
   }
@@ -436,7 +436,7 @@ class Runner {
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     // a run that goes on behind its last stage has shown nothing yet
     if (penalty_ && work_.rate_before.size() != state_.rate.size())
-      penalty_->stand(penalty_settings(scene_, index), plan.dt, state_);
+      penalty_->stand(penalty_settings_, plan.dt, state_);
     State copy = state_;
     const StepReport report =
         penalty_ ? penalty_->report(copy) : kick(scene_, settings_, plan.dt, work_, copy);
@@ -505,7 +505,8 @@ class Runner {
         joint && joint->normal_stiffness > 0
             ? fmt::format("normal_stiffness = {:.2g} Pa/m of joint \"{}\" would keep it at 1 %",
                           joint->normal_stiffness * r.closed_share / 0.01, joint->name)
-            : "a smaller time step keeps hard contacts apart";
+        : penalty_ ? "a larger penalty.normal_stiffness keeps blocks apart"
+                   : "a smaller time step keeps hard contacts apart";
     return fmt::format("{} at ({:.4g}, {:.4g}) has closed by {:.2g} % of the thinner block{}; {}",
                        row_name(scene_, state, work_, row), at.x, at.y, 100 * r.closed_share,
                        r.closed_share > kMostClosed
@@ -523,6 +524,7 @@ class Runner {
   std::vector<Mat2> strain_part_;
   StepReport last_;
   StepSettings settings_;
+  PenaltySettings penalty_settings_;  // where steps are of conventional DDA
   StepWork work_;
   // where blocks were when rest was last looked for
   struct Look {

@@ -153,8 +153,8 @@ double ledger_energy(const Scene& scene, const State& state) {
     const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
     const BlockRate& v = state.rate[k];
-    if (!state.carried_stress
-             .empty()) {  // conventional DDA: everything is of one instant, strains have their own sum
+    // conventional DDA: everything is of one instant, strains have their own sum
+    if (!state.carried_stress.empty()) {
       sum += 0.5 * work(momentum(blocks, k, v), v) -
              blocks.mass[k] * dot(scene.model.gravity, state.displacement[k]);
       continue;

@@ -53,6 +53,87 @@ TEST_CASE("conventional DDA: the example slides as by hand, closer with stiffer 
               last(forces, "block.displacement_x [m]"), 1e-4, 1e-5);
 }
 
+TEST_CASE(
+    "conventional DDA: the error of the start of friction falls with the run-out, and with stiffer springs") {
+  const std::string text = read_text_file(kExample);
+  const double t = std::numbers::pi / 180,
+               a = 9.81 * (std::sin(30 * t) - std::tan(20 * t) * std::cos(30 * t));
+  const auto error = [&](const std::string& springs, double end) {
+    const CaseResult r = run_case(
+        text, {"penalty.normal_stiffness=\"" + springs + "\"", fmt::format("stage.slide.duration={}", end)});
+    return last(r, "block.displacement_x [m]") / (0.5 * a * end * end) - 1;
+  };
+  // while its springs take up the pressure the block slides too easily: a velocity too much ever after, so that the
+  // error of the way falls as 1/t
+  const double first = 0.25 * error("10 MPa", 0.25);
+  for (const double end : {0.5, 1.0, 2.0})
+    check_close(
+        fmt::format("conventional DDA: error of the way after {:g} s / that after 0.25 s, times t", end),
+        end * error("10 MPa", end) / first, 1, 0.1, 0.05);
+  double before = 1;
+  for (const std::string springs : {"100 MPa", "1 GPa", "10 GPa"}) {
+    const double now = std::abs(error(springs, 1));
+    check_below("conventional DDA: error of the way in 1 s on springs of " + springs + " / on a tenth of it",
+                now / before, 0.2, 0.1);
+    before = now;
+  }
+  // what is left is the rounding of what springs of that stiffness carry, and of the step
+  for (const std::string springs : {"100 GPa", "1000 GPa"})
+    check_below("conventional DDA: error of the way in 1 s on springs of " + springs,
+                std::abs(error(springs, 1)), 2e-5, 1e-6);
+}
+
+TEST_CASE("conventional DDA: friction goes by the pressure of its own step") {
+  // two rigid blocks on planes of 45 and 20 deg push each other over a smooth vertical face (A6i): where friction went by
+  // the pressure of an iteration before, they jammed on stiff springs
+  const std::string text = R"(talus = 1
+[model]
+formulation = "penalty"
+gravity = [0, -9.81]
+[penalty]
+normal_stiffness = "1e12 Pa"
+[material.upper]
+density = 2000
+[material.lower]
+density = 297.2677908424
+[joint.face]
+friction_angle = "30 deg"
+[joint.smooth]
+[contact]
+joint = "face"
+[[contact_pair]]
+between = ["upper", "lower"]
+joint = "smooth"
+[[block]]
+name = "ground"
+polygon = [[-4, -9], [6, -9], [6, -2.683821405597], [0, -0.5], [0, 0], [-4, 4]]
+material = "upper"
+kind = "fixed"
+[[block]]
+name = "upper"
+polygon = [[0, 0], [0, 2.5], [-1, 2.5], [-1, 1]]
+material = "upper"
+kind = "rigid"
+[[block]]
+name = "lower"
+polygon = [[0, -0.5], [2, -1.227940468532], [2, 2.5], [0, 2.5]]
+material = "lower"
+kind = "rigid"
+[[stage]]
+name = "slide"
+kind = "dynamic"
+duration = "0.1 s"
+time_step = "1 ms"
+[[monitor]]
+name = "upper"
+point = [-0.5, 2]
+)";
+  const CaseResult r = run_case(text);
+  const double way = std::hypot(last(r, "upper.displacement_x [m]"), last(r, "upper.displacement_y [m]"));
+  check_close("conventional DDA: acceleration of the upper of two blocks [m/s2]", 200 * way, 1.43689, 1e-2,
+              1e-3);
+}
+
 TEST_CASE("conventional DDA: below its friction angle the block stands") {
   const CaseResult r = run_case(read_text_file(kExample), {"joint.floor.friction_angle=\"31 deg\""});
   // friction goes by pressure that the springs only take up in the first steps: a start that no step shortens away

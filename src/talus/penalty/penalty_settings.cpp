@@ -11,8 +11,9 @@ namespace {
 // Penalty over the largest Young's modulus: in the middle of what is usual, 10 to 100.
 constexpr double kPenaltyOfYoung = 40;
 
-// Where no block deforms: under its weight the largest block sinks by this share of its size.
-constexpr double kSinking = 1e-4;
+// Where no block deforms: under its weight the largest block sinks by this share of its size. Of 122 comparisons of the
+// cases A2, A3d and A6 (blocks of 20 kN) 58 hold on springs of 1e9 Pa, 68 of 1e10, 99 of 1e11, 111 of 1e12, 110 of 3e12.
+constexpr double kSinking = 3e-8;
 
 double penalty_of(const Scene& scene) {
   double young = 0;

@@ -14,6 +14,12 @@ namespace talus {
 
 namespace {
 
+// Solutions of an iteration in which friction may find its pressure.
+constexpr int kMostFrictionTurns = 30;
+
+// Change of the pressure that friction goes by, as share of it, below which it has found it.
+constexpr double kSamePressure = 1e-3;
+
 Six part_of(const std::vector<double>& x, size_t block) {
   Six d;
   std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * block), 6, d.begin());
@@ -86,7 +92,7 @@ void PenaltySteps::stand(const PenaltySettings& settings, double dt, State& stat
   work_.rate_before = state.rate_old.empty() ? state.rate : state.rate_old;
   // blocks that the stage takes out, or the first instant of all
   if (state.candidates.reach.empty()) seek_contacts(state);
-  show(settings, dt, state);
+  show(settings, state.dt_before > 0 ? state.dt_before : dt, state);
 }
 
 // Rows and places of an instant, with what contacts and supports remember.
@@ -222,11 +228,7 @@ void PenaltySteps::assemble(const BlockSet& blocks) {
     const SpringRows& rows = rows_[k];
     const std::array<double, 2> off{s.gap, s.slip};
     for (size_t r = 0; r < 2; ++r) {
-      if (r == 1 && s.state == SpringState::kSliding) {
-        const double friction = -s.side * s.bears.limit(s.pressing);
-        push(s.block_a, rows.a[1], friction), push(s.block_b, rows.b[1], friction);
-        continue;
-      }
+      if (r == 1 && s.state == SpringState::kSliding) continue;  // friction: solve_with_friction()
       const double p = s.stiffness[r];
       if (blocks.moves_freely(s.block_a))
         add(diagonal_[static_cast<size_t>(s.block_a)], rows.a[r], rows.a[r], p);
@@ -239,6 +241,38 @@ void PenaltySteps::assemble(const BlockSet& blocks) {
       }
       push(s.block_a, rows.a[r], -p * off[r]), push(s.block_b, rows.b[r], -p * off[r]);
     }
+  }
+}
+
+// Solves with the states as they are, again while friction does not go by the pressure that it makes (theory 13.4).
+void PenaltySteps::solve_with_friction() {
+  const BlockSet& blocks = scene_.blocks;
+  const std::vector<double> without = solution_;
+  for (int turn = 0;; ++turn) {
+    if (turn > 0) solution_ = without;
+    for (size_t k = 0; k < springs_.size(); ++k) {
+      const Spring& s = springs_[k];
+      if (s.state != SpringState::kSliding) continue;
+      const double friction = -s.side * s.bears.limit(s.pressing);
+      const auto push = [&](int block, const Six& row) {
+        if (!blocks.moves_freely(block)) return;
+        for (size_t j = 0; j < 6; ++j) solution_[6 * static_cast<size_t>(block) + j] += friction * row[j];
+      };
+      push(s.block_a, rows_[k].a[1]), push(s.block_b, rows_[k].b[1]);
+    }
+    factor_.solve(solution_, work_.workers);
+    for (size_t i = 0; i < displacement_.size(); ++i) displacement_[i] = part_of(solution_, i);
+    bool same = true;
+    for (size_t k = 0; k < springs_.size(); ++k) {
+      Spring& s = springs_[k];
+      if (s.state != SpringState::kSliding) continue;
+      const double now = pressure_after(displacement_[static_cast<size_t>(s.block_a)],
+                                        displacement_[static_cast<size_t>(s.block_b)], rows_[k], s);
+      if (std::abs(now - s.pressing) <= kSamePressure * now) continue;
+      same = false;
+      if (turn < kMostFrictionTurns) s.pressing = now;
+    }
+    if (same || turn >= kMostFrictionTurns) return;
   }
 }
 
@@ -255,26 +289,14 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool his
       throw NumericalError(
           fmt::format("the stiffness matrix of step {} at t = {:.9g} s is not positive definite", state.step,
                       state.time));
-    factor_.solve(solution_, work_.workers);
+    solve_with_friction();
     ++report.iterations;
-    for (size_t i = 0; i < n; ++i) displacement_[i] = part_of(solution_, i);
     int changes = 0;
-    bool friction = false;
     for (size_t k = 0; k < springs_.size(); ++k)
-      switch (follow(displacement_[static_cast<size_t>(springs_[k].block_a)],
-                     displacement_[static_cast<size_t>(springs_[k].block_b)], rows_[k], springs_[k])) {
-        case Change::kState:
-          ++changes;
-          break;
-        case Change::kFriction:
-          friction = true;
-          break;
-        case Change::kNone:
-          break;
-      }
+      changes += follow(displacement_[static_cast<size_t>(springs_[k].block_a)],
+                        displacement_[static_cast<size_t>(springs_[k].block_b)], rows_[k], springs_[k]);
     report.changes += changes;
-    // by the last one the states stand, and what friction goes by is as near as it comes
-    if (changes > 0 || (friction && turn + 1 < settings.most_iterations)) continue;
+    if (changes > 0) continue;
     double farthest = 0;
     for (size_t i = 0; i < n; ++i)
       farthest = std::max(farthest, std::hypot(displacement_[i][0], displacement_[i][1]));

@@ -62,6 +62,7 @@ class PenaltySteps {
   void seek_contacts(State& state);
   void find_pattern();
   void assemble(const BlockSet& blocks);
+  void solve_with_friction();
   void finish(const PenaltySettings& settings, double dt, State& state, PenaltyReport& report);
   void show(const PenaltySettings& settings, double dt, State& state);
   void write_rows(double dt, State& state);

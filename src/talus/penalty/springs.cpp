@@ -10,9 +10,6 @@ namespace talus {
 
 namespace {
 
-// Change of the force that friction goes by, as share of it, below which an iteration has converged.
-constexpr double kSamePressure = 1e-3;
-
 // Gaps and slips of a step below this share of the smaller block change no state: the rounding of what hardly touches
 // would open and close it without end.
 constexpr double kSamePlace = 1e-10;
@@ -136,49 +133,50 @@ SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {
   return rows;
 }
 
+double pressure_after(const Six& a, const Six& b, const SpringRows& rows, const Spring& s) {
+  return std::max(0.0, -s.stiffness[0] * (s.gap + dot(rows.a[0], a) + dot(rows.b[0], b)));
+}
+
 // Theory 13.4.
-Change follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
+bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
   s.gap_after = s.gap + dot(rows.a[0], a) + dot(rows.b[0], b);
   s.slip_step = dot(rows.a[1], a) + dot(rows.b[1], b);
   const double normal = -s.stiffness[0] * s.gap_after, shear = -s.stiffness[1] * (s.slip + s.slip_step);
   if (s.glued) {
     s.force = {normal, shear};
-    return Change::kNone;
+    return false;
   }
-  const SpringState before = s.state;
-  const double went_by = s.pressing;
-  s.pressing = std::max(0.0, normal);
   s.force = {};
-  switch (before) {
+  switch (s.state) {
     case SpringState::kOpen:
-      if (s.gap_after >= -s.same) return Change::kNone;
+      if (s.gap_after >= -s.same) return false;
       // it sticks where it comes in
       s.state = SpringState::kStuck, s.slip = 0;
-      return Change::kState;
+      return true;
     case SpringState::kStuck:
       if (normal <= -s.bears.tension - s.stiffness[0] * s.same) {
         s.state = SpringState::kOpen;
-        return Change::kState;
+        return true;
       }
       s.force = {normal, shear};
-      if (std::abs(shear) <= s.bears.limit(normal) + s.stiffness[1] * s.same) return Change::kNone;
+      if (std::abs(shear) <= s.bears.limit(normal) + s.stiffness[1] * s.same) return false;
       s.state = SpringState::kSliding, s.side = shear > 0 ? -1 : 1;
-      return Change::kState;
-    case SpringState::kSliding:
+      s.pressing = std::max(0.0, normal);
+      return true;
+    case SpringState::kSliding: {
       if (s.gap_after > s.same) {
         s.state = SpringState::kOpen;
-        return Change::kState;
+        return true;
       }
-      s.force = {normal, -s.side * s.bears.limit(went_by)};
-      if (s.slip_step * s.side < -s.same) {
-        // it came back: it sticks, with the force that it slid with
-        s.state = SpringState::kStuck;
-        s.slip = s.side * s.bears.limit(went_by) / s.stiffness[1];
-        return Change::kState;
-      }
-      return std::abs(normal - went_by) > kSamePressure * normal ? Change::kFriction : Change::kNone;
+      const double friction = s.bears.limit(s.pressing);
+      s.force = {normal, -s.side * friction};
+      if (s.slip_step * s.side >= -s.same) return false;
+      // it came back: it sticks, with the force that it slid with
+      s.state = SpringState::kStuck, s.slip = s.side * friction / s.stiffness[1];
+      return true;
+    }
   }
-  return Change::kNone;
+  return false;
 }
 
 }  // namespace talus

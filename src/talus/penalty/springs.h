@@ -25,7 +25,7 @@ struct Spring {
   double same = 0;                    // gaps and slips that are none [m]
   SpringState state = SpringState::kOpen;
   double side = 0;      // +-1: which way it slides
-  double pressing = 0;  // normal force of the iteration before, which friction goes by [N]
+  double pressing = 0;  // normal force that friction goes by [N]
 
   // what the displacements of an iteration make of it
   double gap_after = 0, slip_step = 0;  // [m]
@@ -43,10 +43,10 @@ struct SpringRows {
 };
 SpringRows rows_of(const Spring& spring, const BlockSet& blocks);
 
-/// What an iteration changed: nothing; the pressure that friction goes by (by more than a thousandth); the state.
-enum class Change : char { kNone, kFriction, kState };
+/// Normal force that the displacements of an iteration make of a closed contact, 0 where they open it [N].
+double pressure_after(const Six& a, const Six& b, const SpringRows& rows, const Spring& spring);
 
-/// Gap, slip, forces and state that the displacements of an iteration make.
-Change follow(const Six& a, const Six& b, const SpringRows& rows, Spring& spring);
+/// Gap, slip, forces and state that the displacements of an iteration make. @return whether the state changed
+bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& spring);
 
 }  // namespace talus

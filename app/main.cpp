@@ -58,8 +58,9 @@ void add_formulation(CLI::App& verb, ModelArguments& args) {
           [&args](const std::string& name) {
             args.overrides.push_back("model.formulation=\"" + name + "\"");
           },
-          "contact_forces, or penalty: conventional DDA, for comparison; as model.formulation")
-      ->check(CLI::IsMember({"contact_forces", "penalty"}));
+          "contact_forces; for comparison penalty: conventional DDA, or as_printed: the paper's equations; as "
+          "model.formulation")
+      ->check(CLI::IsMember({"contact_forces", "penalty", "as_printed"}));
 }
 
 void add_strict(CLI::App& verb, ModelArguments& args) {

@@ -303,7 +303,7 @@ struct SafetyInput {
 };
 
 /// How blocks, contacts and time become equations.
-enum class Formulation { kContactForces, kPenalty };
+enum class Formulation { kContactForces, kPenalty, kAsPrinted };
 
 /// Of formulation = "penalty" alone.
 struct PenaltyInput {

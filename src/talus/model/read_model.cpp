@@ -1,4 +1,5 @@
 #include "talus/model/read_model.h"
+#include "talus/model/read_as_printed.h"
 
 #include <fmt/format.h>
 
@@ -58,6 +59,7 @@ class ModelReader : private SectionReader {
     read_output();
     read_safety();
     read_penalty_section(source_, model_, findings_);
+    refuse_as_printed(model_, findings_);
     for (const BlockInput& b : model_.blocks)
       check_material_of(b.kind, b.material, b.where, "block." + b.name);
     for (const GridInput& g : model_.grids) check_material_of(g.kind, g.material, g.where, "grid." + g.name);
@@ -131,8 +133,10 @@ class ModelReader : private SectionReader {
     model_.thickness = f.get("thickness", 1.0);
     model_.plane = f.get<std::string>("plane") == "stress" ? Plane::kStress : Plane::kStrain;
     model_.inertia = f.get<std::string>("inertia") == "lumped" ? Inertia::kLumped : Inertia::kConsistent;
-    model_.formulation =
-        f.get<std::string>("formulation") == "penalty" ? Formulation::kPenalty : Formulation::kContactForces;
+    const auto formulation = f.get<std::string>("formulation");
+    model_.formulation = formulation == "penalty"      ? Formulation::kPenalty
+                         : formulation == "as_printed" ? Formulation::kAsPrinted
+                                                       : Formulation::kContactForces;
     model_.gravity = f.get<Vec2>("gravity");
     model_.where_gravity = f.where("gravity");
     check_gravity();
@@ -351,12 +355,21 @@ class ModelReader : private SectionReader {
     const Fields f = read_table("contact");
     model_.default_joint = refer(f, "joint", model_.joints, "joint");
     ContactInput& contact = model_.contact;
-    contact.law = f.get<std::string>("law") == "smoothed" ? ContactLaw::kSmoothed : ContactLaw::kExact;
+    const bool printed = model_.formulation == Formulation::kAsPrinted;
+    contact.law = f.get<std::string>("law") == "smoothed" || (printed && !f.given("law"))
+                      ? ContactLaw::kSmoothed
+                      : ContactLaw::kExact;
+    if (printed && contact.law == ContactLaw::kExact)
+      findings_.error(f.where("law"), f.path_of("law"),
+                      "the contact equations of model.formulation = \"as_printed\" are smoothed",
+                      "leave it out, or use formulation = \"contact_forces\"");
     contact.alpha = f.get("alpha", contact.alpha);
     contact.give = f.get<std::string>("stiffness") != "none";
     contact.slop = f.get("slop", contact.slop);
     contact.smoothing_force = f.get("smoothing_force", contact.smoothing_force);
     contact.smoothing_slip = f.get("smoothing_slip", contact.smoothing_slip);
+    // the paper gives a width for friction alone
+    if (printed && !f.given("smoothing_force")) contact.smoothing_force = contact.smoothing_slip;
     for (const char* key : {"smoothing_force", "smoothing_slip"})
       if (f.given(key) && contact.law == ContactLaw::kExact)
         findings_.error(f.where(key), f.path_of(key), "belongs to law = \"smoothed\"");
@@ -379,6 +392,13 @@ class ModelReader : private SectionReader {
     const Fields f = read_table("solver");
     model_.solver.jacobian =
         f.get<std::string>("jacobian") == "difference" ? JacobianKind::kDifference : JacobianKind::kAnalytic;
+    if (model_.formulation == Formulation::kAsPrinted) {
+      if (!f.given("jacobian")) model_.solver.jacobian = JacobianKind::kDifference;
+      if (model_.solver.jacobian != JacobianKind::kDifference)
+        findings_.error(f.where("jacobian"), f.path_of("jacobian"),
+                        "model.formulation = \"as_printed\" solves by difference quotients",
+                        "leave it out, or use formulation = \"contact_forces\"");
+    }
     model_.solver.method = solver_called(f.get<std::string>("method"));
     model_.solver.second_solver = f.get("second_solver", true);
     model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));

@@ -41,7 +41,9 @@ std::vector<SectionSpec> action_sections() {
          .dimension = D::kForce,
          .range = kPositive,
          .default_text = "\"1 N\"",
-         .doc = "Width of the smoothed normal law."},
+         .doc =
+             "Width of the smoothed normal law. With `formulation = \"as_printed\"` it is a bare number, of metres and "
+             "newtons alike, and `smoothing_slip` unless given."},
         {.name = "smoothing_slip",
          .dimension = D::kLength,
          .range = kPositive,

@@ -78,11 +78,12 @@ std::vector<SectionSpec> sections_of_model() {
         {.name = "formulation",
          .type = K::kChoice,
          .default_text = "\"contact_forces\"",
-         .choices = {"contact_forces", "penalty"},
+         .choices = {"contact_forces", "penalty", "as_printed"},
          .doc =
              "`contact_forces`: they are the unknowns of an explicit step. `penalty`: conventional DDA, implicit steps with "
              "penalty springs and open-close iteration (theory 13), for comparison; boundaries, bolts, driven blocks, damping and "
-             "relaxation are refused then."}}},
+             "relaxation are refused then. `as_printed`: the contact equations of Zhao et al. 2016 letter by letter (theory 5.9), to show "
+             "what they do: no product."}}},
 
       {"penalty",
        SectionShape::kTable,
@@ -91,7 +92,7 @@ std::vector<SectionSpec> sections_of_model() {
          .dimension = D::kStress,
          .range = kPositive,
          .doc =
-             "Stiffness of the normal spring of a contact point, per thickness; none: 40 times the largest Young's modulus. Usual are 10 to 100 times Young's modulus. Joints with a "
+             "Stiffness of the normal spring of a contact point, per thickness; none: 40 times the largest Young's modulus, or, where no block deforms, that on which the heaviest sinks by 3e-8 of its size. Usual are 10 to 100 times Young's modulus. Joints with a "
              "normal_stiffness of their own keep it along faces."},
         {.name = "shear_share",
          .range = {.min = 0, .max = 10, .min_open = true},

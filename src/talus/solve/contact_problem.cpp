@@ -44,20 +44,23 @@ bool is_smoothed(const PointRows& p) { return p.lower == 0 && p.cohesion == 0; }
 
 constexpr double kTwoOverPi = 2 / 3.14159265358979323846;
 
-// Theory 5.6.
+// Theory 5.6, 5.9.
 Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::VectorXd& p,
                                   const Eigen::VectorXd& e) {
   Eigen::VectorXd h(problem.size());
   const std::vector<RowState> states = row_states(problem, p, e);
   for (Eigen::Index r = 0; r < h.size(); ++r) {
     const PointRows& rows = problem.rows[static_cast<size_t>(r / 2)];
-    const RowState& s = states[static_cast<size_t>(r)];
+    const RowState& state = states[static_cast<size_t>(r)];
     const double w = problem.diagonal[r];
     if (!is_smoothed(rows)) {
-      h[r] = s.free ? e[r] : w * (p[r] - s.held_at);
+      h[r] = state.free ? e[r] : w * (p[r] - state.held_at);
     } else if (r % 2 == 0) {
-      const double a = e[r] / w, b = p[r], eps = problem.smoothing.impulse;
-      h[r] = w * (std::min(a, b) - eps * std::log1p(std::exp(-std::abs(a - b) / eps)));
+      const Smoothing& s = problem.smoothing;
+      // as printed, metres and newtons: no scale of the row makes them one
+      const double a = s.printed ? e[r] * s.dt : e[r] / w, b = s.printed ? p[r] / s.dt_kick : p[r];
+      const double least = std::min(a, b) - s.impulse * std::log1p(std::exp(-std::abs(a - b) / s.impulse));
+      h[r] = s.printed ? least / s.dt : w * least;
     } else {
       // slip of this step: the anchor of the exact law does not exist here
       const double slip = e[r] - rows.row[1].bias;

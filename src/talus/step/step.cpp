@@ -67,9 +67,16 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   rows.finish();
 }
 
-Smoothing smoothing(const ContactInput& contact, const StepClock& clock) {
+Smoothing smoothing(const Model& model, const StepClock& clock) {
+  const ContactInput& contact = model.contact;
   if (contact.law == ContactLaw::kExact) return {};
-  return {true, contact.smoothing_force * clock.dt_kick, contact.smoothing_slip / clock.dt};
+  const bool printed = model.formulation == Formulation::kAsPrinted;
+  return {true,
+          printed,
+          printed ? contact.smoothing_force : contact.smoothing_force * clock.dt_kick,
+          contact.smoothing_slip / clock.dt,
+          clock.dt,
+          clock.dt_kick};
 }
 
 void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
@@ -77,7 +84,7 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
   const StepProblem problem{work.mobility,
                             work.rate_free,
                             work.clock.dt,
-                            smoothing(scene.model.contact, work.clock),
+                            smoothing(scene.model, work.clock),
                             work.rows,
                             state.rate,
                             work.profile,

@@ -103,7 +103,9 @@ class BoundaryMaker {
   void add_point(int boundary, int column, const SelectedEdge& e, Vec2 end, Vec2 other) {
     const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
     const Impedance z = impedance(model_, material_behind(input, layout_, e.block));
-    const double area = 0.5 * e.length() * model_.thickness;
+    // as printed there is no area (theory 5.9)
+    const double area =
+        model_.formulation == Formulation::kAsPrinted ? 0.5 : 0.5 * e.length() * model_.thickness;
     BoundaryPoint p;
     p.boundary = boundary, p.block = e.block, p.column = column;
     p.arm = end - blocks_.centroid[static_cast<size_t>(e.block)];
@@ -229,6 +231,12 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
                  push = free_field_force(set, point, columns);
       for (size_t k = 0; k < 2; ++k) {
         const double z = point.dashpot[k], force = state.boundaries[i].kept[k] + dot(axis[k], push);
+        if (model.formulation ==
+            Formulation::kAsPrinted) {  // the velocity of the new half step alone (theory 5.9)
+          p.row[k].compliance = 1 / (z * clock.dt_kick);
+          p.row[k].bias = -force / z;
+          continue;
+        }
         p.row[k].compliance = 2 / (z * clock.dt_kick);
         p.row[k].bias = u[k] - 2 * dot(axis[k], target) - 2 * force / z;
       }

@@ -110,6 +110,27 @@ TEST_CASE("the analytic Jacobian equals difference quotients at random states") 
   }
 }
 
+TEST_CASE("the normal law as printed is eq. 26 of metres and newtons") {
+  std::mt19937 random(7);
+  const BlockSet blocks = make_squares(3);
+  RowSet set;
+  PointRows row;
+  row.block_a = 1, row.block_b = 0;
+  row.normal = {0, 1}, row.lower = 0, row.friction = 0.6, row.cohesion = 0;
+  set.add(row, {0, 0});
+  constexpr double kDt = 2e-3, kKick = 1e-3, kEpsilon = 0.3;
+  for (int trial = 0; trial < 20; ++trial) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    ContactProblem problem = build_problem(mobilities(blocks, 0.9), set, {0}, random_rates(random, blocks));
+    problem.smoothing = {true, true, kEpsilon, 6e-8 / kDt, kDt, kKick};
+    Eigen::VectorXd p(2);
+    p << unit(random) * kKick, 0;
+    const double gap = kDt * (problem.influence * p + problem.velocity_free)[0], force = p[0] / kKick;
+    const double printed = -kEpsilon * std::log(std::exp(-gap / kEpsilon) + std::exp(-force / kEpsilon));
+    CHECK(residual(problem, p)[0] * kDt == doctest::Approx(printed).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Newton solves random problems to round-off by the separate measure") {
   std::mt19937 random(2);
   const BlockSet blocks = make_squares(9);

@@ -5,7 +5,10 @@
 
 #include <array>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -46,14 +49,111 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-// residual | what | computed | exact | error | pass | stretch | reached
-void print_row(const std::vector<std::string>& c, bool markdown) {
+// A comparison: residual | what | computed | exact | error | allowed | stretch | reached
+using Cells = std::vector<std::string>;
+
+std::FILE* started(const std::string& cases, const std::string& formulation) {
+  std::string command = shell_quoted(cases_program().string()) + " --no-version --no-colors";
+  if (!formulation.empty()) command = "TALUS_TEST_FORMULATION=" + shell_quoted(formulation) + " " + command;
+  if (!cases.empty()) command += " " + shell_quoted("--test-case=" + cases);
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  if (!pipe) throw FileError("the verification cases cannot be started");
+  return pipe;
+}
+
+// Cells of each line that the cases print once begun with "residual | " or "not computed | "; other lines whole.
+template <class Take, class Rest>
+int read_lines(std::FILE* pipe, const Take& take, const Rest& rest) {
+  std::set<std::string> seen;
+  std::array<char, 4096> buffer{};
+  while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe)) {
+    const std::string line = buffer.data();
+    if (line.rfind("residual | ", 0) != 0 && line.rfind("not computed | ", 0) != 0)
+      rest(line);
+    else if (seen.insert(line).second)
+      take(cells_of(line));
+  }
+  return pclose(pipe);
+}
+
+// What another formulation made of the cases.
+struct Column {
+  std::string formulation;
+  std::map<std::string, std::deque<Cells>> rows;                  // by what is compared
+  std::vector<std::pair<std::string, std::string>> not_computed;  // case, why
+  int within = 0, missed = 0, none = 0;
+};
+
+Column column_of(const std::string& cases, const std::string& formulation) {
+  Column c;
+  c.formulation = formulation;
+  std::set<std::pair<std::string, std::string>> told;
+  read_lines(
+      started(cases, formulation),
+      [&](const Cells& cells) {
+        if (cells.front() == "residual" && cells.size() > 6)
+          c.rows[cells[1]].push_back(cells);
+        else if (cells.front() == "not computed" && told.insert({cells[1], cells[2]}).second)
+          c.not_computed.push_back({cells[1], cells[2]});
+      },
+      [](const std::string&) {});
+  return c;
+}
+
+bool is_within(const Cells& c) {
+  // a bound from below has no error
+  return c[4].empty() ? std::stod(c[2]) >= std::stod(c[5]) : std::stod(c[4]) <= std::stod(c[5]);
+}
+
+// The two cells of a column: what it computed, and its error.
+std::array<std::string, 2> cells_in(Column& column, const std::string& what) {
+  std::deque<Cells>& found = column.rows[what];
+  if (found.empty()) {
+    ++column.none;
+    return {"-", ""};
+  }
+  const Cells c = found.front();
+  found.pop_front();
+  const bool within = is_within(c);
+  ++(within ? column.within : column.missed);
+  return {c[2], (c[4].empty() ? "" : c[4] + " ") + (within ? "within" : "misses")};
+}
+
+void print_head(const VerifyArguments& args) {
+  const std::string other = args.formulation.empty() ? "" : "by " + args.formulation;
+  if (args.markdown) {
+    fmt::print("| what | computed | exact | error | allowed |{}\n|---|---|---|---|---|{}\n",
+               other.empty() ? "" : fmt::format(" {} | error |", other), other.empty() ? "" : "---|---|");
+  } else {
+    fmt::print("{:<62} {:>15} {:>15} {:>9} {:>8}", "what", "computed", "exact", "error", "allowed");
+    if (!other.empty()) fmt::print(" {:>15} {:>15}", other, "error");
+    fmt::print("\n");
+  }
+}
+
+void print_row(const Cells& c, bool markdown, Column* column) {
   if (markdown)
-    fmt::print("| {} | {} | {} | {} | {}{} |\n", c[1], c[2], c[3], c[4], c[5],
+    fmt::print("| {} | {} | {} | {} | {}{} |", c[1], c[2], c[3], c[4], c[5],
                c.back() == "known defect" ? ", known defect" : "");
   else
-    fmt::print("{:<62} {:>15} {:>15} {:>9} {:>8}\n", c[1], c[2], c[3], c[4], c[5]);
+    fmt::print("{:<62} {:>15} {:>15} {:>9} {:>8}", c[1], c[2], c[3], c[4], c[5]);
+  if (column) {
+    const auto [value, error] = cells_in(*column, c[1]);
+    if (markdown)
+      fmt::print(" {} | {} |", value, error);
+    else
+      fmt::print(" {:>15} {:>15}", value, error);
+  }
+  fmt::print("\n");
   std::fflush(stdout);
+}
+
+void print_end(const Column& c, bool markdown) {
+  fmt::print("\nBy {}: {} comparisons within what is allowed, {} not, {} not computed{}\n", c.formulation,
+             c.within, c.missed, c.none, c.not_computed.empty() ? "" : ":");
+  if (markdown && !c.not_computed.empty()) fmt::print("\n");
+  for (const auto& [name, why] : c.not_computed)
+    markdown ? fmt::print("- {}: {}\n", name, why) : fmt::print("  {}\n    {}\n", name, why);
 }
 
 }  // namespace
@@ -62,39 +162,44 @@ void add_verify_arguments(CLI::App& verb, VerifyArguments& args) {
   verb.add_option("CASES", args.cases,
                   "only cases whose name holds this, for example A5; without: all, some minutes");
   verb.add_flag("--markdown", args.markdown, "as a table for a document");
+  verb.add_option(
+          "--formulation", args.formulation,
+          "beside them, in a column of its own, what penalty makes of the cases (A1 to A8) or as_printed (A1 to A3)")
+      ->check(CLI::IsMember({"penalty", "as_printed"}));
   verb.footer("Example: talus verify \"bar impact\"");
 }
 
 int verify_command(const VerifyArguments& args) {
-  std::string command = shell_quoted(cases_program().string()) + " --no-version --no-colors";
-  if (!args.cases.empty()) command += " " + shell_quoted("--test-case=*" + args.cases + "*");
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (!pipe) throw FileError("the verification cases cannot be started");
-  if (args.markdown)
-    fmt::print("| what | computed | exact | error | allowed |\n|---|---|---|---|---|\n");
-  else
-    fmt::print("{:<62} {:>15} {:>15} {:>9} {:>8}\n", "what", "computed", "exact", "error", "allowed");
-  std::set<std::string> seen;
-  std::string rest, line;
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe)) {
-    line = buffer.data();
-    if (line.rfind("residual | ", 0) != 0) {
-      rest += line;
-    } else if (seen.insert(line).second) {
-      const std::vector<std::string> cells = cells_of(line);
-      if (cells.size() > 6) print_row(cells, args.markdown);
-    }
+  std::string cases = args.cases.empty() ? "" : "*" + args.cases + "*";
+  std::optional<Column> column;
+  if (!args.formulation.empty()) {
+    // the others are tests of a part of one formulation; the printed equations are for impact and sliding
+    const char last = args.formulation == "as_printed" ? '3' : '8';
+    if (cases.empty())
+      for (char k = '1'; k <= last; ++k) cases += fmt::format("{}A{}*", cases.empty() ? "" : ",", k);
+    column = column_of(cases, args.formulation);
   }
-  const int status = pclose(pipe);
+  std::FILE* pipe = started(cases, "");
+  print_head(args);
+  std::string rest;
+  int compared = 0;
+  const int status = read_lines(
+      pipe,
+      [&](const Cells& cells) {
+        if (cells.front() != "residual" || cells.size() <= 6) return;
+        print_row(cells, args.markdown, column ? &*column : nullptr);
+        ++compared;
+      },
+      [&rest](const std::string& line) { rest += line; });
   const bool passed = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (seen.empty() && passed && !args.cases.empty())
+  if (compared == 0 && passed && !args.cases.empty())
     throw Error(kExitUsage,
                 fmt::format("no case has \"{}\" in its name, or none that has compares numbers", args.cases));
   if (!passed)
     fmt::print("\n{}\n", rest);  // what failed, in the words of the test program
   else if (!args.markdown)
-    fmt::print("\n{} comparisons, every one within what is allowed\n", seen.size());
+    fmt::print("\n{} comparisons, every one within what is allowed\n", compared);
+  if (column) print_end(*column, args.markdown);
   return passed ? kExitOk : kExitInternal;
 }
 

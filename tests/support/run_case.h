@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/formulation.h"
 #include "talus/talus.h"
 
 namespace talus::test {
@@ -57,13 +58,15 @@ inline CaseResult run_case(const std::string& model, const std::vector<std::stri
   if (const char* solver = std::getenv("TALUS_TEST_SOLVER");
       solver && model.find("method =") == std::string::npos && model.find("smoothed") == std::string::npos)
     all.insert(all.begin(), std::string("solver.method=") + solver);
-  PreparedRun prepared = prepare_run(file, model, all, findings);
+  PreparedRun prepared = by_formulation(all, [&] { return prepare_run(file, model, all, findings); });
   CaseResult result;
   result.state = start_state(prepared.scene);
   if (prepare) prepare(prepared.scene, result.state);
   MemoryObserver observer(prepared.scene, watch);
   result.run = run_stages(prepared.scene, prepared.plans, result.state, observer);
   result.table = observer.table;
+  if (!result.run.failure.empty() && !other_formulation().empty())
+    print_reason("not computed", result.run.failure);
   INFO(result.run.failure);
   REQUIRE(result.run.failure.empty());
   CHECK(result.run.failed_steps == 0);

@@ -23,6 +23,7 @@ struct Tunnel {
   int rings, sectors;                             // of the quarter
   double vertical = 30e6, horizontal = 15e6;      // in-situ pressures [Pa]
   double shear = 2.8e9, bulk = 3.9e9;             // moduli of the rock [Pa]
+  bool at_once = false;                           // the core goes in a static stage, with all its tractions
   static constexpr double kWall = 1, kEdge = 10;  // radii [m]
 
   Elastic rock() const {
@@ -142,6 +143,12 @@ inline std::string Tunnel::text(const std::string& mesh_file, const TriangleMesh
       out += fmt::format("{}[{:.17g}, {:.17g}]", out.empty() ? "" : ", ", v.x, v.y);
     return "[" + out + "]";
   };
+  const std::string dig = at_once ? "kind = \"static\"\nduration = 1"
+                                  : fmt::format(
+                                        "kind = \"dynamic\"\nduration = \"10 ms\"\nelasticity = "
+                                        "\"implicit\"\ntime_step = {:.17g}\ndamping_mass = \"400 "
+                                        "1/s\"\nrelaxation = [[0, 0], [\"10 ms\", 1]]",
+                                        step);
   std::string out = fmt::format(R"(talus = 1
 [material.rock]
 density = 2600
@@ -177,13 +184,8 @@ kind = "static"
 duration = 1
 [[stage]]
 name = "dig"
-kind = "dynamic"
-duration = "10 ms"
-elasticity = "implicit"
-time_step = {step:.17g}
-damping_mass = "400 1/s"
+{dig}
 excavate = ["core"]
-relaxation = [[0, 0], ["10 ms", 1]]
 [[stage]]
 name = "rest"
 kind = "static"
@@ -197,7 +199,7 @@ unbalanced = 1e-6
 tolerance = 1e-9
 )",
                                 rock().young, rock().poisson, -horizontal, -vertical, fmt::arg("edge", kEdge),
-                                fmt::arg("step", step), fmt::arg("wall", kWall + 1e-6),
+                                fmt::arg("step", step), fmt::arg("dig", dig), fmt::arg("wall", kWall + 1e-6),
                                 fmt::arg("first", mesh_file.empty() ? "t0" : "ring[0]"));
   std::vector<Vec2> core = {{0, 0}};
   for (int j = 0; j <= sectors; ++j) core.push_back(corner(0, j));

@@ -23,6 +23,7 @@ constexpr int kRings = 8, kSectors = 12;
 Tunnel tunnel(int sectors) {
   Tunnel t{kRings, sectors};
   t.vertical /= 100, t.horizontal /= 100;
+  t.at_once = other_formulation() == "penalty";
   return t;
 }
 

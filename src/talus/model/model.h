@@ -315,7 +315,7 @@ struct PenaltyInput {
   bool exact_rotation = false;
   bool mean_acceleration = false;
   double dynamic_factor = 1;  // of dynamic stages
-  int most_iterations = 6;
+  int most_iterations = 25;
   double largest_displacement = 0.02;  // of a step, share of half the height of the model
 };
 

@@ -20,6 +20,9 @@ constexpr int kMostFrictionTurns = 30;
 // Change of the pressure that friction goes by, as share of it, below which it has found it.
 constexpr double kSamePressure = 1e-3;
 
+// Iterations after which gaps and slips that are none (springs.h) double from iteration to iteration, and how often.
+constexpr int kFirmIterations = 6, kWidenings = 7;
+
 Six part_of(const std::vector<double>& x, size_t block) {
   Six d;
   std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * block), 6, d.begin());
@@ -291,6 +294,8 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool his
                       state.time));
     solve_with_friction();
     ++report.iterations;
+    if (turn >= kFirmIterations && turn < kFirmIterations + kWidenings)
+      for (Spring& s : springs_) s.same[0] *= 2, s.same[1] *= 2;
     int changes = 0;
     for (size_t k = 0; k < springs_.size(); ++k)
       changes += follow(displacement_[static_cast<size_t>(springs_[k].block_a)],

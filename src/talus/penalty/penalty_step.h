@@ -19,7 +19,7 @@ struct PenaltySettings {
   Newmark scheme;
   bool exact_rotation = false;  // false: blocks grow as they turn, and stress keeps its axes
   double dynamic_factor = 1;    // share of the velocity that goes on to the next step: 0 static, 1 dynamic
-  int most_iterations = 6;      // open-close iterations of a step, before it is cut to a third
+  int most_iterations = 25;     // open-close iterations of a step, before it is cut to a third
   int most_cuts = 12;           // of one step in a row
   double largest_displacement =
       std::numeric_limits<double>::infinity();  // of a step, above which it is cut [m]

@@ -10,13 +10,16 @@ namespace talus {
 
 namespace {
 
-// Gaps and slips of a step below this share of the smaller block change no state: the rounding of what hardly touches
-// would open and close it without end.
-constexpr double kSamePlace = 1e-10;
+// Gaps and slips that are none: this share of the smaller block (rounding), and of what the springs give under the largest
+// force in the model. What hardly touches would open and close without end.
+constexpr double kSamePlace = 1e-13, kSameForce = 1e-4;
 
 Vec2 arm_now(const State& state, int block, Vec2 X) {
   return X + state.strain_part[static_cast<size_t>(block)] * X;
 }
+
+// Whether nothing holds it, whatever presses.
+bool is_smooth(const Spring& s) { return s.bears.limit(1) == 0; }
 
 // A joint's own stiffness where it has one over an area, else the penalty.
 double stiffness_of(const JointLaw& law, int k, double area, double penalty) {
@@ -61,8 +64,18 @@ Vec2 closure_of(const Scene& scene, const ContactPair& pair, const Contact& c, c
           dot(turn_right(normal), traction) * area / s.stiffness[1]};
 }
 
+// The largest force in the model: of a contact, or the weight of a block [N].
+double largest_force(const Scene& scene, const State& state) {
+  double largest = 0;
+  for (const Contact& c : state.contacts) largest = std::max(largest, c.force[0]);
+  const double g = norm(scene.model.gravity);
+  for (size_t i = 0; i < scene.blocks.mass.size(); ++i)
+    if (scene.blocks.moves_freely(static_cast<int>(i))) largest = std::max(largest, scene.blocks.mass[i] * g);
+  return largest;
+}
+
 void gather_contact(const Scene& scene, const State& state, const ContactPair& pair, size_t i,
-                    const std::array<double, 2>& stiffness, std::vector<Spring>& springs) {
+                    const std::array<double, 2>& stiffness, double largest, std::vector<Spring>& springs) {
   static const JointLaw kNone;
   const BlockSet& blocks = scene.blocks;
   const Contact& c = state.contacts[i];
@@ -80,8 +93,10 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   s.arm_b = arm_now(state, c.key.block_b, foot);
   for (int k = 0; k < 2; ++k)
     s.stiffness[static_cast<size_t>(k)] = stiffness_of(law, k, area, stiffness[static_cast<size_t>(k)]);
-  s.same = kSamePlace * std::min(blocks.size[static_cast<size_t>(c.key.block_a)],
-                                 blocks.size[static_cast<size_t>(c.key.block_b)]);
+  for (size_t k = 0; k < 2; ++k)
+    s.same[k] = kSamePlace * std::min(blocks.size[static_cast<size_t>(c.key.block_a)],
+                                      blocks.size[static_cast<size_t>(c.key.block_b)]) +
+                kSameForce * largest / s.stiffness[k];
   const Vec2 closure = closure_of(scene, pair, c, s, edge, foot);
   s.gap = over.gap + closure.x;
   const double place = -over.along * norm(edge);
@@ -94,8 +109,8 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
     s.pressing = state.dt_before == 0 ? std::max(0.0, -s.stiffness[0] * s.gap) : 0;
   } else if (c.force[0] > 0 || s.gap < 0) {
     const bool slid = std::isnan(c.anchor) || c.memory == Contact::kPassed;
-    s.state = slid && c.force[1] != 0 ? SpringState::kSliding : SpringState::kStuck;
-    s.side = c.force[1] > 0 ? -1 : 1;  // friction opposes it
+    s.state = is_smooth(s) || (slid && c.force[1] != 0) ? SpringState::kSliding : SpringState::kStuck;
+    if (slid) s.side = c.force[1] > 0 ? -1 : 1;  // friction opposes it
     s.slip = slid ? -c.force[1] / s.stiffness[1] : place - c.anchor;
   }
   springs.push_back(s);
@@ -111,9 +126,10 @@ void gather_springs(const Scene& scene, const State& state, const std::array<dou
     if (!state.face[f].broken && scene.blocks.interact(face.block_a, face.block_b))
       gather_face(scene, state, f, stiffness, springs);
   }
+  const double largest = largest_force(scene, state);
   for (const ContactPair& pair : state.pairs)
     for (int k = 0; k < pair.count; ++k)
-      gather_contact(scene, state, pair, static_cast<size_t>(pair.begin + k), stiffness, springs);
+      gather_contact(scene, state, pair, static_cast<size_t>(pair.begin + k), stiffness, largest, springs);
 }
 
 SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {
@@ -149,28 +165,29 @@ bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
   s.force = {};
   switch (s.state) {
     case SpringState::kOpen:
-      if (s.gap_after >= -s.same) return false;
-      // it sticks where it comes in
-      s.state = SpringState::kStuck, s.slip = 0;
+      if (s.gap_after >= -s.same[0]) return false;
+      // it sticks where it comes in, unless it has slid in this step, or nothing would hold it
+      s.state = s.side != 0 || is_smooth(s) ? SpringState::kSliding : SpringState::kStuck;
+      s.slip = 0, s.pressing = 0;
       return true;
     case SpringState::kStuck:
-      if (normal <= -s.bears.tension - s.stiffness[0] * s.same) {
+      if (normal <= -s.bears.tension - s.stiffness[0] * s.same[0]) {
         s.state = SpringState::kOpen;
         return true;
       }
       s.force = {normal, shear};
-      if (std::abs(shear) <= s.bears.limit(normal) + s.stiffness[1] * s.same) return false;
+      if (std::abs(shear) <= s.bears.limit(normal) + s.stiffness[1] * s.same[1]) return false;
       s.state = SpringState::kSliding, s.side = shear > 0 ? -1 : 1;
       s.pressing = std::max(0.0, normal);
       return true;
     case SpringState::kSliding: {
-      if (s.gap_after > s.same) {
+      if (s.gap_after > s.same[0]) {
         s.state = SpringState::kOpen;
         return true;
       }
       const double friction = s.bears.limit(s.pressing);
       s.force = {normal, -s.side * friction};
-      if (s.slip_step * s.side >= -s.same) return false;
+      if (s.slip_step * s.side >= -s.same[1] || is_smooth(s)) return false;
       // it came back: it sticks, with the force that it slid with
       s.state = SpringState::kStuck, s.slip = s.side * friction / s.stiffness[1];
       return true;

@@ -22,7 +22,7 @@ struct Spring {
   double gap = 0;                     // before the step, > 0 apart [m]
   double slip = 0;                    // elastic slip before the step of what sticks [m]
   JointStrength bears;                // forces [N]
-  double same = 0;                    // gaps and slips that are none [m]
+  std::array<double, 2> same{};       // gaps and slips that are none [m]
   SpringState state = SpringState::kOpen;
   double side = 0;      // +-1: which way it slides
   double pressing = 0;  // normal force that friction goes by [N]

@@ -129,10 +129,7 @@ void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& sta
   for (size_t i = 0; i < n; ++i) {
     Tile& k = own_[i];
     const int block = static_cast<int>(i);
-    if (!blocks.moves_freely(block)) {
-      for (size_t j = 0; j < 6; ++j) k[7 * j] = 1;
-      continue;
-    }
+    if (!blocks.moves_freely(block)) continue;  // below
     const Mat2 F = shape_of(state, i);
     const bool deforms = blocks.kind[i] == BlockKind::kDeformable;
     Tile mass = mass_tile(blocks.mass[i], F * blocks.inertia[i] * transpose(F));
@@ -168,6 +165,12 @@ void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& sta
     }
     pushed_[i] = force;
   }
+  // rows of what does not move: in the scale of the others
+  double scale = 0;
+  for (const Tile& k : own_) scale = std::max(scale, k[0]);
+  for (size_t i = 0; i < n; ++i)
+    if (!blocks.moves_freely(static_cast<int>(i)))
+      for (size_t j = 0; j < 6; ++j) own_[i][7 * j] = scale > 0 ? scale : 1;
   held_.clear();
   for (size_t p = 0; p < scene_.supported.size(); ++p) {
     const SupportedPoint& point = scene_.supported[p];
@@ -307,6 +310,7 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool his
       farthest = std::max(farthest, std::hypot(displacement_[i][0], displacement_[i][1]));
     if (farthest > settings.largest_displacement) return false;
     report.largest_displacement = std::max(report.largest_displacement, farthest);
+    report.condition = std::max(report.condition, factor_.pivot_ratio());
     finish(settings, dt, state, report);
     return true;
   }

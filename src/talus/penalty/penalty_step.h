@@ -32,6 +32,7 @@ struct PenaltyReport {
   int changes = 0;                  // states that changed, over all iterations
   double largest_displacement = 0;  // of a centroid in a part [m]
   double penetration = 0;           // deepest, of a contact [m]
+  double condition = 1;             // largest pivot of the matrix over its smallest, worst part
 };
 
 /// Gives a state what such steps carry on: the stress that blocks begin with, and accelerations where the scheme goes

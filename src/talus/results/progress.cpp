@@ -133,8 +133,9 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   }
   if (r.penalty > 0)
     out += fmt::format(
-        "  penalty         normal springs of {:.3g} N/m; {} of {} steps cut, {} parts in all; deepest penetration {:.3g} m\n",
-        r.penalty, r.cut_steps, r.steps, r.parts, r.penetration);
+        "  penalty         normal springs of {:.3g} N/m; {} of {} steps cut, {} parts in all; deepest penetration {:.3g} m; "
+        "largest pivot over smallest {:.1g}\n",
+        r.penalty, r.cut_steps, r.steps, r.parts, r.penetration, r.condition);
   if (r.closed_share > 0.05)
     out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);
   if (audit) {

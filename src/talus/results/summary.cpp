@@ -137,7 +137,8 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
     j["penalty"] = {{"normal_stiffness [N/m]", r.penalty},
                     {"steps_cut", r.cut_steps},
                     {"parts", r.parts},
-                    {"penetration_deepest [m]", r.penetration}};
+                    {"penetration_deepest [m]", r.penetration},
+                    {"condition_largest", r.condition}};
   if (bolts.bolts > 0)
     j["bolts"] = {{"count", bolts.bolts},
                   {"yielded", bolts.yielded},

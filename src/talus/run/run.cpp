@@ -221,6 +221,7 @@ class Runner {
     result_.penalty = penalty_settings_.stiffness[0];
     result_.cut_steps += p.parts > 1, result_.parts += p.parts;
     result_.penetration = std::max(result_.penetration, p.penetration);
+    result_.condition = std::max(result_.condition, p.condition);
   }
 
   // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not

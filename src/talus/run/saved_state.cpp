@@ -88,7 +88,7 @@ void exchange_standing(auto& x, auto& standing) {
   x("run.closed_share", r.closed_share), x("run.closed_time", r.closed_time),
       x("run.closed_row", r.closed_row);
   x("run.penalty", r.penalty), x("run.cut_steps", r.cut_steps), x("run.parts", r.parts);
-  x("run.penetration", r.penetration);
+  x("run.penetration", r.penetration), x("run.condition", r.condition);
   x("run.energy", r.energy);
   x("run.largest_left_over", r.largest_left_over), x("run.largest_energy", r.largest_energy);
   x("run.wall_seconds", r.wall_seconds), x("run.cpu_seconds", r.cpu_seconds);

@@ -476,6 +476,17 @@ bool BlockFactor::factorize(const std::vector<Tile>& diagonal, const std::vector
   return good;
 }
 
+double BlockFactor::pivot_ratio() const {
+  double least = std::numeric_limits<double>::infinity(), most = 0;  // of reciprocals
+  for (const Front& front : fronts_)
+    for (size_t i = 0; i < front.own.size(); ++i) {
+      const double* strip = front.columns.data() + own_strip(i / 2) + kStrip * kStrip * (i / 2);
+      for (size_t k = 6 * (i % 2); k < 6 * (i % 2) + 6; ++k)
+        least = std::min(least, strip[kStrip * k + k]), most = std::max(most, strip[kStrip * k + k]);
+    }
+  return most > 0 ? (most / least) * (most / least) : 1;
+}
+
 // Numbers of own blocks and of the boundary, side by side.
 void BlockFactor::fetch(const Front& front, const double* x, std::vector<double>& y) {
   const size_t own = front.own_strips();

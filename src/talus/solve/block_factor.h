@@ -40,6 +40,10 @@ class BlockFactor {
   /// @return false when the matrix is not positive definite
   bool factorize(const std::vector<Tile>& diagonal, const std::vector<Tile>& beside, const Workers& workers);
 
+  /// Largest pivot over smallest: a lower bound of the condition of the matrix, in its own units.
+  /// @pre  factorize() has succeeded
+  double pivot_ratio() const;
+
   /// @param x  in: right-hand side, six numbers a block; out: the solution
   /// @pre  factorize() has succeeded
   void solve(std::vector<double>& x, const Workers& workers) const;

@@ -164,4 +164,18 @@ TEST_CASE("block factor: fill grows hardly more than the sheet") {
   }
 }
 
+TEST_CASE("block factor: the ratio of its pivots") {
+  // of a diagonal matrix these are its numbers; an odd count of blocks leaves half a strip of padding
+  for (const int count : {1, 4, 7}) {
+    std::vector<Tile> diagonal(static_cast<size_t>(count));
+    for (int i = 0; i < count; ++i)
+      for (size_t k = 0; k < 6; ++k)
+        diagonal[static_cast<size_t>(i)][7 * k] = 20 + i + 0.1 * static_cast<double>(k);
+    BlockFactor factor;
+    factor.analyse({}, std::vector<Vec2>(static_cast<size_t>(count)));
+    REQUIRE(factor.factorize(diagonal, {}, Workers()));
+    CHECK(factor.pivot_ratio() == doctest::Approx((19.5 + count) / 20).epsilon(1e-12));
+  }
+}
+
 }  // namespace test_block_factor

@@ -52,26 +52,29 @@ std::vector<std::string> cells_of(const std::string& line) {
 // A comparison: residual | what | computed | exact | error | allowed | stretch | reached
 using Cells = std::vector<std::string>;
 
-std::FILE* started(const std::string& cases, const std::string& formulation) {
-  std::string command = shell_quoted(cases_program().string()) + " --no-version --no-colors";
-  if (!formulation.empty()) command = "TALUS_TEST_FORMULATION=" + shell_quoted(formulation) + " " + command;
+std::FILE* started(const std::string& cases, const std::string& variables) {
+  std::string command = variables + shell_quoted(cases_program().string()) + " --no-version --no-colors";
   if (!cases.empty()) command += " " + shell_quoted("--test-case=" + cases);
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (!pipe) throw FileError("the verification cases cannot be started");
   return pipe;
 }
 
-// Cells of each line that the cases print once begun with "residual | " or "not computed | "; other lines whole.
+// What the cases print: before a comparison its case, where these are put side by side; comparisons; why one is not computed.
 template <class Take, class Rest>
 int read_lines(std::FILE* pipe, const Take& take, const Rest& rest) {
-  std::set<std::string> seen;
+  std::string text;
   std::array<char, 4096> buffer{};
   while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe)) {
-    const std::string line = buffer.data();
-    if (line.rfind("residual | ", 0) != 0 && line.rfind("not computed | ", 0) != 0)
-      rest(line);
-    else if (seen.insert(line).second)
-      take(cells_of(line));
+    text += buffer.data();
+    if (text.back() != '\n') continue;  // a reason may be long
+    const bool ours = text.rfind("residual | ", 0) == 0 || text.rfind("not computed | ", 0) == 0 ||
+                      text.rfind("pair | ", 0) == 0;
+    if (ours)
+      take(cells_of(text), text);
+    else
+      rest(text);
+    text.clear();
   }
   return pclose(pipe);
 }
@@ -79,22 +82,26 @@ int read_lines(std::FILE* pipe, const Take& take, const Rest& rest) {
 // What another formulation made of the cases.
 struct Column {
   std::string formulation;
-  std::map<std::string, std::deque<Cells>> rows;                  // by what is compared
-  std::vector<std::pair<std::string, std::string>> not_computed;  // case, why
+  using Key = std::pair<std::string, std::string>;  // case, what is compared
+  std::map<Key, std::deque<Cells>> rows;
+  std::map<std::string, std::string> not_computed;  // by case, why
+  std::vector<std::string> missing;                 // cases with comparisons that have no number
   int within = 0, missed = 0, none = 0;
 };
 
 Column column_of(const std::string& cases, const std::string& formulation) {
   Column c;
   c.formulation = formulation;
-  std::set<std::pair<std::string, std::string>> told;
+  std::string of;
   read_lines(
-      started(cases, formulation),
-      [&](const Cells& cells) {
-        if (cells.front() == "residual" && cells.size() > 6)
-          c.rows[cells[1]].push_back(cells);
-        else if (cells.front() == "not computed" && told.insert({cells[1], cells[2]}).second)
-          c.not_computed.push_back({cells[1], cells[2]});
+      started(cases, "TALUS_TEST_PAIRED=1 TALUS_TEST_FORMULATION=" + shell_quoted(formulation) + " "),
+      [&](const Cells& cells, const std::string&) {
+        if (cells.front() == "pair")
+          of = cells[1];
+        else if (cells.front() == "residual" && cells.size() > 6)
+          c.rows[{of, cells[1]}].push_back(cells);
+        else if (cells.front() == "not computed")
+          c.not_computed.emplace(cells[1], cells[2]);
       },
       [](const std::string&) {});
   return c;
@@ -106,10 +113,11 @@ bool is_within(const Cells& c) {
 }
 
 // The two cells of a column: what it computed, and its error.
-std::array<std::string, 2> cells_in(Column& column, const std::string& what) {
-  std::deque<Cells>& found = column.rows[what];
+std::array<std::string, 2> cells_in(Column& column, const std::string& of, const std::string& what) {
+  std::deque<Cells>& found = column.rows[{of, what}];
   if (found.empty()) {
     ++column.none;
+    if (column.missing.empty() || column.missing.back() != of) column.missing.push_back(of);
     return {"-", ""};
   }
   const Cells c = found.front();
@@ -131,14 +139,15 @@ void print_head(const VerifyArguments& args) {
   }
 }
 
-void print_row(const Cells& c, bool markdown, Column* column) {
+// @param of  its case; runs: a model; column null: no further cells
+void print_row(const Cells& c, bool markdown, const std::string& of, bool runs, Column* column) {
   if (markdown)
     fmt::print("| {} | {} | {} | {} | {}{} |", c[1], c[2], c[3], c[4], c[5],
                c.back() == "known defect" ? ", known defect" : "");
   else
     fmt::print("{:<62} {:>15} {:>15} {:>9} {:>8}", c[1], c[2], c[3], c[4], c[5]);
   if (column) {
-    const auto [value, error] = cells_in(*column, c[1]);
+    const auto [value, error] = runs ? cells_in(*column, of, c[1]) : std::array<std::string, 2>{};
     if (markdown)
       fmt::print(" {} | {} |", value, error);
     else
@@ -150,10 +159,14 @@ void print_row(const Cells& c, bool markdown, Column* column) {
 
 void print_end(const Column& c, bool markdown) {
   fmt::print("\nBy {}: {} comparisons within what is allowed, {} not, {} not computed{}\n", c.formulation,
-             c.within, c.missed, c.none, c.not_computed.empty() ? "" : ":");
-  if (markdown && !c.not_computed.empty()) fmt::print("\n");
-  for (const auto& [name, why] : c.not_computed)
-    markdown ? fmt::print("- {}: {}\n", name, why) : fmt::print("  {}\n    {}\n", name, why);
+             c.within, c.missed, c.none, c.missing.empty() ? "" : ":");
+  if (markdown && !c.missing.empty()) fmt::print("\n");
+  for (const std::string& name : c.missing) {
+    const auto why = c.not_computed.find(name);
+    const std::string text =
+        why == c.not_computed.end() ? "the run does not come to what is compared" : why->second;
+    markdown ? fmt::print("- {}: {}\n", name, text) : fmt::print("  {}\n    {}\n", name, text);
+  }
 }
 
 }  // namespace
@@ -179,15 +192,19 @@ int verify_command(const VerifyArguments& args) {
       for (char k = '1'; k <= last; ++k) cases += fmt::format("{}A{}*", cases.empty() ? "" : ",", k);
     column = column_of(cases, args.formulation);
   }
-  std::FILE* pipe = started(cases, "");
+  std::FILE* pipe = started(cases, column ? "TALUS_TEST_PAIRED=1 " : "");
   print_head(args);
-  std::string rest;
+  std::string rest, of;
+  bool runs = true;  // a model: a comparison without one says nothing of a formulation
   int compared = 0;
+  std::set<std::string> seen;
   const int status = read_lines(
       pipe,
-      [&](const Cells& cells) {
+      [&](const Cells& cells, const std::string& line) {
+        if (cells.front() == "pair") of = cells[1], runs = cells[2] == "model";
         if (cells.front() != "residual" || cells.size() <= 6) return;
-        print_row(cells, args.markdown, column ? &*column : nullptr);
+        if (!column && !seen.insert(line).second) return;
+        print_row(cells, args.markdown, of, runs, column ? &*column : nullptr);
         ++compared;
       },
       [&rest](const std::string& line) { rest += line; });

@@ -180,6 +180,23 @@ TEST_CASE("command verify: a table of what the cases reach") {
   CHECK(shell(f, "TALUS_TEST_TOLERANCE=0 $talus verify \"incline\"").code == 1);
 }
 
+TEST_CASE("command verify --formulation: a column beside the cases, by case, and what it cannot compute") {
+  const Folder f;
+  const Outcome o = shell(f, "$talus verify --formulation penalty \"A2a\"");
+  CHECK(o.code == 0);  // what another formulation misses is no failure
+  has(o.text, "by penalty");
+  // both solvers of the case are one formulation: no row of the second is left out
+  const size_t rows = count(o.text, "A2a energy left over"), none = count(o.text, " - ");
+  CHECK(rows == 14);
+  CHECK(none == 0);
+  has(o.text, "0 not computed");
+  const Outcome bolts = shell(f, "$talus verify --formulation penalty --markdown \"A8b\"");
+  CHECK(bolts.code == 0);
+  has(bolts.text, "| by penalty | error |");
+  has(bolts.text, "- A8b anchored bolt across a sliding joint: bolt.rod: there are no bolts");
+  CHECK(shell(f, "$talus verify --formulation springs").code == 2);
+}
+
 TEST_CASE("command verify: without its cases it says what builds them") {
   const Folder f;
   const Outcome o = shell(f, "mkdir bin && cp \"$talus\" bin/talus && bin/talus verify");

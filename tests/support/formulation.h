@@ -27,6 +27,13 @@ inline std::string& case_with_model() {
 }
 inline bool says_something() { return other_formulation().empty() || case_with_model() == case_name(); }
 
+/// Before a comparison, where two formulations are put side by side (TALUS_TEST_PAIRED=1): the case, and whether a model
+/// was run in it.
+inline void print_pair() {
+  if (std::getenv("TALUS_TEST_PAIRED"))
+    fmt::print("pair | {} | {}\n", case_name(), case_with_model() == case_name() ? "model" : "no model");
+}
+
 /// The first line of what is wrong, without its file.
 inline void print_reason(const std::string& kind, std::string why) {
   why = why.substr(0, why.find('\n'));
@@ -39,9 +46,9 @@ inline void print_reason(const std::string& kind, std::string why) {
 template <class Run>
 auto by_formulation(std::vector<std::string>& overrides, const Run& model) {
   const std::string name = other_formulation();
+  case_with_model() = case_name();
   if (name.empty()) return model();
   overrides.push_back("model.formulation=\"" + name + "\"");
-  case_with_model() = case_name();
   try {
     return model();
   } catch (const std::exception& e) {

@@ -58,6 +58,8 @@ inline CaseResult run_case(const std::string& model, const std::vector<std::stri
   if (const char* solver = std::getenv("TALUS_TEST_SOLVER");
       solver && model.find("method =") == std::string::npos && model.find("smoothed") == std::string::npos)
     all.insert(all.begin(), std::string("solver.method=") + solver);
+  if (other_formulation() == "as_printed" && model.find("\nmethod =") != std::string::npos)
+    all.push_back("solver.method=\"newton\"");  // it has no other
   PreparedRun prepared = by_formulation(all, [&] { return prepare_run(file, model, all, findings); });
   CaseResult result;
   result.state = start_state(prepared.scene);

@@ -25,6 +25,7 @@ inline void check_close(const std::string& what, double value, double exact, dou
   if (scale == 0) scale = std::abs(exact);
   const double reached = std::abs(value - exact) / scale;
   REQUIRE(what.find('|') == std::string::npos);  // it stands between the columns of a table
+  print_pair();
   fmt::print("residual | {:<58} | {:>15.9g} | {:>15.9g} | {:>9.2e} | {:>7.3g} | {:>7.3g} |{}\n", what, value,
              exact, reached, pass, stretch, reached <= stretch ? " stretch" : "");
   std::fflush(stdout);
@@ -40,6 +41,7 @@ inline void check_below(const std::string& what, double value, double pass, doub
 /// Requires value >= pass (printed with the stretch goal).
 inline void check_above(const std::string& what, double value, double pass, double stretch) {
   if (!says_something()) return;
+  print_pair();
   fmt::print("residual | {:<58} | {:>15.9g} | {:>15} | {:>9} | {:>7.3g} | {:>7.3g} |{}\n", what, value,
              "at least", "", pass, stretch, value >= stretch ? " stretch" : "");
   std::fflush(stdout);

@@ -123,10 +123,14 @@ TEST_CASE("as printed: a block that should stand creeps, the faster the smaller 
 }
 
 TEST_CASE("as printed: a viscous edge has no area, and lets back what does not match") {
-  // z = rho c times 1 m2 against rho c times the height
+  // z = rho c times 1 m2 for each block edge against rho c times the height
   for (const double tall : {0.4, 1.0, 2.5})
     check_close(fmt::format("as printed: reflection of a bar {:g} m high", tall),
                 reflected(bar(tall), kPrinted), (tall - 1) / (tall + 1), 0.02, 0.005, 1);
+  std::string two = bar(1);
+  two.replace(two.find("cells = [16, 1]"), 15, "cells = [16, 2]");
+  check_close("as printed: reflection of a bar 1 m high in two rows", reflected(two, kPrinted),
+              (1.0 - 2) / (1 + 2), 0.02, 0.005, 1);
   check_below("the viscous edge of talus: reflection of a bar 0.4 m high", std::abs(reflected(bar(0.4), {})),
               0.02, 0.005);
 }
@@ -144,12 +148,17 @@ TEST_CASE("as printed: what the printed equations do not know is refused by its 
     return text;
   };
   holds(refused(with("\"30 deg\"\n", "cohesion = 1\n")),
-        "joint.face: cohesion and tensile strength stand in a table");
+        "joint.face: cohesion, tensile strength and strengths after slip");
   holds(refused(with("\"30 deg\"\n", "normal_stiffness = 1e9\nshear_stiffness = 1e9\n")),
         "joint.face: the printed equations know hard contacts");
   holds(refused(with("joint = \"face\"\n", "law = \"exact\"\n")), "contact.law");
   holds(refused(sound + "[solver]\njacobian = \"analytic\"\n"), "solver.jacobian");
-  holds(refused(sound + "[solver]\nmethod = \"gauss_seidel\"\n"), "solver");
+  holds(refused(sound + "[solver]\nmethod = \"gauss_seidel\"\n"),
+        "solver.method: model.formulation = \"as_printed\" solves by Newton's method");
+  CHECK(refused(sound + "[solver]\nmethod = \"gauss_seidel\"\n").find("solver.jacobian") ==
+        std::string::npos);
+  holds(refused(with("\"30 deg\"\n", "residual_friction_angle = \"20 deg\"\n")), "strengths after slip");
+  holds(refused(with("time_step = 0.001\n", "elasticity = \"implicit\"\n")), "stage.stand.elasticity");
   std::string in = bar(1);
   in.replace(in.find("kind = \"viscous\""), 16, "kind = \"viscous\"\nvelocity_x = \"pulse\"");
   holds(refused(in), "boundary.end: the printed edge (theory 5.9) lets waves out");

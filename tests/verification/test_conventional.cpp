@@ -186,6 +186,127 @@ point = [2.01, 1.99]
               -3.9e-5, 0.3, 0.1);
 }
 
+TEST_CASE("conventional DDA: friction that takes its own pressure away is found") {
+  // a thin rod that slides at 3 m/s leaning back at 60 deg: friction turns it off the floor, and iteration by whole steps
+  // swings between its pressure and none. By contact forces, another way to the same forces, as reference
+  for (const double friction : {50.0, 60.0, 70.0}) {
+    const std::string text = fmt::format(R"(talus = 1
+[model]
+gravity = [0, -9.81]
+[material.m]
+density = 2600
+[joint.face]
+friction_angle = "{} deg"
+[contact]
+joint = "face"
+[[stage]]
+name = "slide"
+kind = "dynamic"
+duration = "10 ms"
+time_step = "0.2 ms"
+[[monitor]]
+name = "foot"
+contact = ["rod", "floor"]
+)",
+                                         friction) +
+                             block_text("floor", {{-5, -1}, {5, -1}, {5, 0}, {-5, 0}}, "fixed") +
+                             block_text("rod",
+                                        {{0, 0},
+                                         {0.5, 0.8660254037844386},
+                                         {0.48267949192431137, 0.8760254037844386},
+                                         {-0.017320508075688773, 0.01}},
+                                        "rigid", "velocity = [3, 0]");
+    const CaseResult penalty = run_case(text, {"model.formulation=\"penalty\""}), forces = run_case(text);
+    for (const std::string column : {"foot.normal_force [N]", "foot.force_x [N]"}) {
+      if (other_formulation().empty())
+        check_close(fmt::format("conventional DDA: rod at {:g} deg, {}", friction, column),
+                    last(penalty, column), last(forces, column), 0.05, 0.01);
+    }
+  }
+}
+
+TEST_CASE("conventional DDA: a pebble slides as it does without a boulder far away") {
+  const double t = std::numbers::pi / 180,
+               exact = 0.5 * 9.81 * (std::sin(30 * t) - std::tan(20 * t) * std::cos(30 * t));
+  std::string text = R"(talus = 1
+[model]
+formulation = "penalty"
+gravity = [4.905, -8.495709]
+[material.m]
+density = 2600
+[joint.face]
+friction_angle = "20 deg"
+[contact]
+joint = "face"
+[[stage]]
+name = "slide"
+kind = "dynamic"
+duration = "1 s"
+time_step = "1 ms"
+[[monitor]]
+name = "b"
+point = [0.1, 0.1]
+)" + block_text("floor", {{-10, -1}, {100, -1}, {100, 0}, {-10, 0}}, "fixed") +
+                     block_text("stop", {{90, 0}, {91, 0}, {91, 12}, {90, 12}}, "fixed") +
+                     block_text("boulder", {{80, 0}, {90, 0}, {90, 10}, {80, 10}}, "rigid");
+  for (const double size : {0.2, 0.05})
+    check_close(fmt::format("conventional DDA: slide of a pebble of {:g} m beside a boulder [m]", size),
+                last(run_case(text + block_text("pebble",
+                                                {{0.1 - size / 2, 0},
+                                                 {0.1 + size / 2, 0},
+                                                 {0.1 + size / 2, 2 * size},
+                                                 {0.1 - size / 2, 2 * size}},
+                                                "rigid"),
+                              {"monitor.b.point=[0.1," + std::to_string(size) + "]"}),
+                     "b.displacement_x [m]"),
+                exact, 1e-3, 1e-4);
+}
+
+TEST_CASE("conventional DDA: forces and impulses where a stage begins, and where steps are cut") {
+  const std::string text =
+      R"(talus = 1
+[model]
+formulation = "penalty"
+gravity = [0, -9.81]
+[penalty]
+largest_displacement = 1
+[material.m]
+density = 2600
+[joint.face]
+friction_angle = "30 deg"
+[contact]
+joint = "face"
+[[stage]]
+name = "first"
+kind = "dynamic"
+duration = "0.2 s"
+time_step = "1 ms"
+[[stage]]
+name = "second"
+kind = "dynamic"
+duration = "0.2 s"
+time_step = "4 ms"
+[[monitor]]
+name = "c"
+contact = ["block", "floor"]
+)" + block_text("floor", {{-1, -1}, {9, -1}, {9, 0}, {-1, 0}}, "fixed") +
+      block_text("block", {{0, 0}, {1, 0}, {1, 0.2}, {0, 0.2}}, "rigid", "velocity = [2, 0]");
+  const double weight = 0.2 * 2600 * 9.81;
+  // the block comes 2 mm in a step of 1 ms, a third of which a step may go
+  for (const std::string largest : {"1", "7e-4"}) {
+    const CaseResult r = run_case(text, {"penalty.largest_displacement=" + largest});
+    CHECK((r.run.cut_steps > 100) == (largest != "1"));
+    const std::vector<double>&force = r.column("c.normal_force [N]"), &t = r.column("t [s]");
+    double least = weight, most = weight;
+    for (size_t k = 0; k < t.size(); ++k)
+      if (t[k] > 0.1 && t[k] < 0.39) least = std::min(least, force[k]), most = std::max(most, force[k]);
+    check_below("conventional DDA: least and most of a weight, cut at " + largest, (most - least) / weight,
+                0.05, 0.01);
+    check_close("conventional DDA: impulse of a weight, cut at " + largest, last(r, "c.normal_impulse [N s]"),
+                weight * 0.4, 0.02, 5e-3);
+  }
+}
+
 TEST_CASE("conventional DDA: below its friction angle the block stands") {
   const CaseResult r = run_case(read_text_file(kExample), {"joint.floor.friction_angle=\"31 deg\""});
   // friction goes by pressure that the springs only take up in the first steps: a start that no step shortens away
@@ -280,7 +401,8 @@ TEST_CASE("conventional DDA: the same bits for any number of threads") {
 TEST_CASE("conventional DDA: a run that is stopped and goes on has the bits of one that is not") {
   const std::string text = read_text_file(kExample);
   const std::vector<std::string> overrides{"penalty.scheme=\"mean_acceleration\"",
-                                           "stage.slide.duration=\"0.2 s\""};
+                                           "stage.slide.duration=\"0.2 s\"",
+                                           "penalty.largest_displacement=1e-4"};  // steps are cut
   // stops before a step, and keeps the state
   struct Stopper : Observer {
     int64_t at_step = -1;

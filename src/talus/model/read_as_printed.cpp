@@ -1,5 +1,7 @@
 #include "talus/model/read_as_printed.h"
 
+#include <cmath>
+
 #include "talus/model/joint_law.h"
 
 namespace talus {
@@ -14,13 +16,17 @@ class AsPrinted {
     for (const JointProperty& j : model_.joints) refuse_joint(j);
     for (const BoundaryInput& b : model_.boundaries) {
       if (b.kind != BoundaryKind::kViscous || b.history_x >= 0 || b.history_y >= 0)
-        refuse_at(b.where, "boundary." + b.name, "the printed edge (theory 5.9) lets waves out at a viscous edge, and none in");
+        refuse_at(b.where, "boundary." + b.name,
+                  "the printed edge (theory 5.9) lets waves out at a viscous edge, and none in");
     }
     for (const BoltInput& b : model_.bolts)
       refuse_at(b.where, "bolt." + b.name, "the equations of bolts are not printed");
-    for (const StageInput& s : model_.stages)
-      if (s.from_rest && !s.from_rest_auto)
-        refuse_at(s.where, "stage." + s.name + ".integration", "every step is a central difference");
+    for (const StageInput& s : model_.stages) {
+      const bool implicit = s.implicit && !s.elasticity_auto;
+      if ((s.from_rest && !s.from_rest_auto) || implicit)
+        refuse_at(s.where, "stage." + s.name + (implicit ? ".elasticity" : ".integration"),
+                  "every step is an explicit central difference");
+    }
   }
 
  private:
@@ -35,9 +41,11 @@ class AsPrinted {
     if (j.kind > kBondedJoint || j.dilation_angle > 0 || j.restitution >= 0 || j.normal_stiffness > 0 ||
         j.shear_stiffness > 0)
       refuse_at(j.where, path, "the printed equations know hard contacts with a friction angle;");
-    else if (j.cohesion > 0 || j.tensile_strength > 0)
+    else if (j.cohesion > 0 || j.tensile_strength > 0 || j.residual_cohesion > 0 ||
+             j.residual_tensile_strength > 0 ||
+             (!std::isnan(j.residual_friction_angle) && j.residual_friction_angle != j.friction_angle))
       refuse_at(j.where, path,
-                "cohesion and tensile strength stand in a table of the paper, in no equation;");
+                "cohesion, tensile strength and strengths after slip stand in no printed equation;");
   }
 
   const Model& model_;

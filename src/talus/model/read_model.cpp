@@ -402,6 +402,13 @@ class ModelReader : private SectionReader {
     model_.solver.method = solver_called(f.get<std::string>("method"));
     model_.solver.second_solver = f.get("second_solver", true);
     model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
+    if (model_.formulation == Formulation::kAsPrinted && model_.solver.method != SolverKind::kAuto &&
+        model_.solver.method != SolverKind::kNewton) {
+      findings_.error(f.where("method"), f.path_of("method"),
+                      "model.formulation = \"as_printed\" solves by Newton's method",
+                      "leave it out, or use formulation = \"contact_forces\"");
+      model_.solver.method = SolverKind::kNewton;
+    }
     const bool only_exact =
         model_.solver.method != SolverKind::kAuto && model_.solver.method != SolverKind::kNewton;
     if (only_exact && model_.contact.law == ContactLaw::kSmoothed)

@@ -13,7 +13,7 @@ constexpr double kPenaltyOfYoung = 40;
 
 // Where no block deforms: under its weight the heaviest that moves sinks by this share of its size. Of 122 comparisons of
 // the cases A2, A3d and A6 (blocks of some 20 kN) 58 hold on springs of 1e9 Pa, 69 of 1e10, 105 of 1e11, 117 of 1e12, 115 of
-// 3e12, 116 of 1e14.
+// 3e12, 117 of 1e14.
 constexpr double kSinking = 3e-8;
 
 double penalty_of(const Scene& scene) {

@@ -15,13 +15,14 @@ namespace talus {
 namespace {
 
 // Solutions of an iteration in which friction may find its pressure.
-constexpr int kMostFrictionTurns = 30;
+constexpr int kMostFrictionTurns = 60;
+constexpr double kLeastShare = 1.0 / 16;
 
 // Change of the pressure that friction goes by, as share of it, below which it has found it.
 constexpr double kSamePressure = 1e-3;
 
 // Iterations after which gaps and slips that are none (springs.h) double from iteration to iteration, and how often.
-constexpr int kFirmIterations = 6, kWidenings = 7;
+constexpr int kFirmIterations = 6, kWidenings = 9;
 
 Six part_of(const std::vector<double>& x, size_t block) {
   Six d;
@@ -66,7 +67,7 @@ PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bo
         if (cuts > 0) --cuts, part = std::min(3 * part, end - state.time);
         continue;
       }
-      state = std::move(before);
+      state = before;
       if (++cuts > settings.most_cuts)
         throw NumericalError(fmt::format(
             "open-close iteration does not end at t = {:.9g} s, step {}, in a {} of the step: {} contacts. A smaller "
@@ -78,6 +79,13 @@ PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bo
   } catch (const NumericalError&) {
     state = begun;  // what is left is the instant at which the step began
     throw;
+  }
+  if (report.parts > 1) {
+    // forces are those of the last part; what is made of them, impulses and accelerations, is of the whole step
+    const double whole = end - begun.time;
+    state.dt_before = whole, state.rate_old = work_.rate_before = begun.rate;
+    work_.clock = {whole, whole, 0, begun.history_time, histories_run, false};
+    show(settings, whole, state);
   }
   ++state.step;
   state.judged.iterations = report.iterations;
@@ -91,11 +99,13 @@ void PenaltySteps::seek_contacts(State& state) {
 }
 
 void PenaltySteps::stand(const PenaltySettings& settings, double dt, State& state) {
-  work_.clock = {dt, dt, 0, state.history_time, false, false};
+  // as the step before has left them, whatever the steps of this stage
+  const double before = state.dt_before > 0 ? state.dt_before : dt;
+  work_.clock = {before, before, 0, state.history_time, false, false};
   work_.rate_before = state.rate_old.empty() ? state.rate : state.rate_old;
   // blocks that the stage takes out, or the first instant of all
   if (state.candidates.reach.empty()) seek_contacts(state);
-  show(settings, state.dt_before > 0 ? state.dt_before : dt, state);
+  show(settings, before, state);
 }
 
 // Rows and places of an instant, with what contacts and supports remember.
@@ -250,11 +260,13 @@ void PenaltySteps::assemble(const BlockSet& blocks) {
   }
 }
 
-// Solves with the states as they are, again while friction does not go by the pressure that it makes (theory 13.4).
-void PenaltySteps::solve_with_friction() {
+// Solves with the states as they are, again while friction does not go by the pressure that it makes (theory 13.4); false
+// where it does not find it.
+bool PenaltySteps::solve_with_friction() {
   const BlockSet& blocks = scene_.blocks;
   const std::vector<double> without = solution_;
-  for (int turn = 0;; ++turn) {
+  double share = 1, apart = std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn <= kMostFrictionTurns; ++turn) {
     if (turn > 0) solution_ = without;
     for (size_t k = 0; k < springs_.size(); ++k) {
       const Spring& s = springs_[k];
@@ -269,17 +281,26 @@ void PenaltySteps::solve_with_friction() {
     factor_.solve(solution_, work_.workers);
     for (size_t i = 0; i < displacement_.size(); ++i) displacement_[i] = part_of(solution_, i);
     bool same = true;
+    double off = 0;
+    pressure_.assign(springs_.size(), 0);
     for (size_t k = 0; k < springs_.size(); ++k) {
-      Spring& s = springs_[k];
+      const Spring& s = springs_[k];
       if (s.state != SpringState::kSliding) continue;
-      const double now = pressure_after(displacement_[static_cast<size_t>(s.block_a)],
-                                        displacement_[static_cast<size_t>(s.block_b)], rows_[k], s);
-      if (std::abs(now - s.pressing) <= kSamePressure * now) continue;
-      same = false;
-      if (turn < kMostFrictionTurns) s.pressing = now;
+      pressure_[k] = pressure_after(displacement_[static_cast<size_t>(s.block_a)],
+                                    displacement_[static_cast<size_t>(s.block_b)], rows_[k], s);
+      const double change = std::abs(pressure_[k] - s.pressing);
+      same = same && change <= kSamePressure * pressure_[k] + s.stiffness[0] * s.same[0];
+      off = std::max(off, s.bears.friction * change);
     }
-    if (same || turn >= kMostFrictionTurns) return;
+    if (same) return true;
+    // friction that takes its own pressure away swings about it: go a part of the way
+    if (off > 0.7 * apart) share = std::max(0.5 * share, kLeastShare);
+    apart = off;
+    for (size_t k = 0; k < springs_.size(); ++k)
+      if (Spring& s = springs_[k]; s.state == SpringState::kSliding)
+        s.pressing += share * (pressure_[k] - s.pressing);
   }
+  return false;
 }
 
 bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool histories_run, State& state,
@@ -295,7 +316,7 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool his
       throw NumericalError(
           fmt::format("the stiffness matrix of step {} at t = {:.9g} s is not positive definite", state.step,
                       state.time));
-    solve_with_friction();
+    const bool friction = solve_with_friction();
     ++report.iterations;
     if (turn >= kFirmIterations && turn < kFirmIterations + kWidenings)
       for (Spring& s : springs_) s.same[0] *= 2, s.same[1] *= 2;
@@ -304,7 +325,7 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool his
       changes += follow(displacement_[static_cast<size_t>(springs_[k].block_a)],
                         displacement_[static_cast<size_t>(springs_[k].block_b)], rows_[k], springs_[k]);
     report.changes += changes;
-    if (changes > 0) continue;
+    if (changes > 0 || !friction) continue;
     double farthest = 0;
     for (size_t i = 0; i < n; ++i)
       farthest = std::max(farthest, std::hypot(displacement_[i][0], displacement_[i][1]));

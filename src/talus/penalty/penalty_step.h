@@ -63,7 +63,7 @@ class PenaltySteps {
   void seek_contacts(State& state);
   void find_pattern();
   void assemble(const BlockSet& blocks);
-  void solve_with_friction();
+  bool solve_with_friction();
   void finish(const PenaltySettings& settings, double dt, State& state, PenaltyReport& report);
   void show(const PenaltySettings& settings, double dt, State& state);
   void write_rows(double dt, State& state);
@@ -79,6 +79,7 @@ class PenaltySteps {
   std::vector<Six> outside_;  // of it, weight and loads
   std::vector<double> solution_;
   std::vector<Six> displacement_;
+  std::vector<double> pressure_;  // [springs] that friction makes [N]
   BlockFactor factor_;
   struct Held {
     int point = 0;

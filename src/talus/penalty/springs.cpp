@@ -10,8 +10,8 @@ namespace talus {
 
 namespace {
 
-// Gaps and slips that are none: this share of the smaller block (rounding), and of what the springs give under the largest
-// force in the model. What hardly touches would open and close without end.
+// Gaps and slips that are none: this share of the smaller block (rounding), and of what the springs give under the force
+// that its blocks are measured by. What hardly touches would open and close without end.
 constexpr double kSamePlace = 1e-13, kSameForce = 1e-4;
 
 Vec2 arm_now(const State& state, int block, Vec2 X) {
@@ -64,18 +64,22 @@ Vec2 closure_of(const Scene& scene, const ContactPair& pair, const Contact& c, c
           dot(turn_right(normal), traction) * area / s.stiffness[1]};
 }
 
-// The largest force in the model: of a contact, or the weight of a block [N].
-double largest_force(const Scene& scene, const State& state) {
-  double largest = 0;
-  for (const Contact& c : state.contacts) largest = std::max(largest, c.force[0]);
+// What the forces on each block are measured by: the largest pressure of its contacts, or its weight [N].
+std::vector<double> force_of(const Scene& scene, const State& state) {
   const double g = norm(scene.model.gravity);
-  for (size_t i = 0; i < scene.blocks.mass.size(); ++i)
-    if (scene.blocks.moves_freely(static_cast<int>(i))) largest = std::max(largest, scene.blocks.mass[i] * g);
-  return largest;
+  std::vector<double> force(scene.blocks.mass.size());
+  for (size_t i = 0; i < force.size(); ++i) force[i] = scene.blocks.mass[i] * g;
+  for (const Contact& c : state.contacts)
+    for (const int block : {c.key.block_a, c.key.block_b})
+      force[static_cast<size_t>(block)] = std::max(force[static_cast<size_t>(block)], c.force[0]);
+  for (size_t i = 0; i < force.size(); ++i)  // what does not move says nothing
+    if (!scene.blocks.moves_freely(static_cast<int>(i))) force[i] = std::numeric_limits<double>::infinity();
+  return force;
 }
 
 void gather_contact(const Scene& scene, const State& state, const ContactPair& pair, size_t i,
-                    const std::array<double, 2>& stiffness, double largest, std::vector<Spring>& springs) {
+                    const std::array<double, 2>& stiffness, const std::vector<double>& force,
+                    std::vector<Spring>& springs) {
   static const JointLaw kNone;
   const BlockSet& blocks = scene.blocks;
   const Contact& c = state.contacts[i];
@@ -94,9 +98,12 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   for (int k = 0; k < 2; ++k)
     s.stiffness[static_cast<size_t>(k)] = stiffness_of(law, k, area, stiffness[static_cast<size_t>(k)]);
   for (size_t k = 0; k < 2; ++k)
-    s.same[k] = kSamePlace * std::min(blocks.size[static_cast<size_t>(c.key.block_a)],
-                                      blocks.size[static_cast<size_t>(c.key.block_b)]) +
-                kSameForce * largest / s.stiffness[k];
+    s.same[k] =
+        kSamePlace * std::min(blocks.size[static_cast<size_t>(c.key.block_a)],
+                              blocks.size[static_cast<size_t>(c.key.block_b)]) +
+        kSameForce *
+            std::min(force[static_cast<size_t>(c.key.block_a)], force[static_cast<size_t>(c.key.block_b)]) /
+            s.stiffness[k];
   const Vec2 closure = closure_of(scene, pair, c, s, edge, foot);
   s.gap = over.gap + closure.x;
   const double place = -over.along * norm(edge);
@@ -126,10 +133,10 @@ void gather_springs(const Scene& scene, const State& state, const std::array<dou
     if (!state.face[f].broken && scene.blocks.interact(face.block_a, face.block_b))
       gather_face(scene, state, f, stiffness, springs);
   }
-  const double largest = largest_force(scene, state);
+  const std::vector<double> force = force_of(scene, state);
   for (const ContactPair& pair : state.pairs)
     for (int k = 0; k < pair.count; ++k)
-      gather_contact(scene, state, pair, static_cast<size_t>(pair.begin + k), stiffness, largest, springs);
+      gather_contact(scene, state, pair, static_cast<size_t>(pair.begin + k), stiffness, force, springs);
 }
 
 SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {

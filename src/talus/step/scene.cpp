@@ -82,6 +82,8 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   for (StageInput& stage : scene.model.stages)
     if (stage.elasticity_auto)
       stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
+  if (scene.model.formulation == Formulation::kAsPrinted)
+    for (StageInput& stage : scene.model.stages) stage.implicit = false, stage.from_rest = false;
   if (scene.model.formulation == Formulation::kPenalty)
     for (StageInput& stage : scene.model.stages) stage.implicit = true, stage.from_rest = false;
   scene.loads = build_loads(scene.model, scene.layout, scene.blocks);

@@ -103,7 +103,7 @@ class BoundaryMaker {
   void add_point(int boundary, int column, const SelectedEdge& e, Vec2 end, Vec2 other) {
     const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
     const Impedance z = impedance(model_, material_behind(input, layout_, e.block));
-    // as printed there is no area (theory 5.9)
+    // as printed there is no area: 1 m2 for each edge of a block (theory 5.9)
     const double area =
         model_.formulation == Formulation::kAsPrinted ? 0.5 : 0.5 * e.length() * model_.thickness;
     BoundaryPoint p;

@@ -1,15 +1,17 @@
 #!/bin/bash
 # Installs what is missing, builds talus and runs the main example: a block strikes a bar.
-# Usage: ./run.sh [--maps|--verify]
+# Usage: ./run.sh [--maps|--verify|--install PREFIX]
 #   --maps    also what reading DXF and GIS maps needs (155 MB), and that example instead
 #   --verify  the verification cases instead: builds them and runs talus verify
+#   --install PREFIX   program, library, pages and verification cases, put under PREFIX instead
 set -eu
 cd "$(dirname "$0")"
 . tools/setup.sh
 case "${1:-}" in
   "" | --verify) ;;
+  --install) [ $# = 2 ] || { echo "./run.sh --install wants a folder, for example /usr/local or \$HOME/.local"; exit 2; } ;;
   --maps) add_maps ;;
-  *) sed -n '2,5s/^# //p' "$0"; exit 2 ;;
+  *) sed -n '2,6s/^# //p' "$0"; exit 2 ;;
 esac
 add_report
 install_missing_packages
@@ -21,6 +23,12 @@ case "${1:-}" in
   --verify)
     build release program verification
     build/release/app/talus verify
+    ;;
+  --install)
+    build release installation
+    cmake --install build/release --prefix "$2" >/dev/null ||
+      { echo "nothing, or not all, was installed: may you write to $2? (sudo cmake --install build/release --prefix $2)"; exit 4; }
+    echo "installed: $2/bin/talus, the library for find_package(talus) and pkg-config (docs/library.md)"
     ;;
   *)
     build release program

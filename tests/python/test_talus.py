@@ -1,0 +1,219 @@
+"""The Python package: errors, runs that have the bits of the command's, observers, views, threads, results.
+
+Usage: test_talus.py BUILD_DIR  (PYTHONPATH names BUILD_DIR/python)
+"""
+import gc
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+
+import talus
+
+BUILD = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else "build/release")
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+
+SLOPE = """talus = 1
+[model]
+gravity = [4.905, -8.495709]
+[material.rock]
+density = "2600 kg/m3"
+[joint.face]
+friction_angle = "15 deg"
+[contact]
+joint = "face"
+[[block]]
+name = "slope"
+polygon = [[-1, -1], [12, -1], [12, 0], [-1, 0]]
+material = "rock"
+kind = "fixed"
+[[block]]
+name = "block"
+polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
+material = "rock"
+kind = "rigid"
+[[stage]]
+name = "slide"
+kind = "dynamic"
+duration = "0.5 s"
+time_step = "1 ms"
+[[stage]]
+name = "on"
+kind = "dynamic"
+duration = "0.5 s"
+time_step = "1 ms"
+[[monitor]]
+name = "block"
+point = [0.5, 0.5]
+"""
+
+
+class Errors(unittest.TestCase):
+    def test_five_wrong_inputs(self):
+        wrong = [
+            ("density = \"2600 kg/m3\"", "density = \"-1 kg/m3\"", "material.rock.density", 5),
+            ("friction_angle = \"15 deg\"", "friction_angle = 15", "joint.face.friction_angle", 7),
+            ("material = \"rock\"\nkind = \"rigid\"", "material = \"rok\"\nkind = \"rigid\"", "block.block.material", 18),
+            ("time_step = \"1 ms\"\n[[stage]]", "time_stp = \"1 ms\"\n[[stage]]", "stage.slide.time_stp", 24),
+            ("joint = \"face\"", "joint = \"faze\"", "contact.joint", 9),
+        ]
+        for right, bad, key, line in wrong:
+            with self.subTest(key), self.assertRaises(talus.InputError) as caught:
+                talus.Model.from_text(SLOPE.replace(right, bad, 1), file="slope.toml")
+            found = [f for f in caught.exception.findings if f.key == key]
+            self.assertEqual([(f.severity, f.file, f.line) for f in found], [("error", "slope.toml", line)], caught.exception)
+            self.assertTrue(found[0].message)
+            self.assertIn("slope.toml:%d:" % line, str(caught.exception))
+
+    def test_overrides_and_files(self):
+        with self.assertRaises(talus.InputError) as caught:
+            talus.Model.from_text(SLOPE, {"stage.slide.duration": "1 parsec"})
+        self.assertIn("stage.slide.duration", caught.exception.findings[0].key)
+        with self.assertRaises(talus.FileError):
+            talus.Model("no such file.toml")
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "mine.txt").write_text("kept")
+            with self.assertRaises(talus.FileError):
+                talus.Model.from_text(SLOPE).run(folder)
+            self.assertEqual(pathlib.Path(folder, "mine.txt").read_text(), "kept")
+        with self.assertRaises(ValueError):
+            talus.Model.from_text(SLOPE).run(until="no stage")
+        for wrong in ({"every": 0}, {"threads": -1}):
+            with self.assertRaises(ValueError):
+                talus.Model.from_text(SLOPE).run(**wrong)
+
+    def test_a_dictionary_is_the_same_model(self):
+        import tomllib
+        for text in (SLOPE, (EXAMPLES / "wall/wall.toml").read_text()):
+            model = talus.Model.from_dict(tomllib.loads(text))
+            self.assertEqual(tomllib.loads(model.text), tomllib.loads(text))
+            self.assertEqual(model.blocks, talus.Model.from_text(text).blocks)
+
+
+class Runs(unittest.TestCase):
+    def test_bits_of_the_command(self):
+        for example in ("incline", "dominoes", "impact_bar"):
+            file = EXAMPLES / example / f"{example}.toml"
+            with tempfile.TemporaryDirectory() as folder:
+                result = talus.Model(file).run(pathlib.Path(folder, "py"), lambda now: None)
+                subprocess.run([BUILD / "app/talus", "run", file, "-o", pathlib.Path(folder, "cmd"), "-q"], check=True)
+                for name in ("histories.csv", "joints.csv"):
+                    self.assertEqual(pathlib.Path(folder, "py", name).read_bytes(), pathlib.Path(folder, "cmd", name).read_bytes())
+                self.assertTrue(result.valid)
+                found = talus.Results(result.folder)
+                self.assertEqual(found.summary["status"], "finished")
+                self.assertEqual(len(found.histories["t [s]"]), len(found.steps["t [s]"]) if example == "incline" else len(found.histories["t [s]"]))
+
+    def test_way_of_a_sliding_block(self):
+        result = talus.Model.from_text(SLOPE).run()
+        exact = 0.5 * 9.81 * (0.5 - numpy.tan(numpy.radians(15)) * numpy.cos(numpy.radians(30)))
+        self.assertAlmostEqual(result.displacement[1, 0], exact, delta=1e-6 * exact)
+        self.assertEqual(result.steps, 1000)
+
+    def test_penalty_and_until(self):
+        model = talus.Model.from_text(SLOPE, {"model.formulation": "penalty", "new:penalty.largest_displacement": 1e-3})
+        result = model.run(until="slide", observer=lambda now: None)
+        self.assertAlmostEqual(result.time, 0.5)
+        self.assertEqual(model.stages, ["slide", "on"])
+
+
+class Observers(unittest.TestCase):
+    def test_views_are_no_copies_and_outlive_the_run(self):
+        seen = []
+
+        def look(now):
+            seen.append((now.time, now.stage, now.displacement, now.displacement[1, 0], now.velocity[1, 0]))
+
+        result = talus.Model.from_text(SLOPE).run(observer=look)
+        views = [entry[2] for entry in seen]
+        self.assertEqual(len({v.__array_interface__["data"] for v in views}), 1)  # one memory, through both stages
+        self.assertTrue(all(not v.flags.writeable and not v.flags.owndata for v in views))
+        self.assertTrue(numpy.shares_memory(views[0], result.displacement))
+        with self.assertRaises(ValueError):
+            views[0][1, 0] = 0
+        self.assertEqual({s[1] for s in seen}, {0, 1})
+        # what was read at each instant moved on; the velocity is that of the way
+        ways, times = [s[3] for s in seen], [s[0] for s in seen]
+        self.assertLess(ways[10], ways[500])
+        self.assertAlmostEqual(seen[500][4] * 1.0, 2 * ways[500] / times[500], places=6)
+        last = float(result.displacement[1, 0])
+        del result, seen
+        gc.collect()
+        [bytearray(1 << 20) for _ in range(50)]
+        self.assertEqual(views[0][1, 0], last)
+
+    def test_an_instant_is_over_afterwards(self):
+        kept = []
+        talus.Model.from_text(SLOPE).run(observer=kept.append, every=100)
+        self.assertGreater(len(kept), 9)
+        with self.assertRaises(ValueError):
+            kept[0].time
+        self.assertEqual(kept[0].displacement.shape, (2, 2))
+
+    def test_contacts(self):
+        rows = []
+        talus.Model.from_text(SLOPE).run(observer=lambda now: rows.append(now.contacts), every=250)
+        pressed = rows[-1][rows[-1]["normal"] > 0]
+        self.assertAlmostEqual(float(pressed["normal"].sum()), 2600 * 8.495709, delta=1)
+        self.assertAlmostEqual(abs(float(pressed["shear"].sum())), float(numpy.tan(numpy.radians(15))) * 2600 * 8.495709, delta=1)
+
+    def test_false_ends_a_run_and_errors_pass(self):
+        result = talus.Model.from_text(SLOPE).run(observer=lambda now: now.step < 20)
+        self.assertTrue(result.interrupted)
+        self.assertEqual(result.steps, 21)  # the step that was under way
+
+        def fails(now):
+            raise KeyError("mine")
+
+        with self.assertRaises(KeyError):
+            talus.Model.from_text(SLOPE).run(observer=fails)
+
+    def test_ctrl_c(self):
+        long = talus.Model.from_text(SLOPE, {"stage.slide.duration": "2000 s"})
+        signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        begun = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            long.run()
+        self.assertLess(time.monotonic() - begun, 5)
+
+    def test_others_go_on_meanwhile_and_runs_stand_beside_each_other(self):
+        ticks, ended, results = [], threading.Event(), {}
+
+        def tick():
+            while not ended.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.005)
+
+        def run(name, angle):
+            results[name] = talus.Model.from_text(SLOPE, {"joint.face.friction_angle": f"{angle} deg"}).run(observer=lambda now: None)
+
+        clock = threading.Thread(target=tick)
+        clock.start()
+        runs = [threading.Thread(target=run, args=(k, 10 + k)) for k in range(4)]
+        [t.start() for t in runs]
+        [t.join() for t in runs]
+        ended.set()
+        clock.join()
+        self.assertGreater(len(ticks), 3)
+        for k in range(4):
+            alone = talus.Model.from_text(SLOPE, {"joint.face.friction_angle": f"{10 + k} deg"}).run()
+            self.assertEqual(results[k].displacement[1, 0], alone.displacement[1, 0])
+
+    def test_cost_of_an_observer(self):
+        model = talus.Model.from_text(SLOPE, {"stage.slide.duration": "20 s", "joint.face.friction_angle": "31 deg"})
+        took = {}
+        for name, observer in (("none", None), ("empty", lambda now: None), ("view", lambda now: now.displacement)) * 3:
+            result = model.run(observer=observer)
+            took.setdefault(name, []).append(1e6 * result.wall_seconds / result.steps)
+        print("microseconds a step:", {name: round(sorted(t)[1], 2) for name, t in took.items()})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -23,7 +23,7 @@ man -l there/share/man/man1/talus.1 >/dev/null 2>&1 || grep -q '^\.TH TALUS 1' t
 grep -q complete there/share/bash-completion/completions/talus || fail "no completion"
 
 # a project of others, both ways
-cmake -S "$here" -B by_cmake -DCMAKE_PREFIX_PATH="$work/there" -DCMAKE_BUILD_TYPE=Release >cmake.log 2>&1 || { cat cmake.log; exit 1; }
+cmake -G Ninja -S "$here" -B by_cmake -DCMAKE_PREFIX_PATH="$work/there" -DCMAKE_BUILD_TYPE=Release >cmake.log 2>&1 || { cat cmake.log; exit 1; }
 cmake --build by_cmake >>cmake.log 2>&1 || { cat cmake.log; exit 1; }
 export PKG_CONFIG_PATH=$libs/pkgconfig
 # the folder it lies in now goes before the one it was configured for

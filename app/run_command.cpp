@@ -20,12 +20,6 @@ namespace talus::app {
 
 namespace {
 
-RunNotes notes_of(const ModelArguments& model, const Findings& findings) {
-  RunNotes notes{model.overrides, {}};
-  for (const Finding& f : findings.list()) notes.warnings.push_back(f.key + ": " + f.text);
-  return notes;
-}
-
 // Stops the run when a signal asks for it.
 class StoppedBySignals : public Progress {
  public:
@@ -77,13 +71,10 @@ Run run_recorded(PreparedRun& prepared, std::optional<SavedRun>& saved, const st
   return {std::move(result), signals.asked()};
 }
 
-// Number of stages up to the one of this name.
-size_t stages_until(const Model& model, const std::string& name) {
+size_t known_stages_until(const Model& model, const std::string& name) {
+  if (const size_t stages = stages_until(model, name); stages > 0) return stages;
   std::vector<std::string> names;
-  for (const StageInput& stage : model.stages) {
-    names.push_back(stage.name);
-    if (stage.name == name) return names.size();
-  }
+  for (const StageInput& stage : model.stages) names.push_back(stage.name);
   throw Error(kExitUsage,
               fmt::format("--until: there is no stage \"{}\"; there is {}", name, join_or(names)));
 }
@@ -123,7 +114,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (args.from.empty() || branches) check_result_folder(args.folder, args.force);
   const std::string page = args.watch ? page_text() : "";
   auto [findings, prepared] = prepare_model(model);
-  if (!args.until.empty()) end_after(prepared, stages_until(prepared.scene.model, args.until));
+  if (!args.until.empty()) end_after(prepared, known_stages_until(prepared.scene.model, args.until));
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
   if (!out) throw FileError("/dev/null: cannot be opened");
   std::optional<ResultFolder> folder;
@@ -146,7 +137,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (!folder) folder.emplace(args.folder, args.force);
   if (const std::string stale = folder->stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
   const std::string name = folder->path().string();
-  RunNotes notes = notes_of(model, findings);
+  RunNotes notes = notes_of(model.overrides, findings);
   notes.branch = origin;
   if (saved && !branches) Recorder::check(*folder, prepared.scene, saved->archive);
   std::unique_ptr<Recorder> recorder;

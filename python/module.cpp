@@ -42,6 +42,7 @@ struct PyModel {
   std::string file, text;
   std::vector<std::string> overrides;
   py::list findings;
+  RunNotes notes;
 
   PreparedRun prepare() {
     Findings found(file, text);
@@ -51,7 +52,7 @@ struct PyModel {
         py::gil_scoped_release free;
         run = prepare_run(file, text, overrides, found);
       }
-      findings = told(found, file);
+      findings = told(found, file), notes = notes_of(overrides, found);
       return run;
     } catch (const InputError& e) {
       raise("InputError", e.what(), told(found, file));
@@ -69,7 +70,7 @@ struct Memory {
   State state;
 };
 
-// n rows of `columns` numbers that lie `stride` bytes apart, without a copy; keeps `memory` alive.
+// Numbers of n blocks, of each an array of `shape`, that lie `stride` bytes apart: without a copy; keeps `memory` alive.
 py::array view(const std::shared_ptr<Memory>& memory, const void* first, size_t n, std::vector<py::ssize_t> shape,
                py::ssize_t stride) {
   shape.insert(shape.begin(), static_cast<py::ssize_t>(n));
@@ -210,10 +211,8 @@ PyResult run(PyModel& model, const py::object& folder, const py::object& functio
   memory->prepared = model.prepare();
   Scene& scene = memory->prepared.scene;
   if (!until.empty()) {
-    size_t stages = 0;
-    for (size_t k = 0; k < scene.model.stages.size(); ++k)
-      if (scene.model.stages[k].name == until) stages = k + 1;
-    if (stages == 0) throw py::value_error("until: there is no stage \"" + until + "\"");
+    const size_t stages = stages_until(scene.model, until);
+    if (stages == 0) throw py::value_error("until: there is no stage \"" + until + "\"; Model.stages has their names");
     end_after(memory->prepared, stages);
   }
   PyResult out;
@@ -223,10 +222,7 @@ PyResult run(PyModel& model, const py::object& folder, const py::object& functio
     if (!folder.is_none()) {
       ResultFolder results(py::str(folder).cast<std::string>(), force);
       out.folder = results.path().string();
-      RunNotes notes{model.overrides, {}};
-      for (const py::handle& f : model.findings)
-        notes.warnings.push_back(f.attr("key").cast<std::string>() + ": " + f.attr("message").cast<std::string>());
-      recorder = std::make_unique<Recorder>(scene, std::move(results), notes);
+      recorder = std::make_unique<Recorder>(scene, std::move(results), model.notes);
     }
     memory->state = start_state(scene);
     PyObserver observer(memory, function, every, recorder.get());
@@ -263,7 +259,7 @@ PYBIND11_MODULE(_talus, m) {
   py::class_<PyModel, std::shared_ptr<PyModel>>(m, "Model")
       .def(py::init([](std::string file, std::string text, std::vector<std::string> overrides) {
              auto model = std::make_shared<PyModel>(
-                 PyModel{std::move(file), std::move(text), std::move(overrides), py::list()});
+                 PyModel{std::move(file), std::move(text), std::move(overrides), py::list(), {}});
              model->prepare();
              return model;
            }),

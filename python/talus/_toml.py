@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import math
 from typing import Any, List, Mapping
@@ -53,6 +52,3 @@ def text_of(sections: Mapping[str, Any]) -> str:
     _write(sections, "", lines)
     return "\n".join(lines) + "\n"
 
-
-def key_text(text: str) -> str:
-    return html.escape(text)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import html
 import os
 from typing import Any, Callable, List, Mapping, Optional, Union
 
 from . import _talus
-from ._toml import key_text, text_of, value_text
+from ._toml import text_of, value_text
 from .errors import FileError, Finding
 
 Overrides = Mapping[str, Any]
@@ -113,8 +114,8 @@ class Model:
 
     def _repr_html_(self) -> str:
         known = self._scene()
-        rows = "".join(f"<tr><td>{name}</td><td>{step:.3g} s</td></tr>" for name, step in zip(known["stages"], known["time_steps"]))
-        return (f"<b>{key_text(known['title'] or self.file)}</b>: {len(known['blocks'])} blocks, "
+        rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{step:.3g} s</td></tr>" for name, step in zip(known["stages"], known["time_steps"]))
+        return (f"<b>{html.escape(known['title'] or self.file)}</b>: {len(known['blocks'])} blocks, "
                 f"{len(self.findings)} warnings<table><tr><th>stage</th><th>step</th></tr>{rows}</table>")
 
     def __repr__(self) -> str:

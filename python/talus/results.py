@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import json
 import os
 from typing import Any, Dict, List, Union
@@ -61,4 +62,4 @@ class Results:
         return self.table("joints.csv")
 
     def _repr_html_(self) -> str:
-        return f"<b>{self.folder}</b>: {self.summary['status']}, {'valid' if self.summary['valid'] else 'NOT VALID'}"
+        return f"<b>{html.escape(self.folder)}</b>: {self.summary['status']}, {'valid' if self.summary['valid'] else 'NOT VALID'}"

@@ -22,12 +22,12 @@ talus run bar.toml -o run --force -q
 man -l there/share/man/man1/talus.1 >/dev/null 2>&1 || grep -q '^\.TH TALUS 1' there/share/man/man1/talus.1 || fail "no manual page"
 grep -q complete there/share/bash-completion/completions/talus || fail "no completion"
 
-# a project of others, both ways
+# a project of others, both ways; docs/library.md shows it word by word
+sed -n '/^```cpp/,/^```$/p' "$here/../../docs/library.md" | sed '1d;$d' | diff - "$here/fall.cpp" || fail "docs/library.md shows another fall.cpp"
 cmake -G Ninja -S "$here" -B by_cmake -DCMAKE_PREFIX_PATH="$work/there" -DCMAKE_BUILD_TYPE=Release >cmake.log 2>&1 || { cat cmake.log; exit 1; }
 cmake --build by_cmake >>cmake.log 2>&1 || { cat cmake.log; exit 1; }
 export PKG_CONFIG_PATH=$libs/pkgconfig
-# the folder it lies in now goes before the one it was configured for
-flags=$(pkg-config --define-variable=prefix="$work/there" --cflags --libs talus)
+flags=$(pkg-config --cflags --libs talus)
 g++ -O1 "$here/fall.cpp" -o by_pkg_config $flags -Wl,-rpath,"$libs"
 by_cmake=$(by_cmake/fall bar.toml)
 by_pkg_config=$(./by_pkg_config bar.toml)

@@ -24,4 +24,25 @@ inline std::string block_text(const std::string& name, const Polygon& polygon, c
                      polygon_text(polygon), kind, more);
 }
 
+/// Begins a model of blocks of the material "m", 2600 kg/m3, whose joints have one friction angle [deg], with one dynamic
+/// stage "run".
+inline std::string friction_model(Vec2 gravity, double friction, double duration, double time_step) {
+  return fmt::format(R"(talus = 1
+[model]
+gravity = {}
+[material.m]
+density = 2600
+[joint.face]
+friction_angle = "{:.17g} deg"
+[contact]
+joint = "face"
+[[stage]]
+name = "run"
+kind = "dynamic"
+duration = {:.17g}
+time_step = {:.17g}
+)",
+                     point_text(gravity), friction, duration, time_step);
+}
+
 }  // namespace talus::test

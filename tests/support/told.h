@@ -66,19 +66,20 @@ inline std::string refusal(const std::string& text, const std::vector<std::strin
 }
 
 /// All that is said of it: errors, or else warnings.
-inline std::string told(const std::string& text) {
+inline std::string told(const std::string& text, const std::vector<std::string>& overrides = {}) {
   Findings findings("model.toml", text);
   try {
-    prepare_run("model.toml", text, {}, findings);
+    prepare_run("model.toml", text, overrides, findings);
   } catch (const Error& e) {
     return e.what();
   }
   return findings.render();
 }
 
-/// Checks that what is told of `text` names a line of it and holds all pieces.
-inline void check_told(const std::string& text, const std::vector<std::string>& pieces) {
-  const std::string said = told(text);
+/// Checks that what is told of `text` names the file and holds all pieces.
+inline void check_told(const std::string& text, const std::vector<std::string>& pieces,
+                       const std::vector<std::string>& overrides = {}) {
+  const std::string said = told(text, overrides);
   INFO(said);
   CHECK(said.find("model.toml:") != std::string::npos);
   for (const std::string& piece : pieces) {

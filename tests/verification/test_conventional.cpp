@@ -10,6 +10,7 @@
 
 #include "support/model_text.h"
 #include "support/run_case.h"
+#include "support/told.h"
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
 
@@ -23,17 +24,6 @@ namespace {
 const std::string kExample = std::string(TALUS_SOURCE_DIR) + "/examples/conventional/conventional.toml";
 
 double last(const CaseResult& r, const std::string& column) { return r.column(column).back(); }
-
-// What is wrong with a model, or "".
-std::string refused(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    Findings findings("m.toml", text);
-    prepare_run("m.toml", text, overrides, findings);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
 
 }  // namespace
 
@@ -181,74 +171,40 @@ point = [2.01, 1.99]
   // with places held to rounding some steps are cut into hundreds of parts
   CHECK(r.run.cut_steps <= 5);
   CHECK(r.run.parts < 90);
-  // rho g H^2 / (2 E'), and what 20 beds of springs give
+  // rho g H^2 / (2 E'); the springs of the beds give 0.2 % of it, and the wall still swings
   check_close("conventional DDA: settlement of a wall of 410 bricks [m]", last(r, "top.displacement_y [m]"),
-              -3.9e-5, 0.3, 0.1);
+              -3.9e-5, 0.1, 0.05);
 }
 
 TEST_CASE("conventional DDA: friction that takes its own pressure away is found") {
   // a thin rod that slides at 3 m/s leaning back at 60 deg: friction turns it off the floor, and iteration by whole steps
   // swings between its pressure and none. By contact forces, another way to the same forces, as reference
   for (const double friction : {50.0, 60.0, 70.0}) {
-    const std::string text = fmt::format(R"(talus = 1
-[model]
-gravity = [0, -9.81]
-[material.m]
-density = 2600
-[joint.face]
-friction_angle = "{} deg"
-[contact]
-joint = "face"
-[[stage]]
-name = "slide"
-kind = "dynamic"
-duration = "10 ms"
-time_step = "0.2 ms"
-[[monitor]]
-name = "foot"
-contact = ["rod", "floor"]
-)",
-                                         friction) +
+    const std::string text = friction_model({0, -9.81}, friction, 0.01, 2e-4) +
                              block_text("floor", {{-5, -1}, {5, -1}, {5, 0}, {-5, 0}}, "fixed") +
                              block_text("rod",
                                         {{0, 0},
                                          {0.5, 0.8660254037844386},
                                          {0.48267949192431137, 0.8760254037844386},
                                          {-0.017320508075688773, 0.01}},
-                                        "rigid", "velocity = [3, 0]");
+                                        "rigid", "velocity = [3, 0]") +
+                             "[[monitor]]\nname = \"foot\"\ncontact = [\"rod\", \"floor\"]\n";
     const CaseResult penalty = run_case(text, {"model.formulation=\"penalty\""}), forces = run_case(text);
-    for (const std::string column : {"foot.normal_force [N]", "foot.force_x [N]"}) {
-      if (other_formulation().empty())
-        check_close(fmt::format("conventional DDA: rod at {:g} deg, {}", friction, column),
-                    last(penalty, column), last(forces, column), 0.05, 0.01);
-    }
+    // both schemes are of first order in the step here, and a per cent apart
+    for (const std::string column : {"foot.normal_force [N]", "foot.force_x [N]"})
+      check_close(fmt::format("conventional DDA: rod at {:g} deg, {}", friction, column),
+                  last(penalty, column), last(forces, column), 0.05, 0.01);
   }
 }
 
 TEST_CASE("conventional DDA: a pebble slides as it does without a boulder far away") {
   const double t = std::numbers::pi / 180,
                exact = 0.5 * 9.81 * (std::sin(30 * t) - std::tan(20 * t) * std::cos(30 * t));
-  std::string text = R"(talus = 1
-[model]
-formulation = "penalty"
-gravity = [4.905, -8.495709]
-[material.m]
-density = 2600
-[joint.face]
-friction_angle = "20 deg"
-[contact]
-joint = "face"
-[[stage]]
-name = "slide"
-kind = "dynamic"
-duration = "1 s"
-time_step = "1 ms"
-[[monitor]]
-name = "b"
-point = [0.1, 0.1]
-)" + block_text("floor", {{-10, -1}, {100, -1}, {100, 0}, {-10, 0}}, "fixed") +
-                     block_text("stop", {{90, 0}, {91, 0}, {91, 12}, {90, 12}}, "fixed") +
-                     block_text("boulder", {{80, 0}, {90, 0}, {90, 10}, {80, 10}}, "rigid");
+  const std::string text = friction_model({4.905, -8.495709}, 20, 1, 1e-3) +
+                           block_text("floor", {{-10, -1}, {100, -1}, {100, 0}, {-10, 0}}, "fixed") +
+                           block_text("stop", {{90, 0}, {91, 0}, {91, 12}, {90, 12}}, "fixed") +
+                           block_text("boulder", {{80, 0}, {90, 0}, {90, 10}, {80, 10}}, "rigid") +
+                           "[[monitor]]\nname = \"b\"\npoint = [0.1, 0.1]\n";
   for (const double size : {0.2, 0.05})
     check_close(fmt::format("conventional DDA: slide of a pebble of {:g} m beside a boulder [m]", size),
                 last(run_case(text + block_text("pebble",
@@ -257,51 +213,33 @@ point = [0.1, 0.1]
                                                  {0.1 + size / 2, 2 * size},
                                                  {0.1 - size / 2, 2 * size}},
                                                 "rigid"),
-                              {"monitor.b.point=[0.1," + std::to_string(size) + "]"}),
+                              {"model.formulation=\"penalty\"",
+                               "monitor.b.point=[0.1," + std::to_string(size) + "]"}),
                      "b.displacement_x [m]"),
                 exact, 1e-3, 1e-4);
 }
 
 TEST_CASE("conventional DDA: forces and impulses where a stage begins, and where steps are cut") {
   const std::string text =
-      R"(talus = 1
-[model]
-formulation = "penalty"
-gravity = [0, -9.81]
-[penalty]
-largest_displacement = 1
-[material.m]
-density = 2600
-[joint.face]
-friction_angle = "30 deg"
-[contact]
-joint = "face"
-[[stage]]
-name = "first"
-kind = "dynamic"
-duration = "0.2 s"
-time_step = "1 ms"
-[[stage]]
-name = "second"
-kind = "dynamic"
-duration = "0.2 s"
-time_step = "4 ms"
-[[monitor]]
-name = "c"
-contact = ["block", "floor"]
-)" + block_text("floor", {{-1, -1}, {9, -1}, {9, 0}, {-1, 0}}, "fixed") +
+      friction_model({0, -9.81}, 30, 0.2, 1e-3) +
+      "[[stage]]\nname = \"second\"\nkind = \"dynamic\"\nduration = 0.2\ntime_step = 4e-3\n" +
+      "[[monitor]]\nname = \"c\"\ncontact = [\"block\", \"floor\"]\n" +
+      block_text("floor", {{-1, -1}, {9, -1}, {9, 0}, {-1, 0}}, "fixed") +
       block_text("block", {{0, 0}, {1, 0}, {1, 0.2}, {0, 0.2}}, "rigid", "velocity = [2, 0]");
   const double weight = 0.2 * 2600 * 9.81;
   // the block comes 2 mm in a step of 1 ms, a third of which a step may go
   for (const std::string largest : {"1", "7e-4"}) {
-    const CaseResult r = run_case(text, {"penalty.largest_displacement=" + largest});
+    const CaseResult r =
+        run_case(text, {"model.formulation=\"penalty\"", "new:penalty.largest_displacement=" + largest});
     CHECK((r.run.cut_steps > 100) == (largest != "1"));
     const std::vector<double>&force = r.column("c.normal_force [N]"), &t = r.column("t [s]");
+    // 2 % is the ringing of the springs where steps become four times as long; another step's length would be 300 %
     double least = weight, most = weight;
     for (size_t k = 0; k < t.size(); ++k)
       if (t[k] > 0.1 && t[k] < 0.39) least = std::min(least, force[k]), most = std::max(most, force[k]);
     check_below("conventional DDA: least and most of a weight, cut at " + largest, (most - least) / weight,
                 0.05, 0.01);
+    // two steps of 1 ms pass before the springs carry it
     check_close("conventional DDA: impulse of a weight, cut at " + largest, last(r, "c.normal_impulse [N s]"),
                 weight * 0.4, 0.02, 5e-3);
   }
@@ -361,19 +299,16 @@ point = [0.5, 8]
 
 TEST_CASE("conventional DDA: what it does not know is refused by its key") {
   const std::string text = read_text_file(kExample);
-  const auto holds = [](const std::string& message, const std::string& part) {
-    INFO(message);
-    CHECK(message.find(part) != std::string::npos);
-  };
-  holds(refused(text + "\n[[boundary]]\nname = \"low\"\nkind = \"viscous\"\nedge = [[0, 0], [1, 0]]\n"),
-        "boundary.low: there are no boundaries that let waves out");
-  holds(refused(text, {"block.floor.kind=\"driven\""}), "block.floor.kind: no block is driven");
-  holds(refused(text, {"joint.floor.dilation_angle=\"5 deg\""}),
-        "joint.floor.dilation_angle: no joint dilates");
-  holds(refused(text, {"stage.slide.damping_mass=\"1 1/s\""}), "stage.slide: damping is the scheme's own");
-  holds(refused(text, {"penalty.shear_share=0"}), "penalty.shear_share");
-  holds(refused(text, {"penalty.rotation=\"none\""}), "penalty.rotation");
-  holds(refused(text, {"model.formulation=\"penalties\""}), "model.formulation");
+  check_told(text + "\n[[boundary]]\nname = \"low\"\nkind = \"viscous\"\nedge = [[0, 0], [1, 0]]\n",
+             {"boundary.low: there are no boundaries that let waves out"});
+  const std::vector<std::array<std::string, 2>> wrong{
+      {"block.floor.kind=\"driven\"", "block.floor.kind: no block is driven"},
+      {"joint.floor.dilation_angle=\"5 deg\"", "joint.floor.dilation_angle: no joint dilates"},
+      {"stage.slide.damping_mass=\"1 1/s\"", "stage.slide: damping is the scheme's own"},
+      {"penalty.shear_share=0", "penalty.shear_share"},
+      {"penalty.rotation=\"none\"", "penalty.rotation"},
+      {"model.formulation=\"penalties\"", "model.formulation"}};
+  for (const auto& [override, said] : wrong) check_told(text, {said}, {override});
 }
 
 TEST_CASE("conventional DDA: the same bits for any number of threads") {

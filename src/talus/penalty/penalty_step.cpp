@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/base/error.h"
 #include "talus/contact/pairs.h"
@@ -228,16 +229,18 @@ void PenaltySteps::find_pattern() {
   diagonal_.resize(own_.size());
 }
 
+// A force along a row of a block, onto the right-hand side.
+void PenaltySteps::push(int block, const Six& row, double force) {
+  if (!scene_.blocks.moves_freely(block)) return;
+  for (size_t j = 0; j < 6; ++j) solution_[6 * static_cast<size_t>(block) + j] += force * row[j];
+}
+
 void PenaltySteps::assemble(const BlockSet& blocks) {
   diagonal_ = own_;
   beside_.assign(pairs_.size(), Tile{});
   solution_.assign(6 * own_.size(), 0);
   for (size_t i = 0; i < pushed_.size(); ++i)
     std::copy(pushed_[i].begin(), pushed_[i].end(), solution_.begin() + static_cast<std::ptrdiff_t>(6 * i));
-  const auto push = [&](int block, const Six& row, double force) {
-    if (!blocks.moves_freely(block)) return;
-    for (size_t j = 0; j < 6; ++j) solution_[6 * static_cast<size_t>(block) + j] += force * row[j];
-  };
   for (size_t k = 0; k < springs_.size(); ++k) {
     const Spring& s = springs_[k];
     if (s.state == SpringState::kOpen) continue;
@@ -263,7 +266,6 @@ void PenaltySteps::assemble(const BlockSet& blocks) {
 // Solves with the states as they are, again while friction does not go by the pressure that it makes (theory 13.4); false
 // where it does not find it.
 bool PenaltySteps::solve_with_friction() {
-  const BlockSet& blocks = scene_.blocks;
   const std::vector<double> without = solution_;
   double share = 1, apart = std::numeric_limits<double>::infinity();
   for (int turn = 0; turn <= kMostFrictionTurns; ++turn) {
@@ -272,11 +274,7 @@ bool PenaltySteps::solve_with_friction() {
       const Spring& s = springs_[k];
       if (s.state != SpringState::kSliding) continue;
       const double friction = -s.side * s.bears.limit(s.pressing);
-      const auto push = [&](int block, const Six& row) {
-        if (!blocks.moves_freely(block)) return;
-        for (size_t j = 0; j < 6; ++j) solution_[6 * static_cast<size_t>(block) + j] += friction * row[j];
-      };
-      push(s.block_a, rows_[k].a[1]), push(s.block_b, rows_[k].b[1]);
+      push(s.block_a, rows_[k].a[1], friction), push(s.block_b, rows_[k].b[1], friction);
     }
     factor_.solve(solution_, work_.workers);
     for (size_t i = 0; i < displacement_.size(); ++i) displacement_[i] = part_of(solution_, i);

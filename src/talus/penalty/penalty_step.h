@@ -2,6 +2,8 @@
 // A step of conventional DDA (Shi 1988): displacements of all blocks at once, by an implicit scheme, with springs of a
 // given stiffness at contacts and open-close iteration. Theory: docs/theory.md section 13.
 
+#include <limits>
+
 #include "talus/penalty/springs.h"
 #include "talus/solve/block_factor.h"
 #include "talus/step/step_work.h"
@@ -62,6 +64,7 @@ class PenaltySteps {
   void gather(const PenaltySettings& settings, double dt, State& state);
   void seek_contacts(State& state);
   void find_pattern();
+  void push(int block, const Six& row, double force);
   void assemble(const BlockSet& blocks);
   bool solve_with_friction();
   void finish(const PenaltySettings& settings, double dt, State& state, PenaltyReport& report);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/find.h"
@@ -95,15 +96,12 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   s.normal = over.normal;
   s.arm_a = arm_now(state, c.key.block_a, blocks.corner(c.key.corner()));
   s.arm_b = arm_now(state, c.key.block_b, foot);
-  for (int k = 0; k < 2; ++k)
-    s.stiffness[static_cast<size_t>(k)] = stiffness_of(law, k, area, stiffness[static_cast<size_t>(k)]);
-  for (size_t k = 0; k < 2; ++k)
-    s.same[k] =
-        kSamePlace * std::min(blocks.size[static_cast<size_t>(c.key.block_a)],
-                              blocks.size[static_cast<size_t>(c.key.block_b)]) +
-        kSameForce *
-            std::min(force[static_cast<size_t>(c.key.block_a)], force[static_cast<size_t>(c.key.block_b)]) /
-            s.stiffness[k];
+  const auto a = static_cast<size_t>(s.block_a), b = static_cast<size_t>(s.block_b);
+  for (size_t k = 0; k < 2; ++k) {
+    s.stiffness[k] = stiffness_of(law, static_cast<int>(k), area, stiffness[k]);
+    s.same[k] = kSamePlace * std::min(blocks.size[a], blocks.size[b]) +
+                kSameForce * std::min(force[a], force[b]) / s.stiffness[k];
+  }
   const Vec2 closure = closure_of(scene, pair, c, s, edge, foot);
   s.gap = over.gap + closure.x;
   const double place = -over.along * norm(edge);
@@ -121,6 +119,10 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
     s.slip = slid ? -c.force[1] / s.stiffness[1] : place - c.anchor;
   }
   springs.push_back(s);
+}
+
+double gap_after(const Six& a, const Six& b, const SpringRows& rows, const Spring& s) {
+  return s.gap + dot(rows.a[0], a) + dot(rows.b[0], b);
 }
 
 }  // namespace
@@ -157,12 +159,12 @@ SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {
 }
 
 double pressure_after(const Six& a, const Six& b, const SpringRows& rows, const Spring& s) {
-  return std::max(0.0, -s.stiffness[0] * (s.gap + dot(rows.a[0], a) + dot(rows.b[0], b)));
+  return std::max(0.0, -s.stiffness[0] * gap_after(a, b, rows, s));
 }
 
 // Theory 13.4.
 bool follow(const Six& a, const Six& b, const SpringRows& rows, Spring& s) {
-  s.gap_after = s.gap + dot(rows.a[0], a) + dot(rows.b[0], b);
+  s.gap_after = gap_after(a, b, rows, s);
   s.slip_step = dot(rows.a[1], a) + dot(rows.b[1], b);
   const double normal = -s.stiffness[0] * s.gap_after, shear = -s.stiffness[1] * (s.slip + s.slip_step);
   if (s.glued) {

@@ -70,6 +70,12 @@ nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<aud
 
 }  // namespace
 
+RunNotes notes_of(const std::vector<std::string>& overrides, const Findings& findings) {
+  RunNotes notes{overrides, {}};
+  for (const Finding& f : findings.list()) notes.warnings.push_back(f.key + ": " + f.text);
+  return notes;
+}
+
 std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes& notes, int frames,
                          const JointSummary& joints, const BoltSummary& bolts, const Histories* histories,
                          const std::string& model, const std::optional<audit::Report>& audit) {

@@ -20,6 +20,9 @@ struct RunNotes {
   std::optional<BranchOrigin> branch = {};
 };
 
+/// Notes of a run of a model that these overrides were given to, with the warnings found in it.
+RunNotes notes_of(const std::vector<std::string>& overrides, const Findings& findings);
+
 /// Text of summary.json.
 /// @param model  model_in_numbers() of the scene as it began, as text
 std::string summary_text(const Scene& scene, const RunResult& result, const RunNotes& notes, int frames,

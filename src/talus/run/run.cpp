@@ -550,6 +550,12 @@ RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, con
   return Runner(scene, plans, state, observer, workers).run(&from);
 }
 
+size_t stages_until(const Model& model, const std::string& name) {
+  const auto of_name = [&name](const StageInput& stage) { return stage.name == name; };
+  const auto at = std::find_if(model.stages.begin(), model.stages.end(), of_name);
+  return at == model.stages.end() ? 0 : static_cast<size_t>(at - model.stages.begin()) + 1;
+}
+
 void end_after(PreparedRun& prepared, size_t stages) {
   TALUS_ASSERT(stages > 0 && stages <= prepared.plans.size());
   // hard contacts give by the shortest step of the whole

@@ -89,6 +89,9 @@ struct PreparedRun {
 PreparedRun prepare_run(const std::string& file, const std::string& text,
                         const std::vector<std::string>& overrides, Findings& findings, Cut* cut = nullptr);
 
+/// Number of stages up to the one of this name; 0 when there is none.
+size_t stages_until(const Model& model, const std::string& name);
+
 /// Lets a run end after its first stages, of which all is as in the whole run.
 /// @pre  0 < stages <= all
 void end_after(PreparedRun& prepared, size_t stages);

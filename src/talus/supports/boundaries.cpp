@@ -231,8 +231,8 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
                  push = free_field_force(set, point, columns);
       for (size_t k = 0; k < 2; ++k) {
         const double z = point.dashpot[k], force = state.boundaries[i].kept[k] + dot(axis[k], push);
-        if (model.formulation ==
-            Formulation::kAsPrinted) {  // the velocity of the new half step alone (theory 5.9)
+        // the velocity of the new half step alone (theory 5.9)
+        if (model.formulation == Formulation::kAsPrinted) {
           p.row[k].compliance = 1 / (z * clock.dt_kick);
           p.row[k].bias = -force / z;
           continue;

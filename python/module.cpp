@@ -32,8 +32,8 @@ py::list told(const Findings& findings, const std::string& file) {
   py::list list;
   const py::object finding = error_class("Finding");
   for (const Finding& f : findings.list())
-    list.append(finding(f.severity == Severity::kError ? "error" : "warning", file, f.where.line, f.where.column, f.key,
-                        f.text, f.hint, f.where.override_text));
+    list.append(finding(f.severity == Severity::kError ? "error" : "warning", file, f.where.line,
+                        f.where.column, f.key, f.text, f.hint, f.where.override_text));
   return list;
 }
 
@@ -71,8 +71,8 @@ struct Memory {
 };
 
 // Numbers of n blocks, of each an array of `shape`, that lie `stride` bytes apart: without a copy; keeps `memory` alive.
-py::array view(const std::shared_ptr<Memory>& memory, const void* first, size_t n, std::vector<py::ssize_t> shape,
-               py::ssize_t stride) {
+py::array view(const std::shared_ptr<Memory>& memory, const void* first, size_t n,
+               std::vector<py::ssize_t> shape, py::ssize_t stride) {
   shape.insert(shape.begin(), static_cast<py::ssize_t>(n));
   std::vector<py::ssize_t> strides(shape.size(), sizeof(double));
   for (size_t k = shape.size() - 1; k > 1; --k) strides[k - 1] = strides[k] * shape[k];
@@ -95,7 +95,9 @@ struct PyInstant {
   const Instant* now = nullptr;  // while the observer is called
 
   const Instant& instant() const {
-    if (!now) throw py::value_error("an instant is over once the observer has returned; views of its arrays stay valid");
+    if (!now)
+      throw py::value_error(
+          "an instant is over once the observer has returned; views of its arrays stay valid");
     return *now;
   }
   py::array displacement() const {
@@ -131,8 +133,12 @@ struct PyInstant {
 class PyObserver : public Observer {
  public:
   PyObserver(std::shared_ptr<Memory> memory, py::object function, int64_t every, Observer* next)
-      : memory_(std::move(memory)), function_(std::move(function)), every_(every), next_(next),
-        displacement_(memory_->state.displacement.data()), strain_part_(memory_->state.strain_part.data()) {}
+      : memory_(std::move(memory)),
+        function_(std::move(function)),
+        every_(every),
+        next_(next),
+        displacement_(memory_->state.displacement.data()),
+        strain_part_(memory_->state.strain_part.data()) {}
 
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     if (next_) next_->stage_begins(scene, stage, plan);
@@ -212,7 +218,8 @@ PyResult run(PyModel& model, const py::object& folder, const py::object& functio
   Scene& scene = memory->prepared.scene;
   if (!until.empty()) {
     const size_t stages = stages_until(scene.model, until);
-    if (stages == 0) throw py::value_error("until: there is no stage \"" + until + "\"; Model.stages has their names");
+    if (stages == 0)
+      throw py::value_error("until: there is no stage \"" + until + "\"; Model.stages has their names");
     end_after(memory->prepared, stages);
   }
   PyResult out;
@@ -278,7 +285,8 @@ PYBIND11_MODULE(_talus, m) {
              for (const StageInput& s : scene.model.stages) stages.append(s.name);
              out["title"] = scene.model.title, out["hash"] = scene.model.hash;
              out["blocks"] = blocks, out["stages"] = stages;
-             out["mass"] = py::array_t<double>(static_cast<py::ssize_t>(scene.blocks.mass.size()), scene.blocks.mass.data());
+             out["mass"] = py::array_t<double>(static_cast<py::ssize_t>(scene.blocks.mass.size()),
+                                               scene.blocks.mass.data());
              py::list polygons, steps;
              for (const BlockShape& b : scene.layout.blocks) {
                py::list corners;
@@ -289,42 +297,60 @@ PYBIND11_MODULE(_talus, m) {
              out["polygons"] = polygons, out["time_steps"] = steps;
              return out;
            })
-      .def("_run", &run, py::arg("folder"), py::arg("observer"), py::arg("every"), py::arg("threads"), py::arg("until"),
-           py::arg("force"));
+      .def("_run", &run, py::arg("folder"), py::arg("observer"), py::arg("every"), py::arg("threads"),
+           py::arg("until"), py::arg("force"));
 
-  py::class_<PyInstant, std::shared_ptr<PyInstant>>(m, "Instant", "What an observer is called with: one instant of a run.")
-      .def_property_readonly("time", [](const PyInstant& i) { return i.instant().state.time; }, "time [s]")
-      .def_property_readonly("step", [](const PyInstant& i) { return i.instant().state.step; }, "steps completed")
-      .def_property_readonly("stage", [](const PyInstant& i) { return i.instant().stage; }, "index of the stage")
-      .def_property_readonly("last", [](const PyInstant& i) { return i.instant().last; }, "whether no step follows")
-      .def_property_readonly("kinetic_energy", [](const PyInstant& i) { return i.instant().report.energy.kinetic; },
-                             "kinetic energy [J]")
-      .def_property_readonly("displacement", &PyInstant::displacement,
-                             "displacements of the centroids [m], (blocks, 2): a view, not a copy, valid for ever, that goes on "
-                             "with the run")
+  py::class_<PyInstant, std::shared_ptr<PyInstant>>(m, "Instant",
+                                                    "What an observer is called with: one instant of a run.")
+      .def_property_readonly(
+          "time", [](const PyInstant& i) { return i.instant().state.time; }, "time [s]")
+      .def_property_readonly(
+          "step", [](const PyInstant& i) { return i.instant().state.step; }, "steps completed")
+      .def_property_readonly(
+          "stage", [](const PyInstant& i) { return i.instant().stage; }, "index of the stage")
+      .def_property_readonly(
+          "last", [](const PyInstant& i) { return i.instant().last; }, "whether no step follows")
+      .def_property_readonly(
+          "kinetic_energy", [](const PyInstant& i) { return i.instant().report.energy.kinetic; },
+          "kinetic energy [J]")
+      .def_property_readonly(
+          "displacement", &PyInstant::displacement,
+          "displacements of the centroids [m], (blocks, 2): a view, not a copy, valid for ever, that goes on "
+          "with the run")
       .def_property_readonly("strain_part", &PyInstant::strain_part,
                              "deformation gradients F - I [-], (blocks, 2, 2): a view as displacement")
       .def_property_readonly("velocity", &PyInstant::velocity,
                              "velocities of the centroids at this instant [m/s], (blocks, 2): a copy")
-      .def_property_readonly("contacts", &PyInstant::contacts,
-                             "contact points as a structured array, a copy: block_a, block_b, joint (-1: none), normal and "
-                             "shear force on a [N], length [m], slip [m]");
+      .def_property_readonly(
+          "contacts", &PyInstant::contacts,
+          "contact points as a structured array, a copy: block_a, block_b, joint (-1: none), normal and "
+          "shear force on a [N], length [m], slip [m]");
 
   py::class_<PyResult>(m, "Result", "How a run ended.")
-      .def_property_readonly("steps", [](const PyResult& r) { return r.memory->state.step; }, "steps taken")
+      .def_property_readonly(
+          "steps", [](const PyResult& r) { return r.memory->state.step; }, "steps taken")
       .def_property_readonly("failed_steps", [](const PyResult& r) { return r.result.failed_steps; })
-      .def_property_readonly("closure", [](const PyResult& r) { return r.result.closure(); },
-                             "energy left over / largest term of the ledger [-]")
-      .def_property_readonly("interrupted", [](const PyResult& r) { return r.result.interrupted; },
-                             "whether the observer ended it")
+      .def_property_readonly(
+          "closure", [](const PyResult& r) { return r.result.closure(); },
+          "energy left over / largest term of the ledger [-]")
+      .def_property_readonly(
+          "interrupted", [](const PyResult& r) { return r.result.interrupted; },
+          "whether the observer ended it")
       .def_property_readonly("wall_seconds", [](const PyResult& r) { return r.result.wall_seconds; })
-      .def_property_readonly("time", [](const PyResult& r) { return r.memory->state.time; }, "time at the end [s]")
-      .def_property_readonly("displacement",
-                             [](const PyResult& r) { return PyInstant{r.memory, nullptr}.displacement(); },
-                             "displacements of the centroids at the end [m], (blocks, 2): a view")
-      .def_property_readonly("strain_part",
-                             [](const PyResult& r) { return PyInstant{r.memory, nullptr}.strain_part(); },
-                             "F - I at the end [-], (blocks, 2, 2): a view")
+      .def_property_readonly(
+          "time", [](const PyResult& r) { return r.memory->state.time; }, "time at the end [s]")
+      .def_property_readonly(
+          "displacement",
+          [](const PyResult& r) {
+            return PyInstant{r.memory, nullptr}.displacement();
+          },
+          "displacements of the centroids at the end [m], (blocks, 2): a view")
+      .def_property_readonly(
+          "strain_part",
+          [](const PyResult& r) {
+            return PyInstant{r.memory, nullptr}.strain_part();
+          },
+          "F - I at the end [-], (blocks, 2, 2): a view")
       .def_readonly("folder", &PyResult::folder, "folder of results, \"\" when none was written")
       .def_readonly("valid", &PyResult::valid, "what the audit says; True when nothing was recorded");
 }

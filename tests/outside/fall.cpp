@@ -18,7 +18,8 @@ int main(int, char** arguments) {
     talus::State state = talus::start_state(run.scene);
     Nobody nobody;
     const talus::RunResult result = talus::run_stages(run.scene, run.plans, state, nobody);
-    std::printf("%lld steps, %.17g m\n", static_cast<long long>(result.steps), norm(state.displacement.back()));
+    std::printf("%lld steps, %.17g m\n", static_cast<long long>(result.steps),
+                norm(state.displacement.back()));
   } catch (const talus::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return e.code();

@@ -17,12 +17,13 @@ esac
 add_maps
 add_report
 add_browser
+add_python
 install_missing_packages
 
 format_check() {
   command -v clang-format >/dev/null || { echo "format: skipped, clang-format is not installed"; return 0; }
   case "$(clang-format --version)" in *" 14."*) ;; *) echo "format: skipped, needs clang-format 14"; return 0 ;; esac
-  find src app examples tests benchmarks studies -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run --Werror
+  find src app python examples tests benchmarks studies -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run --Werror
   echo "format: clean"
 }
 

@@ -23,6 +23,13 @@ talus_report=no
 # What its tests drive.
 add_browser() { command -v chromium >/dev/null || talus_packages="$talus_packages chromium"; }
 
+# What the Python package is built with; a build without it is configured anew.
+talus_python=no
+add_python() {
+  talus_packages="$talus_packages pybind11-dev python3-dev python3-numpy"
+  talus_python=yes
+}
+
 install_missing_packages() {
   local missing="" p
   for p in $talus_packages; do
@@ -76,6 +83,7 @@ build() {
   [ -e "build/$preset/build.ninja" ] || configure=yes
   [ "$talus_report" = no ] || [ -e "build/$preset/share/talus/report_page.html" ] || configure=yes
   [ "$talus_maps" = no ] || [ -e "build/$preset/modules/libtalus_vector.so" ] || configure=yes
+  [ "$talus_python" = no ] || ls "build/$preset/python/talus/"_talus*.so >/dev/null 2>&1 || configure=yes
   (
     set -o pipefail
     export NINJA_STATUS="[%f/%t] "

@@ -5,6 +5,7 @@
 
 #include "impact_bar/measure.h"
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/model/toml_source.h"
 
@@ -17,9 +18,7 @@ using talus::example::BarMeasures;
 
 namespace {
 
-std::string model_text() {
-  return read_text_file(std::string(TALUS_SOURCE_DIR) + "/examples/impact_bar/impact_bar.toml");
-}
+std::string model_text() { return read_text_file(source_file("examples/impact_bar/impact_bar.toml")); }
 
 CaseResult run_bar(int n, const BarCase& bar, std::vector<std::string> more = {}, double duration = 3.5) {
   more.push_back(fmt::format("grid.bar.cells=[{},1]", n));

@@ -10,6 +10,7 @@
 
 #include "support/model_text.h"
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/told.h"
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
@@ -21,7 +22,7 @@ using namespace talus::test;
 
 namespace {
 
-const std::string kExample = std::string(TALUS_SOURCE_DIR) + "/examples/conventional/conventional.toml";
+const std::string kExample = source_file("examples/conventional/conventional.toml");
 
 double last(const CaseResult& r, const std::string& column) { return r.column(column).back(); }
 
@@ -313,8 +314,7 @@ TEST_CASE("conventional DDA: what it does not know is refused by its key") {
 
 TEST_CASE("conventional DDA: the same bits for any number of threads") {
   // some hundred blocks and pairs, so that threads have shares
-  const std::string file = std::string(TALUS_SOURCE_DIR) + "/studies/comparison/tunnel.toml",
-                    text = read_text_file(file);
+  const std::string file = source_file("studies/comparison/tunnel.toml"), text = read_text_file(file);
   std::vector<double> first;
   for (const int threads : {1, 2, 3}) {
     Findings findings("m.toml", text);

@@ -7,6 +7,7 @@
 
 #include "support/overlap.h"
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
@@ -21,7 +22,7 @@ using namespace talus::test;
 namespace {
 
 std::string example(const std::string& name) {
-  return read_text_file(fmt::format("{}/examples/{}/{}.toml", TALUS_SOURCE_DIR, name, name));
+  return read_text_file(source_file(fmt::format("examples/{0}/{0}.toml", name)));
 }
 
 struct CutExample {

@@ -1,6 +1,7 @@
 // Every example runs, and gives the number that its README quotes.
 
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/model/toml_source.h"
 #include "talus/record/read_record.h"
@@ -13,7 +14,7 @@ using namespace talus::test;
 namespace {
 
 CaseResult run_example(const std::string& name, const std::function<void(const Instant&)>& watch = nullptr) {
-  const std::string file = fmt::format("{0}/examples/{1}/{1}.toml", TALUS_SOURCE_DIR, name);
+  const std::string file = source_file(fmt::format("examples/{0}/{0}.toml", name));
   return run_case(read_text_file(file), {}, watch, nullptr, file);
 }
 
@@ -98,8 +99,7 @@ TEST_CASE(
 
   // rigid block with Coulomb friction: w' = -a - mu g sign(w), stuck while |a| <= mu g; the acceleration of
   // the file is linear between its samples. Steps of 10 us: 1e-5 s x 1 m/s of slip
-  const record::Record motion =
-      record::read_record(std::string(TALUS_SOURCE_DIR) + "/examples/record/motion.csv");
+  const record::Record motion = record::read_record(source_file("examples/record/motion.csv"));
   const double limit = 9.81 * std::tan(20 * M_PI / 180), h = 1e-5;
   const int fine = 1000;  // steps per sample; the run takes 10
   double w = 0, slip = 0, worst_2 = 0, worst = 0, largest = 0;
@@ -149,14 +149,13 @@ TEST_CASE("example creeping_block: the smoothed friction law creeps, the faster 
   // epsilon2 tan(pi m / 2) / dt with m = tan 20 / tan 30
   const double share = std::tan(20 * M_PI / 180) / std::tan(30 * M_PI / 180);
   for (const double dt : {1e-3, 1e-4}) {
-    const CaseResult r = run_case(
-        read_text_file(std::string(TALUS_SOURCE_DIR) + "/examples/creeping_block/creeping_block.toml"),
-        {fmt::format("stage.stand.time_step={}", dt)});
+    const CaseResult r = run_case(read_text_file(source_file("examples/creeping_block/creeping_block.toml")),
+                                  {fmt::format("stage.stand.time_step={}", dt)});
     check_close(fmt::format("creeping_block velocity at dt = {:g} s [m/s]", dt),
                 r.column("block.velocity_x").back(), 6e-8 * std::tan(M_PI * share / 2) / dt, 1e-2, 1e-3);
   }
   const CaseResult exact =
-      run_case(read_text_file(std::string(TALUS_SOURCE_DIR) + "/examples/creeping_block/creeping_block.toml"),
+      run_case(read_text_file(source_file("examples/creeping_block/creeping_block.toml")),
                {"contact={joint=\"face\"}"});
   // contacts give, once, by far less than a millionth of the block
   const auto& x = exact.column("block.displacement_x");
@@ -299,7 +298,7 @@ TEST_CASE("example hammer: the waves leave through the edges") {
 }
 
 TEST_CASE("example hammer has the same bits for any number of threads") {
-  const std::string text = read_text_file(TALUS_SOURCE_DIR "/examples/hammer/hammer.toml");
+  const std::string text = read_text_file(source_file("examples/hammer/hammer.toml"));
   std::vector<State> end;
   for (const int threads : {1, 3}) {
     Findings findings("hammer.toml", text);

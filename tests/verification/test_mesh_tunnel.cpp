@@ -5,6 +5,7 @@
 #include <map>
 
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "support/tunnel_model.h"
 #include "talus/base/text_file.h"
@@ -64,7 +65,7 @@ TEST_CASE(
 
 TEST_CASE("A6j by an unstructured mesh that Gmsh made") {
   // a ring with 24 edges at its wall (tests/fixtures/quarter_ring.geo); the core is one block with as many
-  const std::string file = TALUS_SOURCE_DIR "/tests/fixtures/quarter_ring.msh";
+  const std::string file = source_file("tests/fixtures/quarter_ring.msh");
   const Mesh read = read_msh(file, read_text_file(file));
   TriangleMesh grid;
   grid.node = read.node;

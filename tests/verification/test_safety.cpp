@@ -2,6 +2,7 @@
 // alone and with cohesion, and the columns of Goodman and Bray.
 
 #include "support/limit_models.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/model/joint_law.h"
 #include "talus/model/toml_source.h"
@@ -116,7 +117,7 @@ TEST_CASE("reduced strength: tangents and stresses divided, dilation kept below 
 }
 
 TEST_CASE("example toppling: the factor of safety of Goodman and Bray's columns") {
-  const std::string file = std::string(TALUS_SOURCE_DIR) + "/examples/toppling/toppling.toml";
+  const std::string file = source_file("examples/toppling/toppling.toml");
   // a short variant: brackets 2 % on either side of tan 45 / tan 38.134 deg
   const PreparedRun prepared =
       prepare(read_text_file(file), {"safety.lowest=1.248", "safety.highest=1.3", "safety.tolerance=0.015"});

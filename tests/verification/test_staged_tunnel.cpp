@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
 
@@ -57,7 +58,7 @@ Section section(const Instant& now) {
 namespace {
 
 void check_example(const std::vector<std::string>& overrides) {
-  const std::string file = std::string(TALUS_SOURCE_DIR) + "/examples/staged_tunnel/staged_tunnel.toml";
+  const std::string file = source_file("examples/staged_tunnel/staged_tunnel.toml");
   std::string text = read_text_file(file);
   const char* sides[] = {"base", "left", "right"};
   for (const char* side : sides)

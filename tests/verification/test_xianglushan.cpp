@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
 
@@ -37,7 +38,7 @@ double base_displacement(const History& outcrop, double t, double speed, double 
 TEST_SUITE_BEGIN("optimised");
 
 TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of shaking") {
-  const std::string file = TALUS_SOURCE_DIR "/examples/xianglushan/xianglushan.toml";
+  const std::string file = source_file("examples/xianglushan/xianglushan.toml");
   std::vector<std::string> overrides = {
       fmt::format("region.rock.polygon=[[{0},{2}],[{1},{2}],[{1},{3}],[{0},{3}]]", -kHalfWidth, kHalfWidth,
                   kBottom, kTop - 3),

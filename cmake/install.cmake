@@ -12,8 +12,6 @@ target_link_libraries(talus_shared PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,talus>"
 target_link_options(talus_shared PRIVATE -Wl,-Bsymbolic-functions)
 target_include_directories(talus_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(talus_shared INTERFACE cxx_std_20)
-install(TARGETS talus_shared EXPORT talus_targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library
-        NAMELINK_COMPONENT development)
 
 # Headers that talus.h includes, in turn; anything but the standard library would be one more thing for others to have.
 function(talus_headers first out)
@@ -36,21 +34,36 @@ function(talus_headers first out)
   set(${out} ${found} PARENT_SCOPE)
 endfunction()
 talus_headers(talus/talus.h headers)
-foreach(header ${headers})
-  cmake_path(GET header PARENT_PATH folder)
-  install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT development)
-endforeach()
 
-set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/talus)
-install(EXPORT talus_targets NAMESPACE talus:: FILE talusTargets.cmake DESTINATION ${config_folder} COMPONENT development)
-configure_package_config_file(cmake/talusConfig.cmake.in ${PROJECT_BINARY_DIR}/talusConfig.cmake INSTALL_DESTINATION ${config_folder})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/talusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/talusConfig.cmake ${PROJECT_BINARY_DIR}/talusConfigVersion.cmake DESTINATION ${config_folder}
-        COMPONENT development)
-# by its own place, wherever cmake --install --prefix has put it
-file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-configure_file(cmake/talus.pc.in ${PROJECT_BINARY_DIR}/talus.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/talus.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+# The library, and what its users have, with libraries in `folder`. Once for an installation, and once more for packages
+# (cmake/packages.cmake), where they lie by architecture: components of their own, that nothing else installs.
+function(talus_install_library folder of)
+  install(TARGETS talus_shared EXPORT ${of}talus_targets
+          LIBRARY DESTINATION ${folder} COMPONENT ${of}library NAMELINK_COMPONENT ${of}development ${ARGN})
+  foreach(header ${headers})
+    cmake_path(GET header PARENT_PATH header_folder)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${header_folder}
+            COMPONENT ${of}development ${ARGN})
+  endforeach()
+  set(config_folder ${folder}/cmake/talus)
+  set(made ${PROJECT_BINARY_DIR}/${of}library)
+  install(EXPORT ${of}talus_targets NAMESPACE talus:: FILE talusTargets.cmake DESTINATION ${config_folder}
+          COMPONENT ${of}development ${ARGN})
+  configure_package_config_file(cmake/talusConfig.cmake.in ${made}/talusConfig.cmake INSTALL_DESTINATION ${config_folder})
+  write_basic_package_version_file(${made}/talusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${made}/talusConfig.cmake ${made}/talusConfigVersion.cmake DESTINATION ${config_folder}
+          COMPONENT ${of}development ${ARGN})
+  # by its own place, wherever cmake --install --prefix has put it
+  file(RELATIVE_PATH to_prefix /${folder}/pkgconfig /)
+  set(prefix "\${pcfiledir}/${to_prefix}")
+  if(of)
+    set(prefix /usr)  # a package is not moved, and pkg-config leaves out what compilers look at by themselves
+  endif()
+  set(library_folder ${folder})
+  configure_file(cmake/talus.pc.in ${made}/talus.pc @ONLY)
+  install(FILES ${made}/talus.pc DESTINATION ${folder}/pkgconfig COMPONENT ${of}development ${ARGN})
+endfunction()
+talus_install_library(${CMAKE_INSTALL_LIBDIR} "")
 
 # what the program tells of itself
 if(TARGET talus_app)
@@ -77,4 +90,6 @@ foreach(part program talus_pages)
     add_dependencies(installation ${part})
   endif()
 endforeach()
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/docs/licences.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/docs/licences.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# packages have it in their file copyright
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)

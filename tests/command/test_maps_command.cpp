@@ -328,7 +328,7 @@ TEST_CASE("maps: without the module the message says what to install") {
   shell(folder, "cp " TALUS_COMMAND " talus_alone");
   const Outcome o = shell(folder, "./talus_alone import " + kMaps + "metres.dxf --as STEEP=joints");
   CHECK(o.code == 4);
-  has(o.text, "install the package libgdal-dev");
+  has(o.text, "install the package talus-maps, or libgdal-dev and build again");
 }
 
 }  // namespace test_maps_command

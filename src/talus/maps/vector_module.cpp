@@ -46,8 +46,8 @@ const VectorModule& module() {
     }
     throw FileError(
         trouble.empty()
-            ? fmt::format("maps need {}, which was not built: install the package libgdal-dev and "
-                          "build again (./run.sh --maps does both)",
+            ? fmt::format("maps need {}, which is not here: install the package talus-maps, or libgdal-dev "
+                          "and build again (./run.sh --maps does both)",
                           kModuleFile)
             : "the module for maps cannot be loaded: " + trouble);
   }();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <optional>
 
 #include "talus/base/clock.h"
@@ -48,7 +49,9 @@ constexpr int kStalls = 2, kMostStuck = 4;
 // rest.
 constexpr double kSolverShare = 0.02;
 
-class Runner {
+}  // namespace
+
+class StagedRun::Runner {
  public:
   Runner(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
          const Workers& workers)
@@ -62,40 +65,81 @@ class Runner {
     if (scene.model.formulation == Formulation::kPenalty) penalty_.emplace(scene_, work_);
   }
 
-  RunResult run(const Standing* from) {
+  // Makes the state ready. Trouble is told by the first go().
+  void begin(const Standing* from) {
+    attempt([&] {
+      if (penalty_ && state_.carried_stress.empty())
+        begin_penalty(scene_, penalty_settings(scene_, scene_.model.stages[0]).scheme, state_);
+      if (from) go_on(*from);
+      return true;
+    });
+  }
+
+  // Whether the run goes on when `pause` is reached.
+  bool go(const Pause& pause) {
+    return attempt([&] {
+      for (int64_t taken = 0;; ++taken) {
+        if (!in_stage_) {
+          if (result_.interrupted || result_.stages.size() >= plans_.size()) return show_end(), false;
+          begin_stage(static_cast<int>(result_.stages.size()));
+        }
+        const double close = 1e-6 * plans_[result_.stages.size() - 1].dt;  // sums of steps are not round
+        if (taken >= pause.steps || state_.time >= pause.time - close) return true;
+        if (take_step() && result_.stages.back().steps < plans_[result_.stages.size() - 1].steps) continue;
+        end_stage();
+        if (pause.stage_end && !result_.interrupted && result_.stages.size() < plans_.size()) return true;
+      }
+    });
+  }
+
+  // Ends it where it stands, when it has not come to its end.
+  void stop() {
+    if (over_) return;
+    attempt([&] {
+      if (result_.stages.empty()) begin_stage(0);  // the last instant is one of a stage
+      result_.interrupted = true;
+      observer_.keep_state(standing(), state_);
+      if (in_stage_) end_stage();
+      return show_end(), false;
+    });
+  }
+
+  bool over() const { return over_; }
+  Standing standing() const { return {result_, !in_stage_}; }
+  const RunResult& result() const { return result_; }
+
+ private:
+  // What is done while the clock of the run goes. Numerical trouble ends the run.
+  template <class What>
+  bool attempt(const What& what) {
+    if (over_) return false;
     const double wall = wall_now(), shared = work_.workers.shared_seconds(),
                  idle = work_.workers.idle_seconds();
     const std::clock_t cpu = std::clock();
-    size_t first = 0;
     try {
       const InPart part(work_.profile, Profile::kRest);
-      if (penalty_ && state_.carried_stress.empty())
-        begin_penalty(scene_, penalty_settings(scene_, scene_.model.stages[0]).scheme, state_);
-      if (from) {
-        go_on(*from);
-        first = result_.stages.size();
-      }
-      for (size_t i = first; i < plans_.size() && !result_.interrupted; ++i) run_stage(static_cast<int>(i));
-      show_end();
+      over_ = !what();
     } catch (const NumericalError& e) {
+      over_ = true;
       result_.failure = e.what();
       if (result_.no_rest) show_unrest();
     }
     result_.candidate_rebuilds = state_.candidates.rebuilds;
     result_.threads = work_.workers.threads();
+    shared_ += work_.workers.shared_seconds() - shared;
+    wall_ += wall_now() - wall;
     result_.profile = work_.profile;
-    result_.profile.shared = work_.workers.shared_seconds() - shared;
-    for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
-    result_.profile.wall = wall_now() - wall;
-    result_.wall_seconds += result_.profile.wall;
+    result_.profile.shared = shared_, result_.profile.wall = wall_;
+    result_.wall_seconds += wall_now() - wall;
     // helpers that stand by keep their processors busy and do nothing
     result_.cpu_seconds +=
         static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC - (work_.workers.idle_seconds() - idle);
-    return result_;
+    result_.broken_faces = 0;
+    for (const FaceState& f : state_.face) result_.broken_faces += f.broken;
+    return !over_;
   }
 
- private:
-  void run_stage(int index) {
+  void begin_stage(int index) {
     const auto k = static_cast<size_t>(index);
     const StageInput& stage = scene_.model.stages[k];
     const StagePlan& plan = plans_[k];
@@ -113,7 +157,7 @@ class Runner {
       state_.strain_part_start = state_.strain_part;
     }
     result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
-    take_steps(index);
+    enter_steps(index);
   }
 
   void settle_in(const StageInput& stage) {
@@ -139,49 +183,59 @@ class Runner {
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     settle_in(scene_.model.stages[static_cast<size_t>(index)]);
-    if (!from.between) take_steps(index);
+    if (!from.between) enter_steps(index);
   }
 
-  // The steps that are left of the stage.
-  void take_steps(int index) {
+  void enter_steps(int index) {
+    in_stage_ = true;
+    advance_ = plans_[static_cast<size_t>(index)].dt;
+    observer_.stage_begins(scene_, index, plans_[static_cast<size_t>(index)]);
+    if (penalty_) penalty_->stand(penalty_settings_, advance_, state_);
+    from_rest_.emplace(scene_, work_, state_);
+  }
+
+  // Whether the stage goes on after a step more.
+  bool take_step() {
+    const int index = static_cast<int>(result_.stages.size()) - 1;
     const auto k = static_cast<size_t>(index);
     const StageInput& stage = scene_.model.stages[k];
     const StagePlan& plan = plans_[k];
-    double advance = plan.dt;
     StageResult& out = result_.stages.back();
-    observer_.stage_begins(scene_, index, plan);
-    if (penalty_) penalty_->stand(penalty_settings_, plan.dt, state_);
-    StepsFromRest from_rest(scene_, work_, state_);
-
-    for (int64_t n = out.steps; n < plan.steps; ++n) {
-      if (memory_is_short()) throw std::bad_alloc();  // while there is some left to end in order
-      if (stops()) {
-        result_.interrupted = true;
-        break;
-      }
-      if (stage.from_rest && state_.time >= out.begin + stage.duration) break;
-      settings_.sharper = state_.rest.sharper;
-      StepReport report = penalty_          ? penalty_->report(state_)
-                          : stage.from_rest ? from_rest.kick(stage, out.begin, plan.dt, settings_, advance)
-                                            : kick(scene_, settings_, plan.dt, work_, state_);
-      if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance / plan.dt_bound);
-      show({scene_, state_, work_, report, plan, advance, index, n == 0, false, n});
-      go_on_or_fail(index, n, advance, report);
-      ++out.steps;
-      if (stage.from_rest)
-        from_rest.lengthen(plan.dt, is_relaxed(stage, 0));
-      else
-        state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
-      out.unbalanced = report.unbalanced;
-      last_ = report;
-      state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
-      if (stage.kind == StageKind::kStatic && is_at_rest(stage, report, n) &&
-          (!stage.from_rest || from_rest.stands())) {
-        out.at_rest = true;
-        break;
-      }
-      if (stage.kind == StageKind::kStatic && watch_rest(stage, report, plan, n)) break;
+    const int64_t n = out.steps;
+    if (n >= plan.steps) return false;
+    if (memory_is_short()) throw std::bad_alloc();  // while there is some left to end in order
+    if (stops()) {
+      result_.interrupted = true;
+      return false;
     }
+    if (stage.from_rest && state_.time >= out.begin + stage.duration) return false;
+    settings_.sharper = state_.rest.sharper;
+    StepReport report = penalty_          ? penalty_->report(state_)
+                        : stage.from_rest ? from_rest_->kick(stage, out.begin, plan.dt, settings_, advance_)
+                                          : kick(scene_, settings_, plan.dt, work_, state_);
+    if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance_ / plan.dt_bound);
+    show({scene_, state_, work_, report, plan, advance_, index, n == 0, false, n});
+    go_on_or_fail(index, n, advance_, report);
+    ++out.steps;
+    if (stage.from_rest)
+      from_rest_->lengthen(plan.dt, is_relaxed(stage, 0));
+    else
+      state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
+    out.unbalanced = report.unbalanced;
+    last_ = report;
+    state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
+    if (stage.kind != StageKind::kStatic) return true;
+    if (is_at_rest(stage, report, n) && (!stage.from_rest || from_rest_->stands())) {
+      out.at_rest = true;
+      return false;
+    }
+    return !watch_rest(stage, report, plan, n);
+  }
+
+  void end_stage() {
+    StageResult& out = result_.stages.back();
+    const StageInput& stage = scene_.model.stages[result_.stages.size() - 1];
+    in_stage_ = false;
     out.end = state_.time;
     // the next stage begins at rest; until now they told how far to look ahead
     if (stage.from_rest && out.at_rest) std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
@@ -533,21 +587,40 @@ class Runner {
     std::vector<Vec2> place;
   } look_, latest_look_;                 // the look before the latest, and that
   std::optional<PenaltySteps> penalty_;  // of formulation = "penalty"
+  // of the stage that goes on
+  bool in_stage_ = false, over_ = false;
+  double advance_ = 0;
+  std::optional<StepsFromRest> from_rest_;
+  double wall_ = 0, shared_ = 0;  // [s] of Profile
   RunResult result_;
 };
 
-}  // namespace
+StagedRun::StagedRun(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
+                     const Workers& workers, const Standing* from) {
+  TALUS_ASSERT(plans.size() <= scene.model.stages.size());
+  runner_ = std::make_unique<Runner>(scene, plans, state, observer, workers);
+  runner_->begin(from);
+}
+
+StagedRun::~StagedRun() = default;
+bool StagedRun::advance(const Pause& pause) { return runner_->go(pause); }
+void StagedRun::stop() { runner_->stop(); }
+bool StagedRun::over() const { return runner_->over(); }
+Standing StagedRun::standing() const { return runner_->standing(); }
+const RunResult& StagedRun::result() const { return runner_->result(); }
 
 RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
                      const Workers& workers) {
-  TALUS_ASSERT(plans.size() <= scene.model.stages.size());
-  return Runner(scene, plans, state, observer, workers).run(nullptr);
+  StagedRun run(scene, plans, state, observer, workers);
+  run.advance({});
+  return run.result();
 }
 
 RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, const Standing& from,
                           State& state, Observer& observer, const Workers& workers) {
-  TALUS_ASSERT(plans.size() <= scene.model.stages.size());
-  return Runner(scene, plans, state, observer, workers).run(&from);
+  StagedRun run(scene, plans, state, observer, workers, &from);
+  run.advance({});
+  return run.result();
 }
 
 size_t stages_until(const Model& model, const std::string& name) {

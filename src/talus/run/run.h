@@ -2,6 +2,8 @@
 // The stages of a run, one after the other, and what came of them.
 
 #include <array>
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -72,6 +74,41 @@ RunResult run_stages(Scene& scene, const std::vector<StagePlan>& plans, State& s
 /// Goes on from where a run stood, with the state it had then; the scene is that of build_scene.
 RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, const Standing& from,
                           State& state, Observer& observer, const Workers& workers = Workers());
+
+/// How far a run is taken: the first that is reached counts.
+struct Pause {
+  int64_t steps = std::numeric_limits<int64_t>::max();
+  double time = std::numeric_limits<double>::infinity();  // [s] of the run, as State::time
+  bool stage_end = false;                                 // between two stages
+};
+
+/// run_stages() in pieces, with the same bits however they are cut.
+class StagedRun {
+ public:
+  /// @param from  as continue_stages(); null: from the start
+  /// @note  all but `from` have to live as long as the run
+  StagedRun(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,
+            const Workers& workers = Workers(), const Standing* from = nullptr);
+  ~StagedRun();
+  StagedRun(const StagedRun&) = delete;
+  StagedRun& operator=(const StagedRun&) = delete;
+
+  /// Goes on to a pause. Errors of the observer pass through.
+  /// @return  whether there is more to come: false behind the last stage, after numerical trouble (result().failure) and
+  ///          where the observer has stopped it
+  bool advance(const Pause& pause);
+  /// Ends a run that is not over where it stands, as one that its observer stops.
+  void stop();
+  bool over() const;
+  /// For a saved state. @pre  a stage has begun
+  Standing standing() const;
+  /// So far.
+  const RunResult& result() const;
+
+ private:
+  class Runner;
+  std::unique_ptr<Runner> runner_;
+};
 
 /// Threads that pay for a model of so many blocks, at most as many as the machine has processors.
 int threads_for(int blocks);

@@ -66,10 +66,13 @@ StepReport StepsFromRest::kick(const StageInput& stage, double begin, double fir
 // `expect`: what the try came to is what the next will: rates, by which it looks ahead, and forces of supports, of which
 // blocks that they hold fast say nothing.
 void StepsFromRest::restore(const State& before, bool expect) {
+  if (!expect) {
+    state_ = before;
+    return;
+  }
   std::vector<BlockRate> rate = std::move(state_.rate);
   const std::array found{std::move(state_.supports), std::move(state_.boundaries), std::move(state_.ties)};
   state_ = before;
-  if (!expect) return;
   state_.rate = std::move(rate);
   const std::array held{&state_.supports, &state_.boundaries, &state_.ties};
   for (size_t i = 0; i < held.size(); ++i)

@@ -27,7 +27,7 @@ ALLOWED = {
     "output": "base geometry model cut blocks",
     "audit": "base geometry output",
     "run": "base geometry record model cut blocks rows contact supports solve step penalty output",
-    "results": "base geometry record model cut blocks rows contact supports solve step output audit plot run",
+    "results": "base geometry record model maps cut blocks rows contact supports solve step output audit plot run",
     "plot": "base geometry record model maps cut output",
     "report": "base geometry model cut output plot",
     "study": "base geometry model record output plot",

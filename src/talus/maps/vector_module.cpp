@@ -23,10 +23,20 @@ namespace {
 
 constexpr const char* kModuleFile = "libtalus_vector.so";
 
-// Beside the program, where a build puts it, and where an installation does.
+std::filesystem::path library_folder() {
+  Dl_info found{};
+  // any address within the library
+  if (dladdr(reinterpret_cast<const void*>(&read_drawing), &found) == 0 || !found.dli_fname) return {};
+  std::error_code ignored;
+  return std::filesystem::absolute(found.dli_fname, ignored).parent_path();
+}
+
+// Beside the program, where a build puts it, and where an installation does; the same from where the library lies, which
+// other programs may have loaded.
 std::vector<std::filesystem::path> places() {
-  const auto folder = program_folder();
-  return {folder / kModuleFile, folder / "../modules" / kModuleFile, folder / "../lib/talus" / kModuleFile};
+  const auto folder = program_folder(), library = library_folder();
+  return {folder / kModuleFile, folder / "../modules" / kModuleFile, folder / "../lib/talus" / kModuleFile,
+          library / "modules" / kModuleFile, library / "talus" / kModuleFile, library / "../talus" / kModuleFile};
 }
 
 const VectorModule& module() {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 
 #include "talus/base/bytes.h"
 #include "talus/base/child.h"
@@ -44,6 +45,12 @@ class Handle {
 };
 
 // HDF5's own messages are for programmers; ours follow.
+// The library serves one thread at a time; who leaves for another process must not do so while it is at work.
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 void keep_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 // A file that is memory alone.
@@ -181,6 +188,7 @@ std::string_view check_header(const std::string& name, std::string_view bytes, s
 }  // namespace
 
 std::string archive_bytes(const Archive& archive) {
+  const std::lock_guard lock(one_at_a_time());
   keep_quiet();
   const std::string image = image_of(archive);
   if (image.empty()) throw std::bad_alloc();  // there is no file that could fail
@@ -217,6 +225,7 @@ std::string read_image(const std::string& image) {
 }  // namespace
 
 Archive parse_archive(const std::string& name, const std::string& bytes) {
+  const std::lock_guard lock(one_at_a_time());
   keep_quiet();
   const std::string_view digest =
       check_header(name, bytes, bytes.size() < kHeader ? 0 : bytes.size() - kHeader);

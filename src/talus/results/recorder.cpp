@@ -53,6 +53,12 @@ int64_t size_in(const Archive& saved, const std::string& name) {
   return size;
 }
 
+// Whether the state was saved of a run that wrote results.
+bool has_results(const Archive& saved) {
+  const auto at = saved.numbers.lower_bound("recorder.");
+  return at != saved.numbers.end() && at->first.rfind("recorder.", 0) == 0;
+}
+
 // A table that is written whole at the end of every stage, as it was when the state was saved.
 std::string table_then(ResultFolder& folder, const char* name, int64_t size) {
   const std::filesystem::path path = folder.path() / name;
@@ -156,6 +162,7 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved
 std::unique_ptr<Recorder> Recorder::branch_off(const Scene& scene, ResultFolder folder, const Archive& parent,
                                                RunNotes notes) {
   const BranchOrigin origin = notes.branch.value();
+  if (!has_results(parent)) return std::make_unique<Recorder>(scene, std::move(folder), std::move(notes));
   check_kept(scene, parent, origin.same_monitors, origin.same_output);
   auto recorder = std::make_unique<Recorder>(scene, std::move(folder), std::move(notes));
   Loader from(parent);

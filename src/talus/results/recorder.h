@@ -27,7 +27,7 @@ class Recorder : public Observer {
   /// check().
   Recorder(const Scene& scene, ResultFolder folder, const Archive& saved, RunNotes notes = {});
   /// Begins the results of a branch, notes.branch, of the run that `parent` was saved of: monitors, output intervals and
-  /// audit go on where they stood as far as they are the same.
+  /// audit go on where they stood as far as they are the same and the parent wrote results.
   static std::unique_ptr<Recorder> branch_off(const Scene& scene, ResultFolder folder, const Archive& parent,
                                               RunNotes notes);
   ~Recorder() override;
@@ -44,6 +44,8 @@ class Recorder : public Observer {
   void hold_state(const Standing& standing, const State& state) override;
   void fails(const Instant& instant) override;
   void keep_state(const Standing& standing, const State& state) override;
+  /// What it saves.
+  Archive archive_of(const Standing& standing, const State& state) const;
 
   void at(const Instant& instant) override;
 
@@ -106,7 +108,6 @@ class Recorder : public Observer {
   static ResultFolder taken_up(ResultFolder folder, const Scene& scene, const Archive& saved);
   void write_last_word(const std::string& why) noexcept;
   void load(const Archive& saved);
-  Archive archive_of(const Standing& standing, const State& state) const;
   std::string summary_of(const RunResult& result) const;
   std::filesystem::path write_saved(const std::string& name, const Archive& archive);
   void write_step(int64_t step, const Archive& archive);

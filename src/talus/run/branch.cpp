@@ -137,8 +137,12 @@ BranchKeys branch_keys(const ModelKeys& now, const ModelKeys& before, const std:
 }
 
 SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, BranchOrigin& origin) {
+  return branch_of(path.string(), read_text_file(path), prepared, origin);
+}
+
+SavedRun branch_of(const std::string& name, const std::string& bytes, PreparedRun& prepared,
+                   BranchOrigin& origin) {
   Scene& scene = prepared.scene;
-  const std::string bytes = read_text_file(path), name = path.string();
   Archive archive = parse_archive(name, bytes);
   origin.state = name, origin.digest = text_hash(bytes);
   origin.model_hash = archive.texts["model.hash"];

@@ -33,5 +33,8 @@ BranchKeys branch_keys(const ModelKeys& now, const ModelKeys& before, const std:
 /// Reads a saved state for a branch of it. The contacts of `prepared` get the give of the parent's.
 /// Throws FileError as read_saved_run(), InputError naming every key that may not differ.
 SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, BranchOrigin& origin);
+/// The same of the bytes of a saved state; `name` is for messages and for origin.state.
+SavedRun branch_of(const std::string& name, const std::string& bytes, PreparedRun& prepared,
+                   BranchOrigin& origin);
 
 }  // namespace talus

@@ -6,10 +6,15 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
-#include <cstring>
 #include <memory>
+#include <optional>
 
 #include "talus/base/text_file.h"
+#include "talus/output/read_vtk.h"
+#include "talus/plot/cut_picture.h"
+#include "talus/results/check_report.h"
+#include "talus/results/cut_model.h"
+#include "talus/run/branch.h"
 #include "talus/talus.h"
 
 namespace py = pybind11;
@@ -21,11 +26,31 @@ using namespace talus;
 // The exceptions of talus/errors.py.
 py::object error_class(const char* name) { return py::module_::import("talus.errors").attr(name); }
 
-[[noreturn]] void raise(const char* name, const std::string& text, const py::object& findings) {
+[[noreturn]] void raise(const char* name, const std::string& text, const py::object& findings = py::none()) {
   py::object error = error_class(name)(text);
   if (!findings.is_none()) error.attr("findings") = findings;
   PyErr_SetObject(error_class(name).ptr(), error.ptr());
   throw py::error_already_set();
+}
+
+// What the library throws, as exceptions of the package; `findings` gives those of an InputError.
+template <class What, class Told>
+auto guarded(const What& what, const Told& findings) {
+  try {
+    return what();
+  } catch (const InputError& e) {
+    raise("InputError", e.what(), findings());
+  } catch (const FileError& e) {
+    raise("FileError", e.what());
+  } catch (const NumericalError& e) {
+    raise("NumericalError", e.what());
+  } catch (const Error& e) {
+    raise("Error", e.what());
+  }
+}
+template <class What>
+auto guarded(const What& what) {
+  return guarded(what, [] { return py::none(); });
 }
 
 py::list told(const Findings& findings, const std::string& file) {
@@ -37,6 +62,12 @@ py::list told(const Findings& findings, const std::string& file) {
   return list;
 }
 
+py::list corners_of(const Polygon& polygon) {
+  py::list corners;
+  for (const Vec2 v : polygon) corners.append(py::make_tuple(v.x, v.y));
+  return corners;
+}
+
 // A model as it was read: each run takes a scene of its own, which stages change.
 struct PyModel {
   std::string file, text;
@@ -44,23 +75,97 @@ struct PyModel {
   py::list findings;
   RunNotes notes;
 
-  PreparedRun prepare() {
+  PreparedRun prepare(Cut* cut = nullptr) {
     Findings found(file, text);
-    try {
-      PreparedRun run;
-      {
-        py::gil_scoped_release free;
-        run = prepare_run(file, text, overrides, found);
-      }
-      findings = told(found, file), notes = notes_of(overrides, found);
-      return run;
-    } catch (const InputError& e) {
-      raise("InputError", e.what(), told(found, file));
-    } catch (const FileError& e) {
-      raise("FileError", e.what(), py::none());
-    } catch (const Error& e) {
-      raise("Error", e.what(), py::none());
-    }
+    return guarded(
+        [&] {
+          PreparedRun run;
+          {
+            py::gil_scoped_release free;
+            run = prepare_run(file, text, overrides, found, cut);
+          }
+          findings = told(found, file), notes = notes_of(overrides, found);
+          return run;
+        },
+        [&] { return told(found, file); });
+  }
+
+  py::dict scene() {
+    Cut cut;
+    const PreparedRun run = prepare(&cut);
+    const Scene& scene = run.scene;
+    py::dict out;
+    py::list blocks, stages, polygons, steps;
+    for (const std::string& name : scene.blocks.name) blocks.append(name);
+    for (const StageInput& s : scene.model.stages) stages.append(s.name);
+    for (const BlockShape& b : scene.layout.blocks) polygons.append(corners_of(b.polygon));
+    for (const StagePlan& p : run.plans) steps.append(p.dt);
+    out["title"] = scene.model.title, out["hash"] = scene.model.hash;
+    out["blocks"] = blocks, out["stages"] = stages, out["polygons"] = polygons, out["time_steps"] = steps;
+    out["mass"] =
+        py::array_t<double>(static_cast<py::ssize_t>(scene.blocks.mass.size()), scene.blocks.mass.data());
+    return out;
+  }
+
+  std::string check() {
+    Cut cut;
+    const PreparedRun run = prepare(&cut);
+    py::gil_scoped_release free;
+    return check_report(file, static_cast<int>(notes.warnings.size()), run, cut);
+  }
+
+  void picture(const std::string& stem) {
+    Cut cut;
+    const PreparedRun run = prepare(&cut);
+    guarded([&] {
+      py::gil_scoped_release free;
+      plot::write_cut_picture(run.scene.model, cut, run.scene.layout, stem);
+    });
+  }
+};
+
+// What `talus cut` makes of a model.
+struct PyCut {
+  CutModel cut;
+  py::list findings;
+
+  static std::shared_ptr<PyCut> of(const std::string& file, const std::string& text,
+                                   const std::vector<std::string>& overrides) {
+    auto out = std::make_shared<PyCut>();
+    std::vector<Findings> found;
+    const auto all = [&] {
+      py::list list;
+      for (const Findings& f : found) list += told(f, file);
+      return list;
+    };
+    guarded(
+        [&] {
+          py::gil_scoped_release free;
+          out->cut = cut_model(file, text, overrides, found);
+        },
+        all);
+    out->findings = all();
+    return out;
+  }
+  template <class Of>
+  py::list of_blocks(const Of& of) const {
+    py::list out;
+    for (const BlockShape& b : cut.layout.blocks) out.append(of(b));
+    return out;
+  }
+  void write(const std::string& folder, bool force) const {
+    guarded([&] {
+      py::gil_scoped_release free;
+      check_result_folder(folder, force, ResultKind::kCut);
+      ResultFolder out(folder, force, ResultKind::kCut);
+      write_cut(cut, out);
+    });
+  }
+  void picture(const std::string& stem) const {
+    guarded([&] {
+      py::gil_scoped_release free;
+      plot::write_cut_picture(cut.model, cut.cut, cut.layout, stem);
+    });
   }
 };
 
@@ -84,14 +189,81 @@ py::array view(const std::shared_ptr<Memory>& memory, const void* first, size_t 
   return out;
 }
 
-// A contact point as a record of NumPy.
-struct ContactRow {
+// The views that a run has from its start to the end of the last of them.
+struct Views {
+  std::shared_ptr<Memory> memory;
+
+  const State& state() const { return memory->state; }
+  py::array displacement() const {
+    return view(memory, state().displacement.data(), state().displacement.size(), {2}, sizeof(Vec2));
+  }
+  py::array strain_part() const {
+    return view(memory, state().strain_part.data(), state().strain_part.size(), {2, 2}, sizeof(Mat2));
+  }
+  py::array rate() const {
+    const auto& r = state().rate;
+    return view(memory, r.empty() ? nullptr : &r[0].a, r.size(), {2}, sizeof(BlockRate));
+  }
+  py::array rate_gradient() const {
+    const auto& r = state().rate;
+    return view(memory, r.empty() ? nullptr : &r[0].G, r.size(), {2, 2}, sizeof(BlockRate));
+  }
+};
+
+// Contact points and rows as records of NumPy.
+struct ContactRecord {
   int32_t block_a, block_b, joint;
   double normal, shear, length, slip;
 };
+struct PointRecord {
+  int32_t kind, state, block_a, block_b;
+  double x, y, force_x, force_y, normal, shear, gap, length, slip, slip_left, opening;
+};
+struct RowRecord {
+  int32_t family, block_a, block_b, partner;
+  double normal_x, normal_y, impulse_normal, impulse_shear, bias_normal, bias_shear, compliance_normal,
+      compliance_shear, lower, upper, friction, cohesion;
+};
 
-struct PyInstant {
-  std::shared_ptr<Memory> memory;
+template <class Record>
+py::array_t<Record> records(const std::vector<Record>& of) {
+  py::array_t<Record> out(static_cast<py::ssize_t>(of.size()));
+  std::copy(of.begin(), of.end(), out.mutable_data());
+  return out;
+}
+
+py::array_t<ContactRecord> contacts_of(const State& state) {
+  std::vector<ContactRecord> rows;
+  rows.reserve(state.contacts.size());
+  for (const Contact& c : state.contacts)
+    rows.push_back({c.key.block_a, c.key.block_b, c.joint, c.force[0], c.force[1], c.length, c.slip});
+  return records(rows);
+}
+
+py::array_t<double> matrices(size_t n, const std::function<Mat2(size_t)>& of) {
+  py::array_t<double> out(
+      {static_cast<py::ssize_t>(n), static_cast<py::ssize_t>(2), static_cast<py::ssize_t>(2)});
+  double* to = out.mutable_data();
+  for (size_t k = 0; k < n; ++k) {
+    const Mat2 m = of(k);
+    *to++ = m.xx, *to++ = m.xy, *to++ = m.yx, *to++ = m.yy;
+  }
+  return out;
+}
+
+py::array_t<double> stress_of(const Scene& scene, const State& state) {
+  return matrices(state.displacement.size(),
+                  [&](size_t k) { return cauchy_stress(scene.blocks, state, static_cast<int>(k)); });
+}
+
+py::dict energy_of(const Energy& e) {
+  py::dict out;
+  out["kinetic"] = e.kinetic, out["strain"] = e.strain, out["gravity"] = e.gravity,
+  out["left_over"] = e.left_over;
+  return out;
+}
+
+struct PyInstant : Views {
   const Instant* now = nullptr;  // while the observer is called
 
   const Instant& instant() const {
@@ -100,32 +272,33 @@ struct PyInstant {
           "an instant is over once the observer has returned; views of its arrays stay valid");
     return *now;
   }
-  py::array displacement() const {
-    const auto& d = memory->state.displacement;
-    return view(memory, d.data(), d.size(), {2}, sizeof(Vec2));
-  }
-  py::array strain_part() const {
-    const auto& f = memory->state.strain_part;
-    return view(memory, f.data(), f.size(), {2, 2}, sizeof(Mat2));
-  }
   py::array velocity() const {
     const Instant& i = instant();
     py::array_t<double> out({static_cast<py::ssize_t>(i.state.rate.size()), static_cast<py::ssize_t>(2)});
-    auto v = out.mutable_unchecked<2>();
+    double* to = out.mutable_data();
     for (size_t k = 0; k < i.state.rate.size(); ++k) {
       const Vec2 a = rate_now(i.work, i.state, k).a;
-      v(static_cast<py::ssize_t>(k), 0) = a.x, v(static_cast<py::ssize_t>(k), 1) = a.y;
+      *to++ = a.x, *to++ = a.y;
     }
     return out;
   }
-  py::array contacts() const {
-    const std::vector<Contact>& of = instant().state.contacts;
-    py::array_t<ContactRow> out(static_cast<py::ssize_t>(of.size()));
-    auto rows = out.mutable_unchecked<1>();
-    for (size_t k = 0; k < of.size(); ++k)
-      rows(static_cast<py::ssize_t>(k)) = {of[k].key.block_a, of[k].key.block_b, of[k].joint, of[k].force[0],
-                                           of[k].force[1],    of[k].length,      of[k].slip};
-    return out;
+  py::array points() const {
+    std::vector<PointRecord> rows;
+    for (const FramePoint& p : frame_points(instant().scene, instant()))
+      rows.push_back({p.kind, p.state, p.block_a, p.block_b, p.point.x, p.point.y, p.force.x, p.force.y,
+                      p.normal_force, p.shear_force, p.gap, p.length, p.slip, p.slip_signed, p.opening});
+    return records(rows);
+  }
+  py::array rows() const {
+    const RowSet& set = instant().work.rows;
+    std::vector<RowRecord> rows;
+    for (size_t k = 0; k < set.size(); ++k) {
+      const PointRows& p = set.points[k];
+      rows.push_back({static_cast<int32_t>(set.owner[k].family), p.block_a, p.block_b, p.partner, p.normal.x,
+                      p.normal.y, set.impulse[k][0], set.impulse[k][1], p.row[0].bias, p.row[1].bias,
+                      p.row[0].compliance, p.row[1].compliance, p.lower, p.upper, p.friction, p.cohesion});
+    }
+    return records(rows);
   }
 };
 
@@ -133,12 +306,10 @@ struct PyInstant {
 class PyObserver : public Observer {
  public:
   PyObserver(std::shared_ptr<Memory> memory, py::object function, int64_t every, Observer* next)
-      : memory_(std::move(memory)),
-        function_(std::move(function)),
-        every_(every),
-        next_(next),
-        displacement_(memory_->state.displacement.data()),
-        strain_part_(memory_->state.strain_part.data()) {}
+      : memory_(std::move(memory)), function_(std::move(function)), every_(every), next_(next) {
+    const State& s = memory_->state;
+    displacement_ = s.displacement.data(), strain_part_ = s.strain_part.data(), rate_ = s.rate.data();
+  }
 
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     if (next_) next_->stage_begins(scene, stage, plan);
@@ -147,12 +318,13 @@ class PyObserver : public Observer {
     // views point here; a run that moved its numbers elsewhere would leave them behind. (The last instant of a stage is shown
     // by a copy whose blocks are where they are.)
     const State& own = memory_->state;
-    if (own.displacement.data() != displacement_ || own.strain_part.data() != strain_part_)
+    if (own.displacement.data() != displacement_ || own.strain_part.data() != strain_part_ ||
+        own.rate.data() != rate_)
       throw Error(kExitInternal, "the numbers of the run lie elsewhere than its views");
     if (next_) next_->at(now);
-    if (function_.is_none() || stopped_ || !(now.state.step % every_ == 0 || now.last)) return;
+    if (!listens_ || stopped_ || !(now.state.step % every_ == 0 || now.last)) return;
     py::gil_scoped_acquire hold;
-    const auto instant = std::make_shared<PyInstant>(PyInstant{memory_, &now});
+    const auto instant = std::make_shared<PyInstant>(PyInstant{{memory_}, &now});
     try {
       const py::object answer = function_(instant);
       stopped_ = answer.ptr() == Py_False;  // anything else goes on
@@ -182,6 +354,9 @@ class PyObserver : public Observer {
     if (next_) next_->keep_state(standing, state);
   }
 
+  // No more calls, nor results: of a run that is over.
+  void mute() { listens_ = false; }
+  void leave_results() { next_ = nullptr; }
   // Passes on what the function has thrown, or KeyboardInterrupt. With the GIL.
   void throw_if_error() {
     if (!error_) return;
@@ -195,64 +370,215 @@ class PyObserver : public Observer {
   py::object function_;
   int64_t every_;
   Observer* next_;
-  const Vec2* displacement_;
-  const Mat2* strain_part_;
-  bool stopped_ = false;
+  const Vec2* displacement_ = nullptr;
+  const Mat2* strain_part_ = nullptr;
+  const BlockRate* rate_ = nullptr;
+  bool listens_ = !function_.is_none(), stopped_ = false;
   std::unique_ptr<py::error_already_set> error_;
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
-struct PyResult {
-  std::shared_ptr<Memory> memory;
+struct PyResult : Views {
   RunResult result;
   std::string folder;
   bool valid = true;  // by the audit, where there was one
+
+  py::list stages() const {
+    py::list out;
+    for (const StageResult& s : result.stages) {
+      py::dict stage;
+      stage["name"] = s.name, stage["steps"] = s.steps, stage["begin"] = s.begin, stage["end"] = s.end;
+      stage["time_step"] = s.plan.dt, stage["at_rest"] = s.at_rest;
+      out.append(stage);
+    }
+    return out;
+  }
 };
 
-PyResult run(PyModel& model, const py::object& folder, const py::object& function, int64_t every, int threads,
-             const std::string& until, bool force) {
-  if (every < 1) throw py::value_error("every: 1 or more steps from call to call");
-  if (threads < 0 || threads > 1024) throw py::value_error("threads: from 0, as many as pay, to 1024");
-  const auto memory = std::make_shared<Memory>();
-  memory->prepared = model.prepare();
-  Scene& scene = memory->prepared.scene;
-  if (!until.empty()) {
-    const size_t stages = stages_until(scene.model, until);
-    if (stages == 0)
-      throw py::value_error("until: there is no stage \"" + until + "\"; Model.stages has their names");
-    end_after(memory->prepared, stages);
+// A saved state: the bytes of its file.
+struct PyState {
+  std::string name, bytes;
+
+  void write(const std::string& path) const {
+    guarded([&] { write_file(path, bytes, Reach::kDisk); });
   }
-  PyResult out;
-  out.memory = memory;
-  std::unique_ptr<Recorder> recorder;
-  try {
-    if (!folder.is_none()) {
-      ResultFolder results(py::str(folder).cast<std::string>(), force);
-      out.folder = results.path().string();
-      recorder = std::make_unique<Recorder>(scene, std::move(results), model.notes);
+  static PyState read(const std::string& path) {
+    return guarded([&] {
+      constexpr size_t kMost = size_t{1} << 40;
+      return PyState{path, read_text_file(path, kMost)};
+    });
+  }
+};
+
+// A run that is taken as far as its caller likes.
+class PyRun : public Views {
+ public:
+  PyRun(PyModel& model, const py::object& folder, const py::object& function, int64_t every, int threads,
+        const std::string& until, bool force, const std::optional<PyState>& from)
+      : Views{std::make_shared<Memory>()} {
+    if (every < 1) throw py::value_error("every: 1 or more steps from call to call");
+    if (threads < 0 || threads > 1024) throw py::value_error("threads: from 0, as many as pay, to 1024");
+    PreparedRun& prepared = memory->prepared;
+    prepared = model.prepare();
+    if (!until.empty()) {
+      const size_t stages = stages_until(prepared.scene.model, until);
+      if (stages == 0)
+        throw py::value_error("until: there is no stage \"" + until + "\"; Model.stages has their names");
+      end_after(prepared, stages);
     }
-    memory->state = start_state(scene);
-    PyObserver observer(memory, function, every, recorder.get());
+    const std::string name = folder.is_none() ? "" : py::str(folder).cast<std::string>();
+    guarded([&] { begin(model.notes, name, function, every, threads, force, from); });
+  }
+  ~PyRun() {
+    try {
+      if (!ended_) observer_->mute(), finish();
+    } catch (...) {  // whoever wants to know calls finish()
+    }
+  }
+  PyRun(const PyRun&) = delete;
+  PyRun& operator=(const PyRun&) = delete;
+
+  bool advance(const py::object& steps, const py::object& time, bool stage_end) {
+    Pause pause;
+    if (!steps.is_none()) pause.steps = steps.cast<int64_t>();
+    if (!time.is_none()) pause.time = time.cast<double>();
+    pause.stage_end = stage_end;
+    if (pause.steps < 0) throw py::value_error("steps: 0 or more");
+    if (std::isnan(pause.time)) throw py::value_error("time: a number of seconds");
+    take([&] { run_->advance(pause); });
+    return !run_->over();
+  }
+
+  std::shared_ptr<PyResult> finish() {
+    if (!ended_) take([&] { run_->stop(); });
+    return result();
+  }
+
+  std::shared_ptr<PyResult> result() const {
+    auto out = std::make_shared<PyResult>();
+    out->memory = memory, out->result = run_->result(), out->folder = folder_, out->valid = valid_;
+    return out;
+  }
+
+  PyState save() {
+    if (busy_) throw py::value_error("a run saves no state from within its observer");
+    if (run_->result().stages.empty()) advance(py::int_(0), py::none(), false);
+    return guarded([&] {
+      py::gil_scoped_release free;
+      const Standing standing = run_->standing();
+      const State& state = memory->state;
+      return PyState{memory->prepared.scene.model.file + ", a state in memory",
+                     archive_bytes(recorder_ ? recorder_->archive_of(standing, state)
+                                             : run_archive(memory->prepared.scene, standing, state))};
+    });
+  }
+
+  const Scene& scene() const { return memory->prepared.scene; }
+  bool over() const { return run_->over(); }
+  std::string stage() const {
+    const auto& stages = run_->result().stages;
+    return stages.empty() ? "" : stages.back().name;
+  }
+  const std::string& folder() const { return folder_; }
+
+ private:
+  void begin(RunNotes notes, const std::string& folder, const py::object& function, int64_t every,
+             int threads, bool force, const std::optional<PyState>& from) {
+    PreparedRun& prepared = memory->prepared;
+    std::optional<SavedRun> saved;
+    std::optional<ResultFolder> results;
+    const bool goes_on = from && !folder.empty() && lies_in(from->name, folder);
     {
       py::gil_scoped_release free;
-      const Workers workers(threads > 0 ? threads : threads_for(scene.blocks.count));
-      try {
-        out.result = run_stages(scene, memory->prepared.plans, memory->state, observer, workers);
-        if (recorder) recorder->finish(out.result);
-      } catch (const std::exception& e) {
-        if (recorder) recorder->abandon(e.what());
-        throw;
+      if (goes_on) {
+        // taken before the state is read: who is about to write into the folder must not do so meanwhile
+        results.emplace(ResultFolder::go_on(folder));
+        saved.emplace(saved_run_of(from->name, parse_archive(from->name, from->bytes), prepared));
+        Recorder::check(*results, prepared.scene, saved->archive);
+      } else if (from) {
+        saved.emplace(branch_of(from->name, from->bytes, prepared, notes.branch.emplace()));
       }
+      if (!folder.empty() && !results) results.emplace(folder, force);
     }
-    observer.throw_if_error();
-  } catch (const FileError& e) {
-    raise("FileError", e.what(), py::none());
-  } catch (const Error& e) {
-    raise("Error", e.what(), py::none());
+    if (saved && saved->standing.result.stages.size() > prepared.plans.size())
+      throw py::value_error("until: that stage had ended when the state was saved");
+    if (results) {
+      folder_ = results->path().string();
+      recorder_ = goes_on
+                      ? std::make_unique<Recorder>(prepared.scene, std::move(*results), saved->archive, notes)
+                  : saved ? Recorder::branch_off(prepared.scene, std::move(*results), saved->archive, notes)
+                          : std::make_unique<Recorder>(prepared.scene, std::move(*results), notes);
+    }
+    memory->state = saved ? std::move(saved->state) : start_state(prepared.scene);
+    observer_ = std::make_unique<PyObserver>(memory, function, every, recorder_.get());
+    py::gil_scoped_release free;
+    const Workers workers(threads > 0 ? threads : threads_for(prepared.scene.blocks.count));
+    run_ = std::make_unique<StagedRun>(prepared.scene, prepared.plans, memory->state, *observer_, workers,
+                                       saved ? &saved->standing : nullptr);
   }
-  if (recorder)
-    if (const auto audit = recorder->audit()) out.valid = audit->valid();
-  if (!out.result.failure.empty()) raise("NumericalError", out.result.failure, py::none());
+
+  // Goes on by `what`, and ends what has come to its end.
+  template <class What>
+  void take(const What& what) {
+    if (busy_) throw py::value_error("a run is taken on by one caller at a time, and not by its observer");
+    if (ended_) return;
+    busy_ = true;
+    try {
+      guarded([&] {
+        py::gil_scoped_release free;
+        what();
+        if (!run_->over()) return;
+        ended_ = true;
+        if (recorder_) recorder_->finish(run_->result());
+      });
+    } catch (const std::exception& e) {
+      busy_ = false, ended_ = true;
+      if (recorder_) recorder_->abandon(e.what());
+      leave_folder();
+      throw;
+    }
+    busy_ = false;
+    if (!ended_) return;
+    if (recorder_)
+      if (const auto audit = recorder_->audit()) valid_ = audit->valid();
+    leave_folder();
+    observer_->throw_if_error();
+    if (!run_->result().failure.empty()) raise("NumericalError", run_->result().failure);
+  }
+
+  // Others may take it, while this one is still looked at.
+  void leave_folder() {
+    observer_->leave_results();
+    recorder_.reset();
+  }
+
+  std::string folder_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<PyObserver> observer_;
+  std::unique_ptr<StagedRun> run_;
+  bool busy_ = false, ended_ = false, valid_ = true;
+};
+
+// A frame of a result folder: its arrays by name, (points or blocks, components).
+py::tuple frame(const std::string& path) {
+  const VtkFrame f = guarded([&] {
+    py::gil_scoped_release free;
+    return read_vtk(path);
+  });
+  py::dict arrays;
+  for (const auto& [name, a] : f.arrays) {
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(a.tuples())};
+    if (a.components > 1) shape.push_back(a.components);
+    arrays[py::str(name)] = py::array_t<double>(shape, a.values.data());
+  }
+  return py::make_tuple(f.time, arrays);
+}
+
+py::list series(const std::string& pvd) {
+  py::list out;
+  guarded([&] {
+    for (const SeriesEntry& e : read_series(pvd)) out.append(py::make_tuple(e.time, e.file.string()));
+  });
   return out;
 }
 
@@ -261,7 +587,12 @@ PyResult run(PyModel& model, const py::object& folder, const py::object& functio
 PYBIND11_MODULE(_talus, m) {
   m.doc() = "Blocks that move, slip and break under dynamic load: the library behind the package talus.";
   m.attr("__version__") = std::string(kVersion);
-  PYBIND11_NUMPY_DTYPE(ContactRow, block_a, block_b, joint, normal, shear, length, slip);
+  PYBIND11_NUMPY_DTYPE(ContactRecord, block_a, block_b, joint, normal, shear, length, slip);
+  PYBIND11_NUMPY_DTYPE(PointRecord, kind, state, block_a, block_b, x, y, force_x, force_y, normal, shear, gap,
+                       length, slip, slip_left, opening);
+  PYBIND11_NUMPY_DTYPE(RowRecord, family, block_a, block_b, partner, normal_x, normal_y, impulse_normal,
+                       impulse_shear, bias_normal, bias_shear, compliance_normal, compliance_shear, lower,
+                       upper, friction, cohesion);
 
   py::class_<PyModel, std::shared_ptr<PyModel>>(m, "Model")
       .def(py::init([](std::string file, std::string text, std::vector<std::string> overrides) {
@@ -275,33 +606,51 @@ PYBIND11_MODULE(_talus, m) {
       .def_readonly("text", &PyModel::text)
       .def_readonly("overrides", &PyModel::overrides)
       .def_readonly("findings", &PyModel::findings)
-      .def("_scene",
-           [](PyModel& model) {
-             const PreparedRun run = model.prepare();
-             const Scene& scene = run.scene;
-             py::dict out;
-             py::list blocks, stages;
-             for (const std::string& name : scene.blocks.name) blocks.append(name);
-             for (const StageInput& s : scene.model.stages) stages.append(s.name);
-             out["title"] = scene.model.title, out["hash"] = scene.model.hash;
-             out["blocks"] = blocks, out["stages"] = stages;
-             out["mass"] = py::array_t<double>(static_cast<py::ssize_t>(scene.blocks.mass.size()),
-                                               scene.blocks.mass.data());
-             py::list polygons, steps;
-             for (const BlockShape& b : scene.layout.blocks) {
-               py::list corners;
-               for (const Vec2 v : b.polygon) corners.append(py::make_tuple(v.x, v.y));
-               polygons.append(corners);
-             }
-             for (const StagePlan& p : run.plans) steps.append(p.dt);
-             out["polygons"] = polygons, out["time_steps"] = steps;
-             return out;
-           })
-      .def("_run", &run, py::arg("folder"), py::arg("observer"), py::arg("every"), py::arg("threads"),
-           py::arg("until"), py::arg("force"));
+      .def("scene", &PyModel::scene)
+      .def("check", &PyModel::check)
+      .def("picture", &PyModel::picture, py::arg("stem"));
 
-  py::class_<PyInstant, std::shared_ptr<PyInstant>>(m, "Instant",
-                                                    "What an observer is called with: one instant of a run.")
+  py::class_<PyCut, std::shared_ptr<PyCut>>(m, "Cut")
+      .def(py::init(&PyCut::of), py::arg("file"), py::arg("text"), py::arg("overrides"))
+      .def_readonly("findings", &PyCut::findings)
+      .def_property_readonly("report", [](const PyCut& c) { return c.cut.report; })
+      .def_property_readonly("summary", [](const PyCut& c) { return c.cut.summary; })
+      .def_property_readonly(
+          "blocks",
+          [](const PyCut& c) { return c.of_blocks([](const BlockShape& b) { return py::str(b.name); }); })
+      .def_property_readonly("polygons",
+                             [](const PyCut& c) {
+                               return c.of_blocks([](const BlockShape& b) { return corners_of(b.polygon); });
+                             })
+      .def_property_readonly("materials",
+                             [](const PyCut& c) {
+                               return c.of_blocks([&](const BlockShape& b) {
+                                 return py::str(c.cut.model.materials[static_cast<size_t>(b.material)].name);
+                               });
+                             })
+      .def("write", &PyCut::write, py::arg("folder"), py::arg("force"))
+      .def("picture", &PyCut::picture, py::arg("stem"));
+
+  py::class_<Views, std::shared_ptr<Views>>(
+      m, "_Views", "Numbers of blocks that lie in one place from the start of a run on.")
+      .def_property_readonly(
+          "displacement", &Views::displacement,
+          "displacements of the centroids [m], (blocks, 2): a read-only view, not a copy, that goes on with the run and "
+          "stays valid after it (theory 1.1)")
+      .def_property_readonly(
+          "strain_part", &Views::strain_part,
+          "deformation gradients F - I [-], (blocks, 2, 2): a view as displacement (theory 1.1)")
+      .def_property_readonly(
+          "rate", &Views::rate,
+          "velocities of the centroids in the middle of the step before [m/s], (blocks, 2): a view as displacement "
+          "(theory 2.1)")
+      .def_property_readonly(
+          "rate_gradient", &Views::rate_gradient,
+          "rates of the deformation gradients then [1/s], (blocks, 2, 2); of blocks that do not deform the spin matrix: a "
+          "view as displacement");
+
+  py::class_<PyInstant, Views, std::shared_ptr<PyInstant>>(
+      m, "Instant", "What an observer is called with: one instant of a run.")
       .def_property_readonly(
           "time", [](const PyInstant& i) { return i.instant().state.time; }, "time [s]")
       .def_property_readonly(
@@ -311,46 +660,88 @@ PYBIND11_MODULE(_talus, m) {
       .def_property_readonly(
           "last", [](const PyInstant& i) { return i.instant().last; }, "whether no step follows")
       .def_property_readonly(
-          "kinetic_energy", [](const PyInstant& i) { return i.instant().report.energy.kinetic; },
-          "kinetic energy [J]")
+          "energy", [](const PyInstant& i) { return energy_of(i.instant().report.energy); },
+          "kinetic, strain, work of gravity since the start, and what the ledger cannot explain [J]")
       .def_property_readonly(
-          "displacement", &PyInstant::displacement,
-          "displacements of the centroids [m], (blocks, 2): a view, not a copy, valid for ever, that goes on "
-          "with the run")
-      .def_property_readonly("strain_part", &PyInstant::strain_part,
-                             "deformation gradients F - I [-], (blocks, 2, 2): a view as displacement")
+          "unbalanced", [](const PyInstant& i) { return i.instant().report.unbalanced; },
+          "largest unbalanced force of a block / mean force on blocks [-]")
       .def_property_readonly("velocity", &PyInstant::velocity,
                              "velocities of the centroids at this instant [m/s], (blocks, 2): a copy")
       .def_property_readonly(
-          "contacts", &PyInstant::contacts,
-          "contact points as a structured array, a copy: block_a, block_b, joint (-1: none), normal and "
-          "shear force on a [N], length [m], slip [m]");
+          "stress", [](const PyInstant& i) { return stress_of(i.instant().scene, i.instant().state); },
+          "Cauchy stress of each block, tension > 0 [Pa], (blocks, 2, 2): a copy (theory 1.5)")
+      .def_property_readonly(
+          "contacts", [](const PyInstant& i) { return contacts_of(i.instant().state); },
+          "contact points, open ones too, as a structured array, a copy: block_a, block_b, joint (-1: "
+          "none), normal (> 0 pressing) and shear force on a [N], length [m], slip to and fro [m]")
+      .def_property_readonly(
+          "points", &PyInstant::points,
+          "all points at which forces act, as a structured array, a copy: kind (0 contact, 1 glued face, 2 "
+          "support, 3 boundary, 4 bolt), state of a joint (0 intact, 1 slipped, 2 open, 3 apart, -1 none), "
+          "block_a, block_b (-1: the ground), x, y [m], force_x, force_y on a [N], normal (> 0 pressing), shear "
+          "[N], gap, length, slip, slip_left, opening [m]")
+      .def_property_readonly(
+          "rows", &PyInstant::rows,
+          "the equations of the step as the solver left them (theory 4.1), a structured array, a copy: family (0 "
+          "glued face, 1 contact, 2 support, 3 boundary, 4 tie, 5 bolt), block_a, block_b, partner (row of the "
+          "other end of the face), normal from b into a, impulses [N s], bias [m/s], compliance [1/kg], bounds of the "
+          "normal impulse [N s], friction [-], cohesion [N s]");
 
-  py::class_<PyResult>(m, "Result", "How a run ended.")
+  py::class_<PyResult, Views, std::shared_ptr<PyResult>>(m, "Result",
+                                                         "How a run ended, or how far it has come.")
       .def_property_readonly(
           "steps", [](const PyResult& r) { return r.memory->state.step; }, "steps taken")
-      .def_property_readonly("failed_steps", [](const PyResult& r) { return r.result.failed_steps; })
+      .def_property_readonly(
+          "time", [](const PyResult& r) { return r.memory->state.time; }, "time at the end [s]")
+      .def_property_readonly(
+          "stages", &PyResult::stages,
+          "of each stage that has begun: name, steps, begin and end [s], time_step [s], at_rest")
+      .def_property_readonly(
+          "failed_steps", [](const PyResult& r) { return r.result.failed_steps; },
+          "steps whose contact equations were not solved to the tolerance")
+      .def_property_readonly(
+          "energy", [](const PyResult& r) { return energy_of(r.result.energy); },
+          "as of an instant, at the end [J]")
       .def_property_readonly(
           "closure", [](const PyResult& r) { return r.result.closure(); },
           "energy left over / largest term of the ledger [-]")
       .def_property_readonly(
           "interrupted", [](const PyResult& r) { return r.result.interrupted; },
-          "whether the observer ended it")
-      .def_property_readonly("wall_seconds", [](const PyResult& r) { return r.result.wall_seconds; })
+          "whether it was ended before its last step")
       .def_property_readonly(
-          "time", [](const PyResult& r) { return r.memory->state.time; }, "time at the end [s]")
-      .def_property_readonly(
-          "displacement",
-          [](const PyResult& r) {
-            return PyInstant{r.memory, nullptr}.displacement();
-          },
-          "displacements of the centroids at the end [m], (blocks, 2): a view")
-      .def_property_readonly(
-          "strain_part",
-          [](const PyResult& r) {
-            return PyInstant{r.memory, nullptr}.strain_part();
-          },
-          "F - I at the end [-], (blocks, 2, 2): a view")
+          "wall_seconds", [](const PyResult& r) { return r.result.wall_seconds; },
+          "wall time of the steps [s]")
       .def_readonly("folder", &PyResult::folder, "folder of results, \"\" when none was written")
       .def_readonly("valid", &PyResult::valid, "what the audit says; True when nothing was recorded");
+
+  py::class_<PyState>(m, "State", "Where a run stands: it can go on from here, and others can branch off.")
+      .def_static("read", &PyState::read, py::arg("path"))
+      .def("write", &PyState::write, py::arg("path"))
+      .def_readonly("name", &PyState::name)
+      .def_property_readonly(
+          "size", [](const PyState& s) { return s.bytes.size(); }, "of its file [bytes]")
+      .def(py::pickle([](const PyState& s) { return py::make_tuple(s.name, py::bytes(s.bytes)); },
+                      [](const py::tuple& t) {
+                        return PyState{t[0].cast<std::string>(), t[1].cast<std::string>()};
+                      }));
+
+  py::class_<PyRun, Views, std::shared_ptr<PyRun>>(m, "Run")
+      .def(py::init<PyModel&, const py::object&, const py::object&, int64_t, int, const std::string&, bool,
+                    const std::optional<PyState>&>(),
+           py::arg("model"), py::arg("folder"), py::arg("observer"), py::arg("every"), py::arg("threads"),
+           py::arg("until"), py::arg("force"), py::arg("state"))
+      .def("advance", &PyRun::advance, py::arg("steps"), py::arg("time"), py::arg("stage_end"))
+      .def("finish", &PyRun::finish)
+      .def("save", &PyRun::save)
+      .def_property_readonly("result", &PyRun::result)
+      .def_property_readonly("time", [](const PyRun& r) { return r.state().time; })
+      .def_property_readonly("step", [](const PyRun& r) { return r.state().step; })
+      .def_property_readonly("stage", &PyRun::stage)
+      .def_property_readonly("over", &PyRun::over)
+      .def_property_readonly("folder", &PyRun::folder)
+      .def_property_readonly("stress", [](const PyRun& r) { return stress_of(r.scene(), r.state()); })
+      .def_property_readonly("contacts", [](const PyRun& r) { return contacts_of(r.state()); });
+
+  m.def("frame", &frame, py::arg("path"));
+  m.def("series", &series, py::arg("pvd"));
 }

@@ -23,10 +23,10 @@ talus_report=no
 # What its tests drive.
 add_browser() { command -v chromium >/dev/null || talus_packages="$talus_packages chromium"; }
 
-# What the Python package is built with; a build without it is configured anew.
+# What the Python package is built with, and its tests look with; a build without it is configured anew.
 talus_python=no
 add_python() {
-  talus_packages="$talus_packages pybind11-dev python3-dev python3-numpy"
+  talus_packages="$talus_packages pybind11-dev python3-dev python3-numpy python3-matplotlib mypy"
   talus_python=yes
 }
 

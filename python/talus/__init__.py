@@ -5,12 +5,18 @@
     result = model.run("out/slope")
     talus.Results("out/slope").histories["block.displacement_x [m]"]
 
-docs/python.md goes through it line by line beside the command line.
+docs/python.md goes through it line by line beside the command line; docs/python_api.md has every name.
 """
 
 from ._talus import Instant, Result, __version__
+from .cut import Cut
 from .errors import Error, FileError, Finding, InputError, NumericalError
 from .model import Model
-from .results import Results
+from .results import Frame, Results
+from .run import Run, State
+from .study import Study, StudyResults
 
-__all__ = ["Error", "FileError", "Finding", "InputError", "Instant", "Model", "NumericalError", "Result", "Results", "__version__"]
+__all__ = [
+    "Cut", "Error", "FileError", "Finding", "Frame", "InputError", "Instant", "Model", "NumericalError", "Result", "Results", "Run",
+    "State", "Study", "StudyResults", "__version__",
+]

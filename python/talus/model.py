@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import html
 import os
-from typing import Any, Callable, List, Mapping, Optional, Union
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+
+import numpy
+from numpy.typing import NDArray
 
 from . import _talus
-from ._toml import text_of, value_text
-from .errors import FileError, Finding
-
-Overrides = Mapping[str, Any]
+from ._source import Overrides, Path, override_texts, read_text, svg_of
+from ._toml import text_of
+from .errors import Finding
+from .run import Run, State
 
 
 class Model:
@@ -19,17 +22,11 @@ class Model:
     source     path of a model file
     overrides  values by dotted key, as --set: {"stage.slide.duration": "2 s"}; "new:KEY" where the table is to be made
 
-    findings holds the warnings. Models are not changed: another value is another Model.
+    Models are not changed: another value is another Model.
     """
 
-    def __init__(self, source: Union[str, os.PathLike], overrides: Optional[Overrides] = None):
-        path = os.fspath(source)
-        try:
-            with open(path, encoding="utf-8") as file:
-                text = file.read()
-        except (OSError, UnicodeDecodeError) as error:
-            raise FileError(f"{path}: {error}") from None
-        self._read(path, text, overrides)
+    def __init__(self, source: Path, overrides: Optional[Overrides] = None):
+        self._read(os.fspath(source), read_text(source), overrides)
 
     @classmethod
     def from_text(cls, text: str, overrides: Optional[Overrides] = None, file: str = "model.toml") -> "Model":
@@ -41,25 +38,26 @@ class Model:
     @classmethod
     def from_dict(cls, sections: Mapping[str, Any], overrides: Optional[Overrides] = None, file: str = "model.toml") -> "Model":
         """A model from its sections as dictionaries and lists, as tomllib.load gives them. Lines of findings are those of
-        the text that is made of it (model.text)."""
+        the text that is made of it (`text`)."""
         return cls.from_text(text_of(sections), overrides, file)
 
     def _read(self, file: str, text: str, overrides: Optional[Overrides]) -> None:
-        given = [f"{key}={value_text(value)}" for key, value in (overrides or {}).items()]
-        self._model = _talus.Model(file, text, given)
-        self._known = None
+        self._model = _talus.Model(file, text, override_texts(overrides))
+        self._known: Optional[Dict[str, Any]] = None
 
-    def _scene(self) -> dict:
+    def _scene(self) -> Dict[str, Any]:
         if self._known is None:
-            self._known = self._model._scene()
+            self._known = self._model.scene()
         return self._known
 
     @property
     def file(self) -> str:
+        """Its name."""
         return self._model.file
 
     @property
     def text(self) -> str:
+        """The text of the file, without the overrides."""
         return self._model.text
 
     @property
@@ -69,35 +67,45 @@ class Model:
 
     @property
     def title(self) -> str:
-        return self._scene()["title"]
+        """The key model.title."""
+        return str(self._scene()["title"])
 
     @property
     def stages(self) -> List[str]:
         """Names, in order."""
-        return self._scene()["stages"]
+        return list(self._scene()["stages"])
 
     @property
     def time_steps(self) -> List[float]:
         """Step of each stage [s]."""
-        return self._scene()["time_steps"]
+        return list(self._scene()["time_steps"])
 
     @property
     def blocks(self) -> List[str]:
         """Names, in the order of all arrays by block."""
-        return self._scene()["blocks"]
+        return list(self._scene()["blocks"])
 
     @property
-    def polygons(self) -> list:
-        """Corners of each block as it was given or cut [m]."""
-        return self._scene()["polygons"]
+    def polygons(self) -> List[List[Tuple[float, float]]]:
+        """Corners of each block as it was given or cut, counter-clockwise [m]."""
+        return list(self._scene()["polygons"])
 
     @property
-    def mass(self):
+    def mass(self) -> NDArray[numpy.float64]:
         """Of each block [kg]."""
-        return self._scene()["mass"]
+        return numpy.array(self._scene()["mass"])
 
-    def run(self, folder: Union[None, str, os.PathLike] = None, observer: Optional[Callable[[_talus.Instant], Any]] = None, *,
-            every: int = 1, threads: int = 0, until: str = "", force: bool = False) -> _talus.Result:
+    def check(self) -> str:
+        """What `talus check` prints: blocks, stages and steps, slivers, memory, time, output. Takes a second."""
+        return self._model.check()
+
+    def start(self, folder: Optional[Path] = None, observer: Optional[Callable[[_talus.Instant], Any]] = None, *, every: int = 1,
+              threads: int = 0, until: str = "", force: bool = False, state: "State | Path | None" = None) -> Run:
+        """A run at its beginning, to be taken on by Run.advance(); arguments as those of run()."""
+        return Run(self._model, folder, observer, every, threads, until, force, state)
+
+    def run(self, folder: Optional[Path] = None, observer: Optional[Callable[[_talus.Instant], Any]] = None, *, every: int = 1,
+            threads: int = 0, until: str = "", force: bool = False, state: "State | Path | None" = None) -> _talus.Result:
         """Runs all stages; results have the bits of `talus run`.
 
         folder    for the results; None writes none
@@ -106,17 +114,24 @@ class Model:
         threads   inside a step, 0: as many as pay
         until     name of the stage to end after
         force     replaces the results of an earlier run in that folder
+        state     a State, or the file of one, to go on from: in the folder where it lies, or as a branch, of which what begins
+                  later may differ (docs/file_format.md)
 
-        Raises NumericalError where the run ends on bad numbers (what was written stays), KeyboardInterrupt on Ctrl-C, and
-        whatever the observer raises. Other threads of Python go on meanwhile.
+        Raises NumericalError where the run ends on bad numbers (what was written stays), InputError where the state is no
+        state of this model, KeyboardInterrupt on Ctrl-C, and whatever the observer raises. Other threads of Python go on
+        meanwhile.
         """
-        return self._model._run(None if folder is None else os.fspath(folder), observer, every, threads, until, force)
+        return self.start(folder, observer, every=every, threads=threads, until=until, force=force, state=state)._to_the_end()
+
+    def svg(self) -> str:
+        """A picture of blocks, joints and what acts on them, as SVG."""
+        return svg_of(self._model.picture)
 
     def _repr_html_(self) -> str:
         known = self._scene()
         rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{step:.3g} s</td></tr>" for name, step in zip(known["stages"], known["time_steps"]))
         return (f"<b>{html.escape(known['title'] or self.file)}</b>: {len(known['blocks'])} blocks, "
-                f"{len(self.findings)} warnings<table><tr><th>stage</th><th>step</th></tr>{rows}</table>")
+                f"{len(self.findings)} warnings<table><tr><th>stage</th><th>step</th></tr>{rows}</table>{self.svg()}")
 
     def __repr__(self) -> str:
-        return f"<talus.Model {self.file}: {len(self._scene()['blocks'])} blocks, stages {', '.join(self.stages)}>"
+        return f"<talus.Model {self.file}: {len(self.blocks)} blocks, stages {', '.join(self.stages)}>"

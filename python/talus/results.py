@@ -9,7 +9,10 @@ import os
 from typing import Any, Dict, List, Union
 
 import numpy
+from numpy.typing import NDArray
 
+from . import _talus
+from ._source import Path
 from .errors import FileError
 
 
@@ -20,31 +23,82 @@ def _number(cell: str) -> Union[float, str]:
         return cell
 
 
+def read_table(path: str) -> Dict[str, Any]:
+    """A CSV file with a head: columns by title, arrays where all cells are numbers, else lists."""
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(file))
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}") from None
+    if not rows:
+        return {}
+    columns: Dict[str, Any] = {}
+    for k, title in enumerate(rows[0]):
+        cells: List[Any] = [_number(row[k]) for row in rows[1:]]
+        columns[title] = numpy.array(cells) if all(isinstance(c, float) for c in cells) else cells
+    return columns
+
+
+class Frame:
+    """All blocks at one time: Results.frame().
+
+    arrays holds every array of the file by its title: of corners "Points" [m] (corners, 3) and "displacement [m]", of blocks
+    "block", "stress xx [Pa]", "centroid displacement [m]" and so on.
+    """
+
+    def __init__(self, path: str):
+        self.path = path
+        self.time: float
+        self.arrays: Dict[str, NDArray[numpy.float64]]
+        self.time, self.arrays = _talus.frame(path)
+
+    @property
+    def polygons(self) -> List[NDArray[numpy.float64]]:
+        """Corners of each block as it lies then [m], (corners, 2)."""
+        points = self.arrays["Points"][:, :2]
+        ends = self.arrays["offsets"].astype(int)
+        corners = self.arrays["connectivity"].astype(int)
+        return [points[corners[a:b]] for a, b in zip([0, *ends[:-1]], ends)]
+
+    def title_of(self, name: str) -> str:
+        """The title of an array by itself, without its unit, or by how it begins. Raises KeyError with all titles."""
+        found = [a for a in self.arrays if name in (a, a.split(" [")[0])] or [a for a in self.arrays if a.startswith(name)]
+        if not found:
+            raise KeyError(f"{name}: there is {', '.join(sorted(self.arrays))}")
+        return found[0]
+
+    def of_blocks(self, name: str) -> NDArray[numpy.float64]:
+        """An array of blocks by title_of(): "velocity". Values of corners become the mean of each block."""
+        values = self.arrays[self.title_of(name)]
+        ends = self.arrays["offsets"].astype(int)
+        if len(values) == len(ends):
+            return values
+        corners = self.arrays["connectivity"].astype(int)
+        return numpy.array([values[corners[a:b]].mean(axis=0) for a, b in zip([0, *ends[:-1]], ends)])
+
+    def plot(self, colour: str = "", *, axes: Any = None, **how: Any) -> Any:
+        """Draws the blocks with Matplotlib, coloured by an array of blocks (its size where it is a vector); returns the axes.
+        `how` goes to PolyCollection."""
+        from .figures import plot_frame
+        return plot_frame(self, colour, axes=axes, **how)
+
+
 class Results:
-    """The folder that a run has written. Tables are dictionaries of columns by their title, which has the unit."""
+    """The folder that a run has written. Tables are dictionaries of columns by their title, which has the unit; pandas.DataFrame
+    takes them as they are."""
 
-    def __init__(self, folder: Union[str, os.PathLike]):
+    def __init__(self, folder: Path):
         self.folder = os.fspath(folder)
-        self.summary: Dict[str, Any] = json.loads(self._text("summary.json"))
-
-    def _text(self, name: str) -> str:
-        path = os.path.join(self.folder, name)
+        path = os.path.join(self.folder, "summary.json")
         try:
             with open(path, encoding="utf-8") as file:
-                return file.read()
-        except OSError as error:
-            raise FileError(f"{path}: {error.strerror}; is {self.folder} the folder of a run?") from None
+                self.summary: Dict[str, Any] = json.load(file)
+        except (OSError, ValueError) as error:
+            raise FileError(f"{path}: {error}; is {self.folder} the folder of a run?") from None
 
     def table(self, name: str) -> Dict[str, Any]:
         """A file of columns in the folder: "joints.csv". Columns of numbers are arrays, others lists."""
-        rows = list(csv.reader(self._text(name).splitlines()))
-        if not rows:
-            return {}
-        columns: Dict[str, Any] = {}
-        for k, title in enumerate(rows[0]):
-            cells: List[Any] = [_number(row[k]) for row in rows[1:]]
-            columns[title] = numpy.array(cells) if all(isinstance(c, float) for c in cells) else cells
-        return columns
+        return read_table(os.path.join(self.folder, name))
 
     @property
     def histories(self) -> Dict[str, Any]:
@@ -61,5 +115,39 @@ class Results:
         """Contact points at the end of each stage."""
         return self.table("joints.csv")
 
+    @property
+    def times(self) -> List[float]:
+        """Of the frames [s]."""
+        return [time for time, _ in self._series("blocks")]
+
+    def frame(self, number: int = -1) -> Frame:
+        """The blocks of a frame; -1: the last."""
+        return Frame(self._series("blocks")[number][1])
+
+    def contact_frame(self, number: int = -1) -> Dict[str, NDArray[numpy.float64]]:
+        """The contact points of a frame by the titles of their arrays: "Points", "force [N]" ..."""
+        return dict(_talus.frame(self._series("contacts")[number][1])[1])
+
+    def _series(self, name: str) -> List[Any]:
+        found = _talus.series(os.path.join(self.folder, "fields", f"{name}.pvd"))
+        if not found:
+            raise FileError(f"{self.folder}: has no frames of {name}")
+        return found
+
+    def plot(self, *columns: str, axes: Any = None, **how: Any) -> Any:
+        """Draws columns of the histories over time with Matplotlib; returns the axes. Without columns: all of the first unit."""
+        from .figures import plot_histories
+        return plot_histories(self, columns, axes=axes, **how)
+
     def _repr_html_(self) -> str:
-        return f"<b>{html.escape(self.folder)}</b>: {self.summary['status']}, {'valid' if self.summary['valid'] else 'NOT VALID'}"
+        valid = "valid" if self.summary.get("valid", True) else "NOT VALID"
+        try:
+            with open(os.path.join(self.folder, "blocks_end.svg"), encoding="utf-8") as file:
+                picture = file.read()
+            picture = picture[picture.index("<svg"):]
+        except (OSError, ValueError):
+            picture = ""  # output.pictures = false
+        return f"<b>{html.escape(self.folder)}</b>: {html.escape(str(self.summary['status']))}, {valid}{picture}"
+
+    def __repr__(self) -> str:
+        return f"<talus.Results {self.folder}: {self.summary['status']}>"

@@ -8,7 +8,6 @@ import io
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -17,44 +16,7 @@ import unittest
 import numpy
 
 import talus
-
-BUILD = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else "build/release")
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXAMPLES = ROOT / "examples"
-
-SLOPE = """talus = 1
-[model]
-gravity = [4.905, -8.495709]
-[material.rock]
-density = "2600 kg/m3"
-[joint.face]
-friction_angle = "15 deg"
-[contact]
-joint = "face"
-[[block]]
-name = "slope"
-polygon = [[-1, -1], [12, -1], [12, 0], [-1, 0]]
-material = "rock"
-kind = "fixed"
-[[block]]
-name = "block"
-polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]
-material = "rock"
-kind = "rigid"
-[[stage]]
-name = "slide"
-kind = "dynamic"
-duration = "0.5 s"
-time_step = "1 ms"
-[[stage]]
-name = "on"
-kind = "dynamic"
-duration = "0.5 s"
-time_step = "1 ms"
-[[monitor]]
-name = "block"
-point = [0.5, 0.5]
-"""
+from common import EXAMPLES, PROGRAM, ROOT, SLOPE
 
 
 class Errors(unittest.TestCase):
@@ -100,12 +62,14 @@ class Errors(unittest.TestCase):
 
 
 class Page(unittest.TestCase):
-    def test_the_example_of_the_documentation_runs(self):
+    def test_the_examples_of_the_documentation_run(self):
         page = (ROOT / "docs/python.md").read_text()
-        example = page.split("```python\n")[1].split("```")[0]
         told = io.StringIO()
-        with contextlib.chdir(ROOT), contextlib.redirect_stdout(told):
-            exec(example, {})
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(told):
+            pathlib.Path("examples").symlink_to(EXAMPLES)
+            names = {}
+            for part in page.split("```python\n")[1:]:
+                exec(part.split("```")[0], names)
         self.assertRegex(told.getvalue(), r"1\.000 s, step 1000: [0-9.]+ m/s, 2 contact points")
 
 
@@ -115,7 +79,7 @@ class Runs(unittest.TestCase):
             file = EXAMPLES / example / f"{example}.toml"
             with tempfile.TemporaryDirectory() as folder:
                 result = talus.Model(file).run(pathlib.Path(folder, "py"), lambda now: None)
-                subprocess.run([BUILD / "app/talus", "run", file, "-o", pathlib.Path(folder, "cmd"), "-q"], check=True)
+                subprocess.run([PROGRAM, "run", file, "-o", pathlib.Path(folder, "cmd"), "-q"], check=True)
                 for name in ("histories.csv", "joints.csv"):
                     self.assertEqual(pathlib.Path(folder, "py", name).read_bytes(), pathlib.Path(folder, "cmd", name).read_bytes())
                 self.assertTrue(result.valid)
@@ -151,6 +115,9 @@ class Observers(unittest.TestCase):
         with self.assertRaises(ValueError):
             views[0][1, 0] = 0
         self.assertEqual({s[1] for s in seen}, {0, 1})
+        rates = (result.rate, result.rate_gradient)
+        self.assertTrue(all(not r.flags.writeable and not r.flags.owndata for r in rates))
+        self.assertEqual((rates[0].shape, rates[1].shape), ((2, 2), (2, 2, 2)))
         # what was read at each instant moved on; the velocity is that of the way
         ways, times = [s[3] for s in seen], [s[0] for s in seen]
         self.assertLess(ways[10], ways[500])

@@ -1,0 +1,63 @@
+# %% [markdown]
+# # How much friction does the slope need?
+#
+# A bedded rock slope under an earthquake, run for several friction angles of its bedding: a study. Its runs are processes of the program talus, several
+# side by side; runs that are done are kept, and the same call goes on where it was stopped.
+
+# %%
+import pathlib
+
+import numpy
+import talus
+
+OUT = pathlib.Path("out/notebooks/slope_study")
+OUT.mkdir(parents=True, exist_ok=True)
+MODEL = "examples/many_runs/slope.toml"
+motion = str(pathlib.Path("examples/record/motion.csv").resolve())
+model = talus.Model(MODEL, {"variables.motion": motion})
+print(model.check())
+
+# %%
+study = talus.Study({
+    "talus_study": 1,
+    "title": "Bedded slope: friction of the bedding",
+    "model": MODEL,
+    "set": {"variables.motion": motion, "stage.earthquake.duration": "2 s"},
+    "answers": {"slip": "joints.slip_largest_by_set.bedding"},
+    "vary": [{"key": "variables.phi", "name": "phi", "values": ["27 deg", "30 deg", "33 deg", "36 deg"]}],
+})
+print(study.dry_run())
+found = study.run(OUT / "study")
+found.table
+
+# %% [markdown]
+# ## What came out
+#
+# The table has a column for what varies and one for each answer.
+
+# %%
+table = found.table
+phi, slip = table["phi [deg]"], table["slip"]
+for angle, way in zip(phi, slip):
+    print(f"{angle:.0f} deg: the bedding slips by {100 * way:.2f} cm")
+assert len(phi) == 4 and all(status == "finished" for status in table["status"])
+assert slip[0] > 2 * slip[1] and slip[1] > 2 * slip[2], "more friction, less slip"
+
+# %%
+worst = found.run(0)
+frame = worst.frame()
+print(f"{len(frame.polygons)} blocks at {frame.time:g} s; the crest has come to {worst.histories['crest.displacement_x [m]'][-1]:.3f} m")
+try:
+    import matplotlib
+except ImportError:
+    print("no figure: Matplotlib is not installed")
+else:
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as pyplot
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4))
+    left.plot(phi, 100 * slip, "o-")
+    left.set_xlabel("friction angle of the bedding [deg]"), left.set_ylabel("largest slip [cm]")
+    frame.plot("displacement", axes=right)
+    figure.tight_layout()
+    figure.savefig(OUT / "slope.png", dpi=150)
+    print(f"{OUT}/slope.png")

@@ -1,0 +1,163 @@
+"""Runs that are taken step by step, and their states."""
+
+from __future__ import annotations
+
+import html
+import os
+from types import TracebackType
+from typing import Any, Callable, Optional, Type
+
+import numpy
+from numpy.typing import NDArray
+
+from . import _talus
+from ._source import Path
+
+
+class State:
+    """Where a run stands: Model.run(state=...) goes on from here, or branches off. States can be pickled.
+
+    path  a file FOLDER/saved/*.h5, or one that write() has made
+    """
+
+    def __init__(self, path: Path):
+        self._state = _talus.State.read(os.fspath(path))
+
+    @classmethod
+    def _of(cls, state: _talus.State) -> "State":
+        own = cls.__new__(cls)
+        own._state = state
+        return own
+
+    @property
+    def size(self) -> int:
+        """Of its file [bytes]."""
+        return self._state.size
+
+    def write(self, path: Path) -> None:
+        """Writes the file, which is what `talus run --from` takes."""
+        self._state.write(os.fspath(path))
+
+    def __repr__(self) -> str:
+        return f"<talus.State {self._state.name}: {self.size} bytes>"
+
+
+class Run:
+    """A run that goes as far as it is told to; made by Model.start(). The results are those of Model.run(), however the way
+    is cut.
+
+        with model.start("out/slope") as run:
+            while run.advance(steps=100):
+                print(run.time, run.displacement[3])
+
+    At its end, or where the block is left before, results are written and `result` says how it ended.
+    """
+
+    def __init__(self, model: _talus.Model, folder: Optional[Path], observer: Optional[Callable[[_talus.Instant], Any]], every: int,
+                 threads: int, until: str, force: bool, state: "State | Path | None"):
+        if state is not None and not isinstance(state, State):
+            state = State(state)
+        self._run = _talus.Run(model, None if folder is None else os.fspath(folder), observer, every, threads, until, force,
+                               None if state is None else state._state)
+
+    def advance(self, steps: Optional[int] = None, time: Optional[float] = None, stage_end: bool = False) -> bool:
+        """Goes on by so many steps, to this time of the run [s], to the end of the stage, whichever comes first; without any
+        to the end of the run. True while there is more to come.
+
+        Raises NumericalError where the run ends on bad numbers, KeyboardInterrupt on Ctrl-C, and what the observer raises;
+        the run is over then.
+        """
+        return self._run.advance(steps, time, stage_end)
+
+    def finish(self) -> _talus.Result:
+        """Ends the run where it stands, and its results with it."""
+        return self._run.finish()
+
+    def save(self) -> State:
+        """The state now, to go on from later or to branch off."""
+        return State._of(self._run.save())
+
+    def _to_the_end(self) -> _talus.Result:
+        self._run.advance(None, None, False)
+        return self._run.result
+
+    @property
+    def time(self) -> float:
+        """Of the run [s]."""
+        return self._run.time
+
+    @property
+    def step(self) -> int:
+        """Steps completed."""
+        return self._run.step
+
+    @property
+    def stage(self) -> str:
+        """Name of the last stage that has begun, "" before the first."""
+        return self._run.stage
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing more is to come."""
+        return self._run.over
+
+    @property
+    def result(self) -> _talus.Result:
+        """How far it has come, or how it ended."""
+        return self._run.result
+
+    @property
+    def displacement(self) -> NDArray[numpy.float64]:
+        """Displacements of the centroids [m], (blocks, 2): a read-only view, as those of Instant."""
+        return self._run.displacement
+
+    @property
+    def strain_part(self) -> NDArray[numpy.float64]:
+        """Deformation gradients F - I [-], (blocks, 2, 2): a view."""
+        return self._run.strain_part
+
+    @property
+    def rate(self) -> NDArray[numpy.float64]:
+        """Velocities of the centroids in the middle of the last step [m/s], (blocks, 2): a view."""
+        return self._run.rate
+
+    @property
+    def rate_gradient(self) -> NDArray[numpy.float64]:
+        """Rates of the deformation gradients then [1/s], (blocks, 2, 2): a view."""
+        return self._run.rate_gradient
+
+    @property
+    def stress(self) -> NDArray[numpy.float64]:
+        """Cauchy stress of each block, tension > 0 [Pa], (blocks, 2, 2): a copy."""
+        return self._run.stress
+
+    @property
+    def contacts(self) -> NDArray[Any]:
+        """Contact points as at the beginning of the last step, as Instant.contacts: a copy."""
+        return self._run.contacts
+
+    def __enter__(self) -> "Run":
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]) -> None:
+        self.finish()
+
+    def _repr_html_(self) -> str:
+        r = self.result
+        rows = "".join(f"<tr><td>{html.escape(s['name'])}</td><td>{s['steps']}</td><td>{s['time_step']:.3g} s</td></tr>" for s in r.stages)
+        picture = ""
+        if r.folder and self.over:
+            try:
+                with open(os.path.join(r.folder, "blocks_end.svg"), encoding="utf-8") as file:
+                    picture = file.read()
+                picture = picture[picture.index("<svg"):]
+            except (OSError, ValueError):
+                pass  # output.pictures = false
+        return f"{html.escape(self._text())}<table><tr><th>stage</th><th>steps</th><th>step</th></tr>{rows}</table>{picture}"
+
+    def _text(self) -> str:
+        state = ("stopped" if self.result.interrupted else "ended") if self.over else "goes on"
+        return f"t = {self.time:.6g} s, step {self.step}, stage {self.stage or 'none'}: {state}"
+
+    def __repr__(self) -> str:
+        return f"<talus.Run {self._text()}>"

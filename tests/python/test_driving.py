@@ -1,0 +1,237 @@
+"""Runs that are taken step by step, saved states, branches.
+
+Usage: test_driving.py BUILD_DIR  (PYTHONPATH names BUILD_DIR/python)
+"""
+import gc
+import pathlib
+import pickle
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import numpy
+
+import talus
+from common import EXAMPLES, PROGRAM, SLOPE
+
+# a prop that is taken away under a block, after rest: from rest to rest, as rows give and blocks go
+HEAP = """talus = 1
+[model]
+gravity = [0, -10]
+[material.m]
+density = 2600
+young = "1 GPa"
+poisson = 0.2
+[joint.face]
+friction_angle = "20 deg"
+[contact]
+joint = "face"
+[[block]]
+name = "ground"
+polygon = [[-1, -1], [3, -1], [3, 0], [-1, 0]]
+material = "m"
+kind = "fixed"
+[[block]]
+name = "prop"
+polygon = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
+material = "m"
+kind = "rigid"
+[[block]]
+name = "load"
+polygon = [[0.2, 0.5], [1.2, 0.5], [1.2, 1.5], [0.2, 1.5]]
+material = "m"
+[[stage]]
+name = "rest"
+kind = "static"
+duration = 50
+integration = "implicit"
+[[stage]]
+name = "fall"
+kind = "dynamic"
+duration = "0.2 s"
+time_step = "1 ms"
+elasticity = "implicit"
+excavate = ["prop"]
+[[monitor]]
+name = "load"
+block = "load"
+"""
+
+
+def files_of(folder):
+    return {name: pathlib.Path(folder, name).read_bytes() for name in ("histories.csv", "steps.csv", "joints.csv", "slips.csv")}
+
+
+class Driving(unittest.TestCase):
+    def test_pieces_have_the_bits_of_the_whole(self):
+        for text in (SLOPE, HEAP):
+            with tempfile.TemporaryDirectory() as folder:
+                model = talus.Model.from_text(text)
+                whole = model.run(pathlib.Path(folder, "whole"))
+                with model.start(pathlib.Path(folder, "parts")) as run:
+                    while run.advance(steps=7):
+                        self.assertFalse(run.over)
+                self.assertTrue(run.over)
+                self.assertFalse(run.advance(steps=7))
+                self.assertTrue(numpy.array_equal(run.displacement, whole.displacement))
+                self.assertEqual(files_of(pathlib.Path(folder, "whole")), files_of(pathlib.Path(folder, "parts")))
+                self.assertFalse(run.result.interrupted)
+                self.assertTrue(run.result.valid)
+
+    def test_pauses(self):
+        run = talus.Model.from_text(SLOPE).start()
+        self.assertEqual((run.step, run.stage, run.over), (0, "", False))
+        self.assertTrue(run.advance(steps=10))
+        self.assertEqual((run.step, run.stage), (10, "slide"))
+        self.assertTrue(run.advance(time=0.1))
+        self.assertEqual(run.step, 100)
+        self.assertTrue(run.advance(stage_end=True))
+        self.assertEqual((run.step, run.stage), (500, "slide"))
+        self.assertTrue(run.advance(steps=0))
+        self.assertEqual(run.stage, "on")
+        self.assertFalse(run.advance())
+        self.assertEqual([s["steps"] for s in run.result.stages], [500, 500])
+        for wrong in ({"steps": -1}, {"time": float("nan")}):
+            with self.assertRaises(ValueError):
+                talus.Model.from_text(SLOPE).start().advance(**wrong)
+
+    def test_between_steps(self):
+        run = talus.Model.from_text(SLOPE).start()
+        view = run.displacement
+        run.advance(steps=100)
+        self.assertTrue(numpy.shares_memory(view, run.displacement))
+        way = float(view[1, 0])
+        run.advance(steps=1)
+        self.assertAlmostEqual((view[1, 0] - way) / 1e-3, run.rate[1, 0], places=9)  # way of a step over its length
+        self.assertAlmostEqual(float(run.contacts["normal"].sum()), 2600 * 8.495709, delta=1)
+        self.assertEqual(run.stress.shape, (2, 2, 2))
+        del run
+        gc.collect()
+        self.assertGreater(view[1, 0], way)
+
+    def test_what_is_left_is_a_run_that_was_interrupted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder, "run")
+            with self.assertRaises(KeyError), talus.Model.from_text(SLOPE).start(place) as run:
+                run.advance(steps=30)
+                raise KeyError("mine")
+            self.assertEqual(talus.Results(place).summary["status"], "interrupted")
+            self.assertEqual(talus.Results(place).times[-1], 0.03)
+            run = talus.Model.from_text(SLOPE).start(place, force=True)
+            run.advance(steps=40)
+            del run
+            gc.collect()
+            self.assertEqual(talus.Results(place).summary["status"], "interrupted")
+            # and goes on by the command
+            saved = sorted(pathlib.Path(place, "saved").iterdir())[-1]
+            file = pathlib.Path(folder, "model.toml")
+            file.write_text(SLOPE)
+            subprocess.run([PROGRAM, "run", file, "--from", saved, "-q"], check=True)
+            self.assertEqual(talus.Results(place).times[-1], 1)
+
+    def test_one_caller_at_a_time(self):
+        run = talus.Model.from_text(SLOPE).start(observer=lambda now: run.advance(steps=1))
+        with self.assertRaises(ValueError):
+            run.advance(steps=2)
+        model = talus.Model.from_text(SLOPE)
+        done = {}
+
+        def drive(name):
+            with model.start() as mine:
+                while mine.advance(steps=10 + name):
+                    pass
+            done[name] = float(mine.displacement[1, 0])
+
+        drivers = [threading.Thread(target=drive, args=(k,)) for k in range(3)]
+        [d.start() for d in drivers]
+        [d.join() for d in drivers]
+        self.assertEqual(len(done), 3)
+        self.assertEqual(len(set(done.values())), 1)
+
+    def test_bad_numbers_end_it(self):
+        model = talus.Model.from_text(HEAP, {"stage.rest.duration": 0.002, "block.load.velocity": [0, 3]})
+        with self.assertRaises(talus.NumericalError) as caught, model.start() as run:
+            while run.advance(steps=1):
+                pass
+        self.assertIn("did not come to rest", str(caught.exception))
+        self.assertTrue(run.over)
+
+
+class States(unittest.TestCase):
+    def test_going_on_has_the_bits_of_the_whole(self):
+        for text, pause in ((SLOPE, {"steps": 333}), (HEAP, {"steps": 3}), (HEAP, {"stage_end": True})):
+            model = talus.Model.from_text(text)
+            whole = model.run()
+            run = model.start()
+            run.advance(**pause)
+            state = run.save()
+            self.assertTrue(numpy.array_equal(model.run(state=state).displacement, whole.displacement))
+            self.assertTrue(numpy.array_equal(model.run(state=pickle.loads(pickle.dumps(state))).displacement, whole.displacement))
+            run.advance()  # that a state was taken changes nothing
+            self.assertTrue(numpy.array_equal(run.displacement, whole.displacement))
+
+    def test_in_the_folder_of_the_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            whole, place = pathlib.Path(folder, "whole"), pathlib.Path(folder, "run")
+            model = talus.Model.from_text(SLOPE)
+            model.run(whole)
+            model.run(place, until="slide")
+            model.run(place, state=place / "saved/stage_01.h5")
+            self.assertEqual(files_of(whole), files_of(place))
+
+    def test_branches(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = talus.Model.from_text(HEAP).start(pathlib.Path(folder, "parent"))
+            run.advance(stage_end=True)
+            state = run.save()
+            run.finish()
+            for name, parent in (("of memory", state), ("of file", pathlib.Path(folder, "parent/saved/stage_01.h5"))):
+                place = pathlib.Path(folder, name)
+                result = talus.Model.from_text(HEAP, {"stage.fall.duration": "0.1 s"}).run(place, state=parent)
+                self.assertEqual(result.stages[-1]["steps"], 100)
+                self.assertTrue(result.valid)
+                self.assertAlmostEqual(talus.Results(place).times[-1], result.time)
+            # one of a state that wrote no results
+            run = talus.Model.from_text(HEAP).start()
+            run.advance(stage_end=True)
+            place = pathlib.Path(folder, "bare")
+            self.assertTrue(talus.Model.from_text(HEAP).run(place, state=run.save()).valid)
+            with self.assertRaises(talus.InputError) as caught:
+                talus.Model.from_text(HEAP, {"material.m.density": 2000}).run(state=state)
+            self.assertIn("material.m.density", str(caught.exception))
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = talus.Model.from_text(SLOPE).start()
+            run.advance(steps=100)
+            file = pathlib.Path(folder, "state.h5")
+            run.save().write(file)
+            self.assertEqual(talus.State(file).size, file.stat().st_size)
+            self.assertEqual(talus.Model.from_text(SLOPE).run(state=file).steps, 1000)
+            broken = bytearray(file.read_bytes())
+            broken[-100] ^= 1
+            file.write_bytes(broken)
+            with self.assertRaises(talus.FileError):
+                talus.Model.from_text(SLOPE).run(state=file)
+            with self.assertRaises(talus.FileError):
+                talus.State(pathlib.Path(folder, "none.h5"))
+
+    def test_saving_side_by_side(self):
+        # the library of the files serves one thread at a time
+        model = talus.Model.from_text(SLOPE)
+        sizes = []
+
+        def save():
+            with model.start() as run:
+                while run.advance(steps=20):
+                    sizes.append(run.save().size)
+
+        savers = [threading.Thread(target=save) for _ in range(4)]
+        [s.start() for s in savers]
+        [s.join() for s in savers]
+        self.assertEqual(len(sizes), 4 * 49)
+
+
+if __name__ == "__main__":
+    unittest.main()

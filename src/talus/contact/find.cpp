@@ -498,8 +498,29 @@ void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 
     const Vec2 place_y = (first ? Vec2{} : shift) + (first ? b : a).corner[static_cast<size_t>(q.vertex)];
     return norm(place_x - place_y) <= -kBothIn * std::min(x.point.gap, y.point.gap);
   };
+  // the corners at one end of two antiparallel sides, each over the side of the other: where these stand apart like a wedge the
+  // corners pass each other by its height times its angle
+  const auto one_end = [&](const Hit& x, const Hit& y) {
+    const ContactKey &p = x.point.key, &q = y.point.key;
+    if (p.block_a != q.block_b || x.coming || y.coming) return false;
+    const bool first = p.block_a == a.block;
+    const Outline &on_x = first ? a : b, &on_y = first ? b : a;
+    const int side_x = on_x.side_of(q.edge), side_y = on_y.side_of(p.edge);
+    const bool x_begins = side_x == on_x.side_of(p.vertex), y_begins = side_y == on_y.side_of(q.vertex);
+    const bool x_ends = side_x == on_x.side_of(on_x.before(p.vertex)),
+               y_ends = side_y == on_y.side_of(on_y.before(q.vertex));
+    // of a short overlap they are the two ends
+    if (!(x_begins && y_ends) && !(x_ends && y_begins)) return false;
+    if (!on_x.runs_against(q.edge, on_y, p.edge, dip_)) return false;
+    const auto kx = static_cast<size_t>(q.edge), ky = static_cast<size_t>(p.edge);
+    const double angle = std::abs(cross(on_x.edge[kx], on_y.edge[ky])) / (on_x.length[kx] * on_y.length[ky]);
+    const Vec2 apart = (first ? shift : -shift) + on_x.corner[static_cast<size_t>(p.vertex)] -
+                       on_y.corner[static_cast<size_t>(q.vertex)];
+    const double wedge = angle * std::max(std::abs(x.point.gap), std::abs(y.point.gap));
+    return std::abs(dot(apart, on_y.edge[ky])) <= (2 * same_ + wedge) * on_y.length[ky];
+  };
   const auto same_place = [&](const Hit& x, const Hit& y) {
-    if (both_in(x, y)) return true;
+    if (both_in(x, y) || one_end(x, y)) return true;
     if (x.at_corner < 0 || y.at_corner < 0) return false;
     const ContactKey &p = x.point.key, &q = y.point.key;
     const Outline& owner = p.block_b == a.block ? a : b;

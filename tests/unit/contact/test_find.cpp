@@ -77,6 +77,45 @@ constexpr double kRound = 1e-14;
 
 }  // namespace
 
+TEST_CASE("a face that stands open like a wedge has two ends, wherever its corners pass each other") {
+  // the upper square is turned about its right lower corner and has slid by a hair: at the open end each corner comes to lie
+  // within the other's side, over some of the way
+  for (const double turned : {0.001, 0.0039, 0.01, 0.018, -0.0005, -0.004})
+    for (const double deep : {0.0, 3.4e-4})
+      for (double slid = -4e-4; slid <= 4e-4; slid += 3.7e-6) {
+        const Polygon lower{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}};
+        Polygon upper{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}};
+        for (Vec2& p : upper) {
+          const Vec2 r = p - Vec2{1, 0};
+          p = Vec2{1 + slid, 0.5 - deep} + Vec2{std::cos(turned) * r.x + std::sin(turned) * r.y,
+                                                std::cos(turned) * r.y - std::sin(turned) * r.x};
+        }
+        const std::vector<ContactPoint> points = touch({lower, upper});
+        INFO("turned " << turned << ", deep " << deep << ", slid " << slid);
+        REQUIRE(points.size() == 2);
+        CHECK(points[0].partner == 1);
+        CHECK(points[1].partner == 0);
+        // all of the face but what has slid past, and what the turn takes
+        CHECK(points[0].length + points[1].length == doctest::Approx(1).epsilon(2e-3));
+        CHECK(points[0].length == points[1].length);
+      }
+}
+
+TEST_CASE("a short overlap that stands open like a wedge has two ends") {
+  for (const double turned : {0.004, -0.004, 0.015})
+    for (double over = 6e-5; over < 1e-2; over *= 1.3) {
+      Polygon upper{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}};
+      for (Vec2& p : upper)
+        p = Vec2{1 - over, 0.502} + Vec2{std::cos(turned) * p.x - std::sin(turned) * p.y,
+                                         std::cos(turned) * p.y + std::sin(turned) * p.x};
+      const std::vector<ContactPoint> points = touch({{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}, upper});
+      INFO("turned " << turned << ", over " << over);
+      REQUIRE(points.size() == 2);
+      CHECK(points[0].partner == 1);
+      CHECK(points[0].length + points[1].length == doctest::Approx(over).epsilon(0.1));
+    }
+}
+
 TEST_CASE("square on square: two points with half the face each") {
   const Scene s = scene_of({kSquare, moved(kSquare, {0, 1})});
   const auto contacts = touch(s, start_state(s));

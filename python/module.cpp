@@ -504,10 +504,15 @@ class PyRun : public Views {
       throw py::value_error("until: that stage had ended when the state was saved");
     if (results) {
       folder_ = results->path().string();
-      recorder_ = goes_on
-                      ? std::make_unique<Recorder>(prepared.scene, std::move(*results), saved->archive, notes)
-                  : saved ? Recorder::branch_off(prepared.scene, std::move(*results), saved->archive, notes)
-                          : std::make_unique<Recorder>(prepared.scene, std::move(*results), notes);
+      try {
+        recorder_ =
+            goes_on ? std::make_unique<Recorder>(prepared.scene, std::move(*results), saved->archive, notes)
+            : saved ? Recorder::branch_off(prepared.scene, std::move(*results), saved->archive, notes)
+                    : std::make_unique<Recorder>(prepared.scene, std::move(*results), notes);
+      } catch (const std::exception& e) {
+        Recorder::abandon_begun(folder_, e.what());
+        throw;
+      }
     }
     memory->state = saved ? std::move(saved->state) : start_state(prepared.scene);
     observer_ = std::make_unique<PyObserver>(memory, function, every, recorder_.get());

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Writes the schema tables into docs/file_format.md, docs/many_runs.md and docs/talus.schema.json. Usage: tools/update_reference.sh build/release
+# Writes the schema tables into docs/file_format.md, docs/many_runs.md and docs/talus.schema.json,
+# and, where the Python package is built, docs/python_api.md. Usage: tools/update_reference.sh build/release
 set -eu
 cd "$(dirname "$0")/.."
 talus=$1/app/talus page=docs/file_format.md
@@ -9,3 +10,4 @@ mv $page.new $page
 page=docs/many_runs.md
 { sed '/begin of `talus schema --study`/q' $page; echo; "$talus" schema --study; sed -n '/end of `talus schema --study`/,$p' $page; } >$page.new
 mv $page.new $page
+[ ! -d "$1/python/talus" ] || PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$1/python /usr/bin/python3 tools/python_api.py

@@ -8,7 +8,11 @@ from typing import List
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that is wrong (severity "error") or doubtful ("warning") in a model. line 0: not in the file."""
+    """One thing that is wrong (severity "error") or doubtful ("warning") in a model: where, of which key, and what to do.
+
+    line, column  from 1; line 0: not in the file
+    override      the text behind --set, or KEY=VALUE of an override, where the value came from there
+    """
 
     severity: str
     file: str

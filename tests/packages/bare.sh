@@ -127,6 +127,8 @@ install "$(package python3-talus)"
 try "python3 -c 'import talus; print(talus.__file__)'" "^/usr/lib/python3/dist-packages/talus/"
 try "python3 -c 'import talus; r = talus.Model(\"bar.toml\").run(\"by_python\"); print(r)'"
 try "sed -n 's/.*\"contact_solves\": \([0-9]*\).*/\1/p' by_python/summary.json" "^$steps$"
+try "python3 -c 'import talus; print(talus.Cut(\"/usr/share/talus/examples/outcrop/outcrop.toml\"))'" "[0-9] blocks"
+try "python3 -c 'import talus; print(talus.Study({\"talus_study\": 1, \"model\": \"bar.toml\", \"vary\": [{\"key\": \"block.striker.velocity\", \"values\": [[1, 0], [2, 0]]}]}).run(\"study\"))'" "2 runs"
 
 echo
 echo "== away"

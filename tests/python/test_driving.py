@@ -209,6 +209,10 @@ class States(unittest.TestCase):
             run.save().write(file)
             self.assertEqual(talus.State(file).size, file.stat().st_size)
             self.assertEqual(talus.Model.from_text(SLOPE).run(state=file).steps, 1000)
+            model = pathlib.Path(folder, "model.toml")
+            model.write_text(SLOPE)
+            subprocess.run([PROGRAM, "run", model, "--from", file, "-o", pathlib.Path(folder, "branch"), "-q"], check=True)
+            self.assertEqual(talus.Results(pathlib.Path(folder, "branch")).times, [0.1, 0.5, 1])
             broken = bytearray(file.read_bytes())
             broken[-100] ^= 1
             file.write_bytes(broken)

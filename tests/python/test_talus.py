@@ -8,6 +8,7 @@ import io
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -71,6 +72,10 @@ class Page(unittest.TestCase):
             for part in page.split("```python\n")[1:]:
                 exec(part.split("```")[0], names)
         self.assertRegex(told.getvalue(), r"1\.000 s, step 1000: [0-9.]+ m/s, 2 contact points")
+
+    def test_the_reference_is_what_the_docstrings_say(self):
+        done = subprocess.run([sys.executable, ROOT / "tools/python_api.py", "--check"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
 
 
 class Runs(unittest.TestCase):

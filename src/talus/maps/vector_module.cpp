@@ -35,8 +35,12 @@ std::filesystem::path library_folder() {
 // other programs may have loaded.
 std::vector<std::filesystem::path> places() {
   const auto folder = program_folder(), library = library_folder();
-  return {folder / kModuleFile, folder / "../modules" / kModuleFile, folder / "../lib/talus" / kModuleFile,
-          library / "modules" / kModuleFile, library / "talus" / kModuleFile, library / "../talus" / kModuleFile};
+  return {folder / kModuleFile,
+          folder / "../modules" / kModuleFile,
+          folder / "../lib/talus" / kModuleFile,
+          library / "modules" / kModuleFile,
+          library / "talus" / kModuleFile,
+          library / "../talus" / kModuleFile};
 }
 
 const VectorModule& module() {

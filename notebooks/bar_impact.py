@@ -2,7 +2,7 @@
 # # A block strikes a bar
 #
 # The first case of Zhao, Xiao, Chen and Li (2016): the contact force between a rigid striker and a bar of sub-blocks, beside the exact solution of the
-# one-dimensional wave equation. Run it from the folder of the project: `python3 notebooks/bar_impact.py`, or cell by cell in an editor that knows `# %%`.
+# one-dimensional wave equation. Run it from the folder of the project: `/usr/bin/python3 notebooks/bar_impact.py`, or cell by cell in an editor that knows `# %%`.
 
 # %%
 import pathlib

@@ -5,9 +5,14 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "talus/base/text_file.h"
 #include "talus/output/read_vtk.h"
@@ -302,6 +307,15 @@ struct PyInstant : Views {
   }
 };
 
+// False of Python or of NumPy; anything else goes on.
+bool is_false(const py::object& answer) {
+  if (answer.ptr() == Py_False) return true;
+  if (answer.is_none() || answer.ptr() == Py_True) return false;
+  // kept to the end of the interpreter, and beyond
+  static const py::handle numpy_bool = py::object(py::module_::import("numpy").attr("bool_")).release();
+  return py::isinstance(answer, numpy_bool) && PyObject_IsTrue(answer.ptr()) == 0;
+}
+
 // Shows a Python function the instants, and hears Ctrl-C.
 class PyObserver : public Observer {
  public:
@@ -326,8 +340,7 @@ class PyObserver : public Observer {
     py::gil_scoped_acquire hold;
     const auto instant = std::make_shared<PyInstant>(PyInstant{{memory_}, &now});
     try {
-      const py::object answer = function_(instant);
-      stopped_ = answer.ptr() == Py_False;  // anything else goes on
+      if (is_false(function_(instant))) stopped_ = true;
     } catch (py::error_already_set& e) {
       error_ = std::make_unique<py::error_already_set>(e);
       stopped_ = true;
@@ -354,6 +367,8 @@ class PyObserver : public Observer {
     if (next_) next_->keep_state(standing, state);
   }
 
+  // From any thread.
+  void interrupt() { stopped_ = true; }
   // No more calls, nor results: of a run that is over.
   void mute() { listens_ = false; }
   void leave_results() { next_ = nullptr; }
@@ -373,7 +388,8 @@ class PyObserver : public Observer {
   const Vec2* displacement_ = nullptr;
   const Mat2* strain_part_ = nullptr;
   const BlockRate* rate_ = nullptr;
-  bool listens_ = !function_.is_none(), stopped_ = false;
+  bool listens_ = !function_.is_none();
+  std::atomic<bool> stopped_ = false;
   std::unique_ptr<py::error_already_set> error_;
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
@@ -382,7 +398,13 @@ struct PyResult : Views {
   RunResult result;
   std::string folder;
   bool valid = true;  // by the audit, where there was one
+  bool over = false;
+  int64_t steps = 0;
+  double time = 0;  // [s]
 
+  const char* how() const {
+    return !result.failure.empty() ? "failed" : result.interrupted ? "stopped" : over ? "ended" : "goes on";
+  }
   py::list stages() const {
     py::list out;
     for (const StageResult& s : result.stages) {
@@ -430,6 +452,11 @@ class PyRun : public Views {
     guarded([&] { begin(model.notes, name, function, every, threads, force, from); });
   }
   ~PyRun() {
+    if (elsewhere()) {
+      // a copy of the process that it belongs to: its threads are not here, and its results are not ours
+      run_.release(), observer_.release(), recorder_.release();
+      return;
+    }
     try {
       if (!ended_) observer_->mute(), finish();
     } catch (...) {  // whoever wants to know calls finish()
@@ -446,8 +473,11 @@ class PyRun : public Views {
     if (pause.steps < 0) throw py::value_error("steps: 0 or more");
     if (std::isnan(pause.time)) throw py::value_error("time: a number of seconds");
     take([&] { run_->advance(pause); });
-    return !run_->over();
+    return !over();
   }
+  // Asks it to end after the step that is under way. From any thread.
+  void interrupt() { observer_->interrupt(); }
+  bool busy() const { return busy_; }
 
   std::shared_ptr<PyResult> finish() {
     if (!ended_) take([&] { run_->stop(); });
@@ -455,27 +485,42 @@ class PyRun : public Views {
   }
 
   std::shared_ptr<PyResult> result() const {
+    check_still();
     auto out = std::make_shared<PyResult>();
     out->memory = memory, out->result = run_->result(), out->folder = folder_, out->valid = valid_;
+    out->over = over(), out->steps = state().step, out->time = state().time;
+    if (ended_ && !run_->over()) out->result.interrupted = true;  // by an error of files
     return out;
   }
 
   PyState save() {
-    if (busy_) throw py::value_error("a run saves no state from within its observer");
+    if (busy_)
+      throw py::value_error(
+          "a run saves no state from within its observer, nor while another thread takes it on");
     if (run_->result().stages.empty()) advance(py::int_(0), py::none(), false);
+    busy_ = true, stepping_ = std::this_thread::get_id();
+    const auto done = std::shared_ptr<void>(nullptr, [this](void*) { busy_ = false; });
     return guarded([&] {
       py::gil_scoped_release free;
       const Standing standing = run_->standing();
-      const State& state = memory->state;
-      return PyState{memory->prepared.scene.model.file + ", a state in memory",
-                     archive_bytes(recorder_ ? recorder_->archive_of(standing, state)
-                                             : run_archive(memory->prepared.scene, standing, state))};
+      return PyState{scene().model.file + ", a state in memory",
+                     archive_bytes(recorder_ ? recorder_->archive_of(standing, state())
+                                             : run_archive(scene(), standing, state()))};
     });
   }
 
   const Scene& scene() const { return memory->prepared.scene; }
-  bool over() const { return run_->over(); }
+  bool over() const { return ended_ || run_->over(); }
+  py::array contacts() const {
+    check_still();
+    return contacts_of(state());
+  }
+  py::array stress() const {
+    check_still();
+    return stress_of(scene(), state());
+  }
   std::string stage() const {
+    check_still();
     const auto& stages = run_->result().stages;
     return stages.empty() ? "" : stages.back().name;
   }
@@ -498,10 +543,10 @@ class PyRun : public Views {
       } else if (from) {
         saved.emplace(branch_of(from->name, from->bytes, prepared, notes.branch.emplace()));
       }
-      if (!folder.empty() && !results) results.emplace(folder, force);
     }
     if (saved && saved->standing.result.stages.size() > prepared.plans.size())
       throw py::value_error("until: that stage had ended when the state was saved");
+    if (!folder.empty() && !results) results.emplace(folder, force);
     if (results) {
       folder_ = results->path().string();
       try {
@@ -525,9 +570,10 @@ class PyRun : public Views {
   // Goes on by `what`, and ends what has come to its end.
   template <class What>
   void take(const What& what) {
+    if (elsewhere()) throw py::value_error("the run belongs to the process that has begun it");
     if (busy_) throw py::value_error("a run is taken on by one caller at a time, and not by its observer");
     if (ended_) return;
-    busy_ = true;
+    busy_ = true, stepping_ = std::this_thread::get_id();
     try {
       guarded([&] {
         py::gil_scoped_release free;
@@ -551,6 +597,14 @@ class PyRun : public Views {
     if (!run_->result().failure.empty()) raise("NumericalError", run_->result().failure);
   }
 
+  bool elsewhere() const { return getpid() != process_; }
+  // What changes its size while a step is taken can be read between steps, and by the observer.
+  void check_still() const {
+    if (busy_ && stepping_ != std::this_thread::get_id())
+      throw py::value_error(
+          "another thread takes the run on: look at it between its steps, or by its observer");
+  }
+
   // Others may take it, while this one is still looked at.
   void leave_folder() {
     observer_->leave_results();
@@ -562,6 +616,8 @@ class PyRun : public Views {
   std::unique_ptr<PyObserver> observer_;
   std::unique_ptr<StagedRun> run_;
   bool busy_ = false, ended_ = false, valid_ = true;
+  std::thread::id stepping_;  // who has it while it is busy
+  pid_t process_ = getpid();
 };
 
 // A frame of a result folder: its arrays by name, (points or blocks, components).
@@ -647,8 +703,8 @@ PYBIND11_MODULE(_talus, m) {
           "deformation gradients F - I [-], (blocks, 2, 2): a view as displacement (theory 1.1)")
       .def_property_readonly(
           "rate", &Views::rate,
-          "velocities of the centroids in the middle of the step before [m/s], (blocks, 2): a view as displacement "
-          "(theory 2.1)")
+          "velocities of the centroids half a step on [m/s], (blocks, 2): of an instant in the middle of the step that follows (of the "
+          "last one: before), between steps in the middle of the one before; a view as displacement (theory 2.1)")
       .def_property_readonly(
           "rate_gradient", &Views::rate_gradient,
           "rates of the deformation gradients then [1/s], (blocks, 2, 2); of blocks that do not deform the spin matrix: a "
@@ -677,7 +733,7 @@ PYBIND11_MODULE(_talus, m) {
           "Cauchy stress of each block, tension > 0 [Pa], (blocks, 2, 2): a copy (theory 1.5)")
       .def_property_readonly(
           "contacts", [](const PyInstant& i) { return contacts_of(i.instant().state); },
-          "contact points, open ones too, as a structured array, a copy: block_a, block_b, joint (-1: "
+          "contact points of the step that begins here, open ones too, as a structured array, a copy: block_a, block_b, joint (-1: "
           "none), normal (> 0 pressing) and shear force on a [N], length [m], slip to and fro [m]")
       .def_property_readonly(
           "points", &PyInstant::points,
@@ -690,14 +746,19 @@ PYBIND11_MODULE(_talus, m) {
           "the equations of the step as the solver left them (theory 4.1), a structured array, a copy: family (0 "
           "glued face, 1 contact, 2 support, 3 boundary, 4 tie, 5 bolt), block_a, block_b, partner (row of the "
           "other end of the face), normal from b into a, impulses [N s], bias [m/s], compliance [1/kg], bounds of the "
-          "normal impulse [N s], friction [-], cohesion [N s]");
+          "normal impulse [N s], friction [-], cohesion [N s]")
+      .def("__repr__", [](const PyInstant& i) {
+        return i.now ? py::str("<talus.Instant t = {:.6g} s, step {}, stage {}>")
+                           .format(i.now->state.time, i.now->state.step, i.now->stage)
+                     : py::str("<talus.Instant that is over>");
+      });
 
   py::class_<PyResult, Views, std::shared_ptr<PyResult>>(m, "Result",
                                                          "How a run ended, or how far it has come.")
       .def_property_readonly(
-          "steps", [](const PyResult& r) { return r.memory->state.step; }, "steps taken")
+          "steps", [](const PyResult& r) { return r.steps; }, "steps taken")
       .def_property_readonly(
-          "time", [](const PyResult& r) { return r.memory->state.time; }, "time at the end [s]")
+          "time", [](const PyResult& r) { return r.time; }, "time at the end [s]")
       .def_property_readonly(
           "stages", &PyResult::stages,
           "of each stage that has begun: name, steps, begin and end [s], time_step [s], at_rest")
@@ -716,6 +777,21 @@ PYBIND11_MODULE(_talus, m) {
       .def_property_readonly(
           "wall_seconds", [](const PyResult& r) { return r.result.wall_seconds; },
           "wall time of the steps [s]")
+      .def_property_readonly(
+          "failure", [](const PyResult& r) { return r.result.failure; },
+          "what ended it, where bad numbers have; \"\" otherwise")
+      .def("__repr__",
+           [](const PyResult& r) {
+             return py::str("<talus.Result t = {:.6g} s, {} steps: {}{}>")
+                 .format(r.time, r.steps, r.how(), r.valid ? "" : ", NOT VALID");
+           })
+      .def("_repr_html_",
+           [](const PyResult& r) {
+             const py::object picture = py::module_::import("talus.run").attr("picture_of")(r.folder);
+             return py::str("t = {:.6g} s, {} steps: {}{}{}")
+                 .format(r.time, r.steps, r.how(), r.valid ? "" : ", NOT VALID",
+                         r.over && !r.folder.empty() ? picture : py::str(""));
+           })
       .def_readonly("folder", &PyResult::folder, "folder of results, \"\" when none was written")
       .def_readonly("valid", &PyResult::valid, "what the audit says; True when nothing was recorded");
 
@@ -737,6 +813,8 @@ PYBIND11_MODULE(_talus, m) {
            py::arg("until"), py::arg("force"), py::arg("state"))
       .def("advance", &PyRun::advance, py::arg("steps"), py::arg("time"), py::arg("stage_end"))
       .def("finish", &PyRun::finish)
+      .def("interrupt", &PyRun::interrupt)
+      .def_property_readonly("busy", &PyRun::busy)
       .def("save", &PyRun::save)
       .def_property_readonly("result", &PyRun::result)
       .def_property_readonly("time", [](const PyRun& r) { return r.state().time; })
@@ -744,8 +822,8 @@ PYBIND11_MODULE(_talus, m) {
       .def_property_readonly("stage", &PyRun::stage)
       .def_property_readonly("over", &PyRun::over)
       .def_property_readonly("folder", &PyRun::folder)
-      .def_property_readonly("stress", [](const PyRun& r) { return stress_of(r.scene(), r.state()); })
-      .def_property_readonly("contacts", [](const PyRun& r) { return contacts_of(r.state()); });
+      .def_property_readonly("stress", &PyRun::stress)
+      .def_property_readonly("contacts", &PyRun::contacts);
 
   m.def("frame", &frame, py::arg("path"));
   m.def("series", &series, py::arg("pvd"));

@@ -5,10 +5,10 @@ from __future__ import annotations
 import html
 import json
 import os
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from . import _talus
-from ._source import Overrides, Path, override_texts, read_text, svg_of
+from ._source import Overrides, Path, folder_text, override_texts, read_text, shown, svg_of
 from ._toml import text_of
 from .errors import Finding
 
@@ -18,11 +18,12 @@ class Cut:
 
     source     path of a model file, or its sections as a dictionary
     overrides  values by dotted key, as --set
+    file       name of a dictionary in messages, from whose folder relative paths in it count
     """
 
-    def __init__(self, source: "Path | Dict[str, Any]", overrides: Optional[Overrides] = None):
-        if isinstance(source, dict):
-            file, text = "model.toml", text_of(source)
+    def __init__(self, source: "Path | Mapping[str, Any]", overrides: Optional[Overrides] = None, file: str = "model.toml"):
+        if isinstance(source, Mapping):
+            text = text_of(source)
         else:
             file, text = os.fspath(source), read_text(source)
         self._cut = _talus.Cut(file, text, override_texts(overrides))
@@ -59,14 +60,14 @@ class Cut:
 
     def write(self, folder: Path, force: bool = False) -> None:
         """Writes the folder of `talus cut`: pictures, blocks.json, blocks.csv, slivers.csv, report.txt, cut.json, model.toml."""
-        self._cut.write(os.fspath(folder), force)
+        self._cut.write(folder_text(folder), force)
 
     def svg(self) -> str:
         """A picture of blocks, joints and what acts on them, as SVG."""
         return svg_of(self._cut.picture)
 
     def _repr_html_(self) -> str:
-        return f"{self.svg()}<pre>{html.escape(self.report)}</pre>"
+        return f"{shown(self.svg())}<pre>{html.escape(self.report)}</pre>"
 
     def __repr__(self) -> str:
         return f"<talus.Cut: {len(self.blocks)} blocks>"

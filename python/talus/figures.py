@@ -11,13 +11,12 @@ if TYPE_CHECKING:
 
 
 def _axes(axes: Any) -> Any:
-    if axes is not None:
-        return axes
     try:
+        import matplotlib.collections
         import matplotlib.pyplot
     except ImportError as error:
         raise ImportError("figures want Matplotlib: install python3-matplotlib") from error
-    return matplotlib.pyplot.subplots()[1]
+    return matplotlib.pyplot.subplots()[1] if axes is None else axes
 
 
 def plot_frame(frame: "Frame", colour: str = "", *, axes: Any = None, **how: Any) -> Any:
@@ -53,6 +52,8 @@ def plot_histories(results: "Results", columns: Sequence[str], *, axes: Any = No
                 raise KeyError(f"{name}: there is {', '.join(titles)}")
             chosen += found
     else:
+        if not titles:
+            raise ValueError(f"{results.folder}: the model has no monitor")
         chosen = [t for t in titles if _unit_of(t) == _unit_of(titles[0])]
     axes = _axes(axes)
     for title in chosen:

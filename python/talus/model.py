@@ -10,7 +10,7 @@ import numpy
 from numpy.typing import NDArray
 
 from . import _talus
-from ._source import Overrides, Path, override_texts, read_text, svg_of
+from ._source import Overrides, Path, override_texts, read_text, shown, svg_of
 from ._toml import text_of
 from .errors import Finding
 from .run import Run, State
@@ -22,17 +22,22 @@ class Model:
     source     path of a model file
     overrides  values by dotted key, as --set: {"stage.slide.duration": "2 s"}; "new:KEY" where the table is to be made
 
-    Models are not changed: another value is another Model.
+    Models are not changed: another value is another Model. Files that it names are read at each use, and relative paths count
+    from the folder of the file as it was given.
     """
 
     def __init__(self, source: Path, overrides: Optional[Overrides] = None):
+        if isinstance(source, Mapping):
+            raise TypeError("Model reads a file; Model.from_dict takes sections, Model.from_text a text")
         self._read(os.fspath(source), read_text(source), overrides)
 
     @classmethod
     def from_text(cls, text: str, overrides: Optional[Overrides] = None, file: str = "model.toml") -> "Model":
         """A model from the text of a file; `file` is its name in messages, from whose folder relative paths count."""
+        if not isinstance(text, str):
+            raise TypeError(f"the text of a model, not {type(text).__name__}")
         model = cls.__new__(cls)
-        model._read(file, text, overrides)
+        model._read(os.fspath(file), text, overrides)
         return model
 
     @classmethod
@@ -109,8 +114,8 @@ class Model:
         """Runs all stages; results have the bits of `talus run`.
 
         folder    for the results; None writes none
-        observer  called with an Instant at every `every`-th step and at the last; returning False ends the run with the
-                  step that is under way
+        observer  called with an Instant at step 0, at every `every`-th step and at the last; returning False ends the run with
+                  the step that is under way
         threads   inside a step, 0: as many as pay
         until     name of the stage to end after
         force     replaces the results of an earlier run in that folder
@@ -118,8 +123,8 @@ class Model:
                   later may differ (docs/file_format.md)
 
         Raises NumericalError where the run ends on bad numbers (what was written stays), InputError where the state is no
-        state of this model, KeyboardInterrupt on Ctrl-C, and whatever the observer raises. Other threads of Python go on
-        meanwhile.
+        state of this model (its findings are empty, its text names the keys), KeyboardInterrupt on Ctrl-C where it is run by
+        the main thread, and whatever the observer raises. Other threads of Python go on meanwhile.
         """
         return self.start(folder, observer, every=every, threads=threads, until=until, force=force, state=state)._to_the_end()
 
@@ -131,7 +136,7 @@ class Model:
         known = self._scene()
         rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{step:.3g} s</td></tr>" for name, step in zip(known["stages"], known["time_steps"]))
         return (f"<b>{html.escape(known['title'] or self.file)}</b>: {len(known['blocks'])} blocks, "
-                f"{len(self.findings)} warnings<table><tr><th>stage</th><th>step</th></tr>{rows}</table>{self.svg()}")
+                f"{len(self.findings)} warnings<table><tr><th>stage</th><th>step</th></tr>{rows}</table>{shown(self.svg())}")
 
     def __repr__(self) -> str:
         return f"<talus.Model {self.file}: {len(self.blocks)} blocks, stages {', '.join(self.stages)}>"

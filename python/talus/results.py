@@ -6,7 +6,8 @@ import csv
 import html
 import json
 import os
-from typing import Any, Dict, List, Union
+import re
+from typing import Any, Dict, List
 
 import numpy
 from numpy.typing import NDArray
@@ -14,29 +15,30 @@ from numpy.typing import NDArray
 from . import _talus
 from ._source import Path
 from .errors import FileError
+from .run import picture_of
 
 
-def _number(cell: str) -> Union[float, str]:
-    try:
-        return float(cell)
-    except ValueError:
-        return cell
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?inf|nan")
+
+
+def _column(cells: List[str]) -> Any:
+    """Numbers, where all cells are numbers or empty (NaN) and one at least is a number; else texts."""
+    if any(cells) and all(not c or _NUMBER.fullmatch(c) for c in cells):
+        return numpy.array([float(c) if c else numpy.nan for c in cells])
+    return cells
 
 
 def read_table(path: str) -> Dict[str, Any]:
-    """A CSV file with a head: columns by title, arrays where all cells are numbers, else lists."""
+    """A CSV file with a head: columns by title, arrays where all cells are numbers or empty (NaN), else lists of texts."""
     try:
         with open(path, encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from None
-    if not rows:
-        return {}
-    columns: Dict[str, Any] = {}
-    for k, title in enumerate(rows[0]):
-        cells: List[Any] = [_number(row[k]) for row in rows[1:]]
-        columns[title] = numpy.array(cells) if all(isinstance(c, float) for c in cells) else cells
-    return columns
+    except (OSError, ValueError, csv.Error) as error:
+        raise FileError(f"{path}: {error}") from None
+    for number, row in enumerate(rows, 1):
+        if len(row) != len(rows[0]):
+            raise FileError(f"{path}:{number}: has {len(row)} cells, not {len(rows[0])}")
+    return {title: _column([row[k] for row in rows[1:]]) for k, title in enumerate(rows[0])} if rows else {}
 
 
 class Frame:
@@ -46,11 +48,11 @@ class Frame:
     "block", "stress xx [Pa]", "centroid displacement [m]" and so on.
     """
 
-    def __init__(self, path: str):
-        self.path = path
+    def __init__(self, path: Path):
+        self.path = os.fspath(path)
         self.time: float
         self.arrays: Dict[str, NDArray[numpy.float64]]
-        self.time, self.arrays = _talus.frame(path)
+        self.time, self.arrays = _talus.frame(self.path)
 
     @property
     def polygons(self) -> List[NDArray[numpy.float64]]:
@@ -62,6 +64,8 @@ class Frame:
 
     def title_of(self, name: str) -> str:
         """The title of an array by itself, without its unit, or by how it begins. Raises KeyError with all titles."""
+        if not name:
+            raise KeyError("the title of an array, or how it begins")
         found = [a for a in self.arrays if name in (a, a.split(" [")[0])] or [a for a in self.arrays if a.startswith(name)]
         if not found:
             raise KeyError(f"{name}: there is {', '.join(sorted(self.arrays))}")
@@ -93,11 +97,13 @@ class Results:
         try:
             with open(path, encoding="utf-8") as file:
                 self.summary: Dict[str, Any] = json.load(file)
+            if not isinstance(self.summary, dict) or "status" not in self.summary:
+                raise ValueError("it does not say how a run ended")
         except (OSError, ValueError) as error:
-            raise FileError(f"{path}: {error}; is {self.folder} the folder of a run?") from None
+            raise FileError(f"{path}: {error}; is {self.folder} the folder of a run? (A cut has none.)") from None
 
     def table(self, name: str) -> Dict[str, Any]:
-        """A file of columns in the folder: "joints.csv". Columns of numbers are arrays, others lists."""
+        """A file of columns in the folder: "joints.csv". Columns of numbers are arrays, with NaN where a cell is empty, others lists of texts."""
         return read_table(os.path.join(self.folder, name))
 
     @property
@@ -122,11 +128,17 @@ class Results:
 
     def frame(self, number: int = -1) -> Frame:
         """The blocks of a frame; -1: the last."""
-        return Frame(self._series("blocks")[number][1])
+        return Frame(self._file("blocks", number))
 
     def contact_frame(self, number: int = -1) -> Dict[str, NDArray[numpy.float64]]:
         """The contact points of a frame by the titles of their arrays: "Points", "force [N]" ..."""
-        return dict(_talus.frame(self._series("contacts")[number][1])[1])
+        return dict(_talus.frame(self._file("contacts", number))[1])
+
+    def _file(self, name: str, number: int) -> str:
+        frames = self._series(name)
+        if not -len(frames) <= number < len(frames):
+            raise IndexError(f"frame {number}: {self.folder} has {len(frames)}, from 0")
+        return str(frames[number][1])
 
     def _series(self, name: str) -> List[Any]:
         found = _talus.series(os.path.join(self.folder, "fields", f"{name}.pvd"))
@@ -141,13 +153,7 @@ class Results:
 
     def _repr_html_(self) -> str:
         valid = "valid" if self.summary.get("valid", True) else "NOT VALID"
-        try:
-            with open(os.path.join(self.folder, "blocks_end.svg"), encoding="utf-8") as file:
-                picture = file.read()
-            picture = picture[picture.index("<svg"):]
-        except (OSError, ValueError):
-            picture = ""  # output.pictures = false
-        return f"<b>{html.escape(self.folder)}</b>: {html.escape(str(self.summary['status']))}, {valid}{picture}"
+        return f"<b>{html.escape(self.folder)}</b>: {html.escape(str(self.summary['status']))}, {valid}{picture_of(self.folder)}"
 
     def __repr__(self) -> str:
         return f"<talus.Results {self.folder}: {self.summary['status']}>"

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
 import html
+import inspect
+import operator
 import os
+import time as clock
+import weakref
 from types import TracebackType
 from typing import Any, Callable, Optional, Type
 
@@ -11,7 +16,10 @@ import numpy
 from numpy.typing import NDArray
 
 from . import _talus
-from ._source import Path
+from ._source import Path, folder_text, shown
+from .errors import FileError
+
+Observer = Callable[[_talus.Instant], Any]
 
 
 class State:
@@ -21,7 +29,7 @@ class State:
     """
 
     def __init__(self, path: Path):
-        self._state = _talus.State.read(os.fspath(path))
+        self._state = _talus.State.read(os.path.abspath(os.fspath(path)))
 
     @classmethod
     def _of(cls, state: _talus.State) -> "State":
@@ -42,6 +50,42 @@ class State:
         return f"<talus.State {self._state.name}: {self.size} bytes>"
 
 
+def picture_of(folder: str) -> str:
+    """The picture of the end that a run has left, for a page; "" where there is none (output.pictures = false)."""
+    try:
+        with open(os.path.join(folder, "blocks_end.svg"), encoding="utf-8") as file:
+            text = file.read()
+        return shown(text[text.index("<svg"):])
+    except (OSError, ValueError):
+        return ""
+
+
+_live: "weakref.WeakSet[Run]" = weakref.WeakSet()
+
+
+def _calls(run: "weakref.ref[Run]") -> Observer:
+    # the run holds its observer, which may hold the run: a ring that Python can see and take apart
+    def call(now: _talus.Instant) -> Any:
+        own = run()
+        return None if own is None or own._observer is None else own._observer(now)
+    return call
+
+
+@atexit.register
+def _end_all() -> None:
+    """Runs that are alive when the interpreter ends are ended in order, those of other threads too."""
+    for run in list(_live):
+        run._run.interrupt()
+    end = clock.monotonic() + 10
+    while any(run._run.busy for run in _live) and clock.monotonic() < end:
+        clock.sleep(0.01)
+    for run in list(_live):
+        try:
+            run.finish()
+        except Exception:  # nobody is there any more to be told
+            pass
+
+
 class Run:
     """A run that goes as far as it is told to; made by Model.start(). The results are those of Model.run(), however the way
     is cut.
@@ -53,12 +97,22 @@ class Run:
     At its end, or where the block is left before, results are written and `result` says how it ended.
     """
 
-    def __init__(self, model: _talus.Model, folder: Optional[Path], observer: Optional[Callable[[_talus.Instant], Any]], every: int,
-                 threads: int, until: str, force: bool, state: "State | Path | None"):
+    def __init__(self, model: _talus.Model, folder: Optional[Path], observer: Optional[Observer], every: int, threads: int, until: str,
+                 force: bool, state: "State | Path | None"):
+        if observer is not None and (not callable(observer) or inspect.iscoroutinefunction(observer) or inspect.isgeneratorfunction(observer)):
+            raise TypeError(f"observer: a function of an Instant, not {observer!r}")
         if state is not None and not isinstance(state, State):
             state = State(state)
-        self._run = _talus.Run(model, None if folder is None else os.fspath(folder), observer, every, threads, until, force,
-                               None if state is None else state._state)
+        place = None if folder is None else folder_text(folder)
+        if place is not None:
+            for other in list(_live):
+                if other._place == os.path.realpath(place) and not other.over:
+                    raise FileError(f"{place}: a Run of this process writes into it; finish() that one first")
+        self._place: str = "" if place is None else os.path.realpath(place)
+        self._observer: Optional[Observer] = observer
+        self._run: _talus.Run = _talus.Run(model, place, None if observer is None else _calls(weakref.ref(self)), operator.index(every),
+                               operator.index(threads), until, bool(force), None if state is None else state._state)
+        _live.add(self)
 
     def advance(self, steps: Optional[int] = None, time: Optional[float] = None, stage_end: bool = False) -> bool:
         """Goes on by so many steps, to this time of the run [s], to the end of the stage, whichever comes first; without any
@@ -67,7 +121,11 @@ class Run:
         Raises NumericalError where the run ends on bad numbers, KeyboardInterrupt on Ctrl-C, and what the observer raises;
         the run is over then.
         """
-        return self._run.advance(steps, time, stage_end)
+        if steps is not None:
+            steps = operator.index(steps)
+            if not 0 <= steps < 2 ** 63:
+                raise ValueError("steps: 0 or more, and less than 2^63")
+        return self._run.advance(steps, None if time is None else float(time), bool(stage_end))
 
     def finish(self) -> _talus.Result:
         """Ends the run where it stands, and its results with it."""
@@ -145,18 +203,12 @@ class Run:
     def _repr_html_(self) -> str:
         r = self.result
         rows = "".join(f"<tr><td>{html.escape(s['name'])}</td><td>{s['steps']}</td><td>{s['time_step']:.3g} s</td></tr>" for s in r.stages)
-        picture = ""
-        if r.folder and self.over:
-            try:
-                with open(os.path.join(r.folder, "blocks_end.svg"), encoding="utf-8") as file:
-                    picture = file.read()
-                picture = picture[picture.index("<svg"):]
-            except (OSError, ValueError):
-                pass  # output.pictures = false
+        picture = picture_of(r.folder) if self.over else ""
         return f"{html.escape(self._text())}<table><tr><th>stage</th><th>steps</th><th>step</th></tr>{rows}</table>{picture}"
 
     def _text(self) -> str:
-        state = ("stopped" if self.result.interrupted else "ended") if self.over else "goes on"
+        r = self.result
+        state = ("failed" if r.failure else "stopped" if r.interrupted else "ended") if self.over else "goes on"
         return f"t = {self.time:.6g} s, step {self.step}, stage {self.stage or 'none'}: {state}"
 
     def __repr__(self) -> str:

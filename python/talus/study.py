@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 import html
+import operator
 import os
 import shutil
+import signal
 import subprocess
+import tempfile
 from typing import Any, Dict, List, Mapping, Union
 
 from . import _talus
-from ._source import Path, override_texts
+from ._source import Path, folder_text, override_texts
 from ._toml import text_of
 from .errors import Error, FileError, InputError
 from .results import Results, read_table
@@ -20,10 +22,15 @@ def program() -> str:
     """The program talus of this package: beside it in a build or an installation, or in the PATH; TALUS_PROGRAM names another.
     Raises FileError."""
     here = os.path.dirname(os.path.abspath(_talus.__file__))
-    places = [os.environ.get("TALUS_PROGRAM", ""), os.path.join(here, "..", "..", "app", "talus")]
+    named = os.environ.get("TALUS_PROGRAM")
+    if named is not None:
+        if not (os.path.isfile(named) and os.access(named, os.X_OK)):
+            raise FileError(f"TALUS_PROGRAM names {named!r}, which is no program")
+        return named
+    places = [os.path.join(here, "..", "..", "app", "talus")]
     places += [os.path.join(here, *[".."] * up, "bin", "talus") for up in (3, 4)]
     for place in places:
-        if place and os.access(place, os.X_OK) and os.path.isfile(place):
+        if os.access(place, os.X_OK) and os.path.isfile(place):
             return os.path.normpath(place)
     found = shutil.which("talus")
     if found is None:
@@ -58,7 +65,10 @@ class StudyResults:
         return f"<table><tr>{head}</tr>{rows}</table>"
 
     def __repr__(self) -> str:
-        return f"<talus.StudyResults {self.folder}: {len(next(iter(self.table.values()), []))} runs>"
+        try:
+            return f"<talus.StudyResults {self.folder}: {len(next(iter(self.table.values()), []))} runs>"
+        except FileError:
+            return f"<talus.StudyResults {self.folder}: nothing is gathered yet>"
 
 
 class Study:
@@ -67,9 +77,17 @@ class Study:
 
     def __init__(self, source: Union[Path, Mapping[str, Any]]):
         self._sections = dict(source) if isinstance(source, Mapping) else None
-        if self._sections is not None and isinstance(self._sections.get("set"), Mapping):
-            self._sections["set"] = override_texts(self._sections["set"])
         self._file = "" if isinstance(source, Mapping) else os.fspath(source)
+        if self._sections is None:
+            return
+        # what relative paths count from is the present folder, wherever the text is written to
+        here = self._sections
+        if isinstance(here.get("set"), Mapping):
+            here["set"] = override_texts(here["set"])
+        if isinstance(here.get("model"), (str, os.PathLike)):
+            here["model"] = os.path.abspath(here["model"])
+        if isinstance(here.get("vary"), (list, tuple)):
+            here["vary"] = [{**v, "files": os.path.abspath(v["files"])} if isinstance(v, Mapping) and "files" in v else v for v in here["vary"]]
 
     def dry_run(self) -> str:
         """Checks study and model, and says how many runs there are. Raises InputError."""
@@ -77,24 +95,30 @@ class Study:
 
     def run(self, folder: Path, jobs: int = 0) -> StudyResults:
         """Runs what is not done yet, `jobs` at once (0: one for each processor). Killed or stopped, the same call goes on.
-        Raises InputError, FileError with what the command says; runs that fail are rows of the table."""
-        self._call(["--jobs", str(jobs)], os.fspath(folder))
+
+        Raises InputError, FileError with what the command says (without findings); runs that fail are rows of the table.
+        """
+        jobs = operator.index(jobs)
+        if jobs < 0:
+            raise ValueError("jobs: 0, one for each processor, or more")
+        self._call(["--jobs", str(jobs)], folder_text(folder))
         return StudyResults(folder)
 
     def _call(self, options: List[str], folder: str) -> str:
-        file = self._file
-        if self._sections is not None:
-            # beside what it names; the folder of the study keeps a copy
-            text = text_of(self._sections)
-            file = f".talus_study_{hashlib.sha256(text.encode()).hexdigest()[:12]}.toml"
-            with open(file, "w", encoding="utf-8") as out:
-                out.write(text)
-        try:
-            done = subprocess.run([program(), "study", file, "-o", folder, *options], capture_output=True, text=True)
-        finally:
+        with tempfile.TemporaryDirectory() as place:
+            file = self._file
             if self._sections is not None:
-                os.remove(file)
-        if done.returncode == 0:
-            return done.stdout
+                file = os.path.join(place, "study.toml")
+                with open(file, "w", encoding="utf-8") as out:
+                    out.write(text_of(self._sections))
+            child = subprocess.Popen([program(), "study", file, "-o", folder, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            try:
+                told, trouble = child.communicate()
+            except BaseException:
+                child.send_signal(signal.SIGTERM)  # it ends its runs, and goes on with them another time
+                child.communicate()
+                raise
+        if child.returncode == 0:
+            return told
         kinds: Dict[int, Any] = {3: InputError, 4: FileError}
-        raise kinds.get(done.returncode, Error)(done.stderr.strip() or done.stdout.strip())
+        raise kinds.get(child.returncode, Error)(trouble.strip() or told.strip())

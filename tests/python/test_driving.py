@@ -3,9 +3,12 @@
 Usage: test_driving.py BUILD_DIR  (PYTHONPATH names BUILD_DIR/python)
 """
 import gc
+import os
 import pathlib
 import pickle
+import shutil
 import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -92,9 +95,21 @@ class Driving(unittest.TestCase):
         self.assertEqual(run.stage, "on")
         self.assertFalse(run.advance())
         self.assertEqual([s["steps"] for s in run.result.stages], [500, 500])
-        for wrong in ({"steps": -1}, {"time": float("nan")}):
-            with self.assertRaises(ValueError):
+        for wrong, error in (({"steps": -1}, ValueError), ({"steps": 2 ** 70}, ValueError), ({"steps": 1.5}, TypeError),
+                             ({"time": float("nan")}, ValueError), ({"time": "soon"}, ValueError)):
+            with self.assertRaises(error):
                 talus.Model.from_text(SLOPE).start().advance(**wrong)
+
+    def test_a_result_is_how_far_it_has_come(self):
+        run = talus.Model.from_text(SLOPE).start()
+        run.advance(steps=10)
+        then = run.result
+        run.advance(steps=10)
+        self.assertEqual((then.steps, then.stages[0]["steps"], run.result.steps), (10, 10, 20))
+        self.assertAlmostEqual(then.time, 0.01)
+        self.assertIn("goes on", repr(then))
+        run.finish()
+        self.assertIn("stopped", repr(run.result))
 
     def test_between_steps(self):
         run = talus.Model.from_text(SLOPE).start()
@@ -149,6 +164,92 @@ class Driving(unittest.TestCase):
         self.assertEqual(len(done), 3)
         self.assertEqual(len(set(done.values())), 1)
 
+    def test_who_holds_each_other_is_freed_and_its_folder_too(self):
+        class Watcher:
+            def __init__(self, folder):
+                self.run = talus.Model.from_text(SLOPE).start(folder, self.look, force=True)
+
+            def look(self, now):
+                pass
+
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder, "run")
+            watcher = Watcher(place)
+            watcher.run.advance(steps=5)
+            with self.assertRaises(talus.FileError) as caught:
+                Watcher(place)
+            self.assertIn("finish() that one first", str(caught.exception))
+            del watcher, caught
+            gc.collect()
+            self.assertEqual(talus.Results(place).summary["status"], "interrupted")
+            Watcher(place).run.finish()
+
+    def test_the_end_of_the_interpreter_ends_its_runs(self):
+        script = """
+import sys, threading, time, talus
+sys.path.insert(0, {tests!r}); sys.argv = ["x"]
+from common import SLOPE
+long = {{"stage.slide.duration": "20000 s"}}
+def look(now): global seen; seen = run if "run" in globals() else None
+run = talus.Model.from_text(SLOPE, long).start({one!r}, look)
+run.advance(steps=10)
+threading.Thread(target=lambda: talus.Model.from_text(SLOPE, long).run({two!r}, lambda now: None), daemon=True).start()
+time.sleep(0.5)
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            one, two = str(pathlib.Path(folder, "one")), str(pathlib.Path(folder, "two"))
+            tests = str(pathlib.Path(__file__).parent)
+            done = subprocess.run([sys.executable, "-c", script.format(tests=tests, one=one, two=two)], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            for place in (one, two):
+                self.assertEqual(talus.Results(place).summary["status"], "interrupted")
+                self.assertFalse(pathlib.Path(place, "talus_lock.txt").exists())
+
+    def test_a_copy_of_the_process_leaves_it_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder, "run")
+            run = talus.Model.from_text(SLOPE).start(place, threads=2)
+            run.advance(steps=10)
+            child = os.fork()
+            if child == 0:
+                try:
+                    run.advance(steps=1)
+                except ValueError:
+                    del run
+                    gc.collect()
+                    os._exit(7)
+                os._exit(1)
+            self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 7)
+            self.assertFalse(run.advance())
+            self.assertEqual(talus.Results(place).summary["status"], "finished")
+
+    def test_a_lost_folder_ends_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder, "run")
+            run = talus.Model.from_text(SLOPE).start(place)
+            run.advance(steps=10)
+            shutil.rmtree(place)
+            with self.assertRaises(talus.FileError):
+                run.advance()
+            self.assertTrue(run.over)
+            self.assertFalse(run.advance())
+            self.assertTrue(run.result.interrupted)
+
+    def test_another_thread_waits_its_turn(self):
+        run = talus.Model.from_text(SLOPE, {"stage.slide.duration": "20000 s"}).start(observer=lambda now: run.contacts, every=100)
+        driver = threading.Thread(target=run.advance)
+        driver.start()
+        refused = 0
+        for look in (lambda: run.contacts, lambda: run.result, run.save, lambda: run.advance(steps=1)):
+            try:
+                look()
+            except ValueError:
+                refused += 1
+        run._run.interrupt()
+        driver.join()
+        self.assertEqual(refused, 4)
+        self.assertGreater(len(run.contacts), 0)
+
     def test_bad_numbers_end_it(self):
         model = talus.Model.from_text(HEAP, {"stage.rest.duration": 0.002, "block.load.velocity": [0, 3]})
         with self.assertRaises(talus.NumericalError) as caught, model.start() as run:
@@ -156,6 +257,8 @@ class Driving(unittest.TestCase):
                 pass
         self.assertIn("did not come to rest", str(caught.exception))
         self.assertTrue(run.over)
+        self.assertIn("did not come to rest", run.result.failure)
+        self.assertIn("failed", repr(run))
 
 
 class States(unittest.TestCase):
@@ -179,6 +282,9 @@ class States(unittest.TestCase):
             model.run(place, until="slide")
             model.run(place, state=place / "saved/stage_01.h5")
             self.assertEqual(files_of(whole), files_of(place))
+            with self.assertRaises(ValueError):
+                model.run(pathlib.Path(folder, "new"), state=place / "saved/stage_02.h5", until="slide")
+            self.assertFalse(pathlib.Path(folder, "new").exists())
 
     def test_branches(self):
         with tempfile.TemporaryDirectory() as folder:

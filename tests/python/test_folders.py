@@ -2,8 +2,11 @@
 
 Usage: test_folders.py BUILD_DIR  (PYTHONPATH names BUILD_DIR/python)
 """
+import contextlib
 import json
+import os
 import pathlib
+import signal
 import tempfile
 import unittest
 
@@ -52,6 +55,27 @@ class Folders(unittest.TestCase):
         with self.assertRaises(talus.FileError):
             self.results.table("no.csv")
 
+    def test_damaged_tables(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder)
+            (place / "summary.json").write_text("[]")
+            with self.assertRaises(talus.FileError):
+                talus.Results(place)
+            (place / "summary.json").write_text('{"status": "finished"}')
+            results = talus.Results(place)
+            for text, line in ((b"a,b\n1,2\n3\n", ":3:"), (b"a\n\xff\n", "a.csv")):
+                (place / "a.csv").write_bytes(text)
+                with self.assertRaises(talus.FileError) as caught:
+                    results.table("a.csv")
+                self.assertIn(line, str(caught.exception))
+            (place / "a.csv").write_text("slip,name,one\n,1_0,x\n0.5,ground,2\n")
+            table = results.table("a.csv")
+            self.assertTrue(numpy.isnan(table["slip"][0]) and table["slip"][1] == 0.5)
+            self.assertEqual((table["name"], table["one"]), (["1_0", "ground"], ["x", "2"]))
+        with self.assertRaises(IndexError) as caught:
+            self.results.frame(99)
+        self.assertIn("has 5", str(caught.exception))
+
     def test_figures(self):
         axes = self.results.plot("block.displacement_x")
         line = axes.get_lines()[0]
@@ -71,9 +95,10 @@ class Folders(unittest.TestCase):
         self.assertIn("&lt;slope&gt; &amp; run", shown)
         self.assertNotIn("<slope>", shown)
         cut = talus.Cut(EXAMPLES / "slope/slope.toml")
-        for html in (shown, self.taken._repr_html_(), self.model._repr_html_(), cut._repr_html_()):
-            self.assertEqual(html.count("<svg"), 1)
-            self.assertEqual(html.count("</svg>"), 1)
+        for html in (shown, self.taken._repr_html_(), self.taken.result._repr_html_(), self.model._repr_html_(), cut._repr_html_()):
+            # an image of its own: names within pictures would be mixed up
+            self.assertEqual(html.count('<img style="max-width: 100%; background: white" src="data:image/svg+xml;base64,'), 1)
+            self.assertNotIn("<svg", html)
         self.assertIn("500", self.taken._repr_html_())
         self.assertIn("1000", repr(self.taken))
 
@@ -122,9 +147,33 @@ class Studies(unittest.TestCase):
             self.assertEqual(found.run(1).summary["status"], "finished")
             self.assertIn("finished", found._repr_html_())
             self.assertEqual(study.run(pathlib.Path(folder, "study")).table["way"][0], found.table["way"][0])
+            os.environ["TALUS_PROGRAM"] = "/no/such/program"
+            try:
+                with self.assertRaises(talus.FileError):
+                    study.dry_run()
+            finally:
+                del os.environ["TALUS_PROGRAM"]
+            with self.assertRaises(ValueError):
+                study.run(pathlib.Path(folder, "study"), jobs=-1)
             with self.assertRaises(talus.InputError) as caught:
                 talus.Study({**sections, "vary": [{"key": "joint.face.friction_angel", "values": ["1 deg"]}]}).dry_run()
             self.assertIn("friction_angel", str(caught.exception))
+
+    def test_a_study_that_is_stopped_stops_its_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "slope.toml").write_text(SLOPE)
+            study = talus.Study({"talus_study": 1, "model": str(pathlib.Path(folder, "slope.toml")), "set": {"stage.slide.duration": "20000 s"},
+                                 "vary": [{"key": "joint.face.friction_angle", "values": ["10 deg", "15 deg"]}]})
+            signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+            signal.setitimer(signal.ITIMER_REAL, 1)
+            place = pathlib.Path(folder, "stopped")
+            with self.assertRaises(KeyboardInterrupt):
+                study.run(place, jobs=2)
+            left = []
+            for process in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+                with contextlib.suppress(OSError):  # it has ended meanwhile
+                    left += [process.parent.name] if os.fsencode(place) in process.read_bytes() else []
+            self.assertEqual(left, [])
 
 
 if __name__ == "__main__":

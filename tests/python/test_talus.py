@@ -5,6 +5,7 @@ Usage: test_talus.py BUILD_DIR  (PYTHONPATH names BUILD_DIR/python)
 import contextlib
 import gc
 import io
+import os
 import pathlib
 import signal
 import subprocess
@@ -60,6 +61,40 @@ class Errors(unittest.TestCase):
             model = talus.Model.from_dict(tomllib.loads(text))
             self.assertEqual(tomllib.loads(model.text), tomllib.loads(text))
             self.assertEqual(model.blocks, talus.Model.from_text(text).blocks)
+
+
+    def test_odd_values(self):
+        import tomllib
+        odd = {"title": 'quotes " and \\ and \x7f and \n', "material": {"r\U0001f600": {"density": 1e3}, "a.b": {"density": numpy.float64(2)}},
+               "load": [], "x": {"y": [[1, 2.5], ["z"]]}}
+        text = talus.model.text_of(odd)
+        self.assertEqual(tomllib.loads(text), {k: v for k, v in odd.items() if k != "load"})
+        for wrong in ({"a": object()}, {1: 2}, {"a": {None: 1}}):
+            with self.assertRaises(TypeError):
+                talus.model.text_of(wrong)
+        for wrong, error in (([], TypeError), ("a=b", TypeError), ({"a=b": 1}, ValueError), ({1: 1}, ValueError)):
+            with self.assertRaises(error):
+                talus.Model.from_text(SLOPE, wrong)
+        with self.assertRaises(TypeError):
+            talus.Model({"talus": 1})
+
+    def test_a_file_is_read_as_the_command_reads_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "crlf.toml")
+            file.write_bytes(SLOPE.replace("\n", "\r\n").encode())
+            talus.Model(file).run(pathlib.Path(folder, "py"))
+            subprocess.run([PROGRAM, "run", file, "-o", pathlib.Path(folder, "cmd"), "-q"], check=True)
+            for name in ("model.toml", "histories.csv"):
+                self.assertEqual(pathlib.Path(folder, "py", name).read_bytes(), pathlib.Path(folder, "cmd", name).read_bytes())
+
+    def test_names_of_folders(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for wrong in ("", "a\0b"):
+                with self.assertRaises(ValueError):
+                    talus.Model.from_text(SLOPE).run(wrong)
+            place = pathlib.Path(folder, "bytes")
+            talus.Model.from_text(SLOPE).run(os.fsencode(place))
+            self.assertTrue((place / "summary.json").exists())
 
 
 class Page(unittest.TestCase):
@@ -153,11 +188,36 @@ class Observers(unittest.TestCase):
         self.assertTrue(result.interrupted)
         self.assertEqual(result.steps, 21)  # the step that was under way
 
+        # NumPy's too; what is merely empty goes on
+        result = talus.Model.from_text(SLOPE).run(observer=lambda now: numpy.hypot(*now.velocity.T).max() < 0.1)
+        self.assertTrue(result.interrupted)
+        self.assertLess(result.steps, 100)
+        for answer in (None, 0, [], numpy.True_, True):
+            self.assertEqual(talus.Model.from_text(SLOPE).run(observer=lambda now: answer).steps, 1000)
+
         def fails(now):
             raise KeyError("mine")
 
         with self.assertRaises(KeyError):
             talus.Model.from_text(SLOPE).run(observer=fails)
+
+    def test_rates_are_those_of_the_step_that_follows(self):
+        seen = []
+        talus.Model.from_text(SLOPE).run(observer=lambda now: seen.append((now.displacement[1, 0], now.rate[1, 0], now.last)))
+        for (way, rate, last), (then, _, _) in zip(seen, seen[1:]):
+            if not last:
+                self.assertAlmostEqual(rate * 1e-3, then - way, delta=1e-15)
+        self.assertEqual(seen[-1][1], seen[-2][1])  # none follows
+
+    def test_what_is_no_observer(self):
+        async def later(now):
+            pass
+
+        with tempfile.TemporaryDirectory() as folder:
+            for wrong in (5, "look", later):
+                with self.assertRaises(TypeError):
+                    talus.Model.from_text(SLOPE).run(pathlib.Path(folder, "run"), wrong)
+                self.assertFalse(pathlib.Path(folder, "run").exists())
 
     def test_ctrl_c(self):
         long = talus.Model.from_text(SLOPE, {"stage.slide.duration": "2000 s"})

@@ -162,11 +162,14 @@ class Observers(unittest.TestCase):
         ways, times = [s[3] for s in seen], [s[0] for s in seen]
         self.assertLess(ways[10], ways[500])
         self.assertAlmostEqual(seen[500][4] * 1.0, 2 * ways[500] / times[500], places=6)
-        last = float(result.displacement[1, 0])
+        last, whole = float(result.displacement[1, 0]), result.displacement.tobytes()
+        rate = result.rate
         del result, seen
         gc.collect()
         [bytearray(1 << 20) for _ in range(50)]
         self.assertEqual(views[0][1, 0], last)
+        self.assertEqual(views[0].tobytes(), whole)  # by memcpy, which the sanitizers watch
+        self.assertEqual(len(rate.copy()), 2)
 
     def test_an_instant_is_over_afterwards(self):
         kept = []

@@ -95,6 +95,7 @@ break under dynamic load.
 
 This package holds the module talus for Python: models, runs, observers and
 results as NumPy arrays." python)
+  set(CPACK_DEBIAN_PYTHON3-TALUS_PACKAGE_SUGGESTS python3-matplotlib)
 endif()
 
 include(CPack)

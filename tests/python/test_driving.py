@@ -236,9 +236,17 @@ time.sleep(0.5)
             self.assertTrue(run.result.interrupted)
 
     def test_another_thread_waits_its_turn(self):
-        run = talus.Model.from_text(SLOPE, {"stage.slide.duration": "20000 s"}).start(observer=lambda now: run.contacts, every=100)
+        stepped = threading.Event()
+
+        def look_within(now):
+            run.contacts  # by who takes it on
+            if now.step >= 100:
+                stepped.set()
+
+        run = talus.Model.from_text(SLOPE, {"stage.slide.duration": "20000 s"}).start(observer=look_within, every=100)
         driver = threading.Thread(target=run.advance)
         driver.start()
+        self.assertTrue(stepped.wait(60))
         refused = 0
         for look in (lambda: run.contacts, lambda: run.result, run.save, lambda: run.advance(steps=1)):
             try:

@@ -7,6 +7,10 @@
 # %%
 import pathlib
 
+import matplotlib
+
+matplotlib.use("Agg")  # figures go to files; leave it out in a notebook
+import matplotlib.pyplot as pyplot
 import numpy
 import talus
 
@@ -72,18 +76,11 @@ print(f"the impulse given so far is never further than {100 * given:.1f} % of th
 # the front comes back spread over some n^(-2/3) = 0.09 of L/c by dispersion (docs/theory.md 7.3): a quarter of its jump, 2 F0, over that time
 assert given < 0.25 * 2 * f0 * 40 ** (-2 / 3) * LENGTH / speed / impulse
 
-try:
-    import matplotlib
-except ImportError:
-    print("no figure: Matplotlib is not installed")
-else:
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
-    figure, axes = pyplot.subplots()
-    axes.plot(1e3 * times, force, color="0.8", label="step by step")
-    axes.plot(1e3 * times, mean, label="mean over 0.2 L/c")
-    axes.plot(1e3 * times, exact, "k--", label="exact")
-    axes.set_xlim(0, 30), axes.set_ylim(0, 2.5 * f0)
-    axes.set_xlabel("t [ms]"), axes.set_ylabel("force [N]"), axes.legend()
-    figure.savefig(OUT / "force.png", dpi=150)
-    print(f"{OUT}/force.png")
+figure, axes = pyplot.subplots()
+axes.plot(1e3 * times, force, color="0.8", label="step by step")
+axes.plot(1e3 * times, mean, label="mean over 0.2 L/c")
+axes.plot(1e3 * times, exact, "k--", label="exact")
+axes.set_xlim(0, 30), axes.set_ylim(0, 2.5 * f0)
+axes.set_xlabel("t [ms]"), axes.set_ylabel("force [N]"), axes.legend()
+figure.savefig(OUT / "force.png", dpi=150)
+print(f"{OUT}/force.png")

@@ -7,6 +7,10 @@
 # %%
 import pathlib
 
+import matplotlib
+
+matplotlib.use("Agg")  # figures go to files; leave it out in a notebook
+import matplotlib.pyplot as pyplot
 import numpy
 import talus
 
@@ -73,16 +77,9 @@ during = (time > 0.2) & (time < 1.3)
 moved = place - 1
 assert numpy.abs(moved - 0.5 * 4 * time / 9.81)[during].max() < 0.02
 
-try:
-    import matplotlib
-except ImportError:
-    print("no figure: Matplotlib is not installed")
-else:
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
-    figure, axes = pyplot.subplots()
-    axes.plot(time, used)
-    axes.axvline(9.81 * monitor.tan / 4, color="k", linestyle="--", label="slides, exact")
-    axes.set_xlabel("t [s]"), axes.set_ylabel("share of the friction used"), axes.legend()
-    figure.savefig(OUT / "friction.png", dpi=150)
-    print(f"{OUT}/friction.png")
+figure, axes = pyplot.subplots()
+axes.plot(time, used)
+axes.axvline(9.81 * monitor.tan / 4, color="k", linestyle="--", label="slides, exact")
+axes.set_xlabel("t [s]"), axes.set_ylabel("share of the friction used"), axes.legend()
+figure.savefig(OUT / "friction.png", dpi=150)
+print(f"{OUT}/friction.png")

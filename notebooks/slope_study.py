@@ -7,6 +7,10 @@
 # %%
 import pathlib
 
+import matplotlib
+
+matplotlib.use("Agg")  # figures go to files; leave it out in a notebook
+import matplotlib.pyplot as pyplot
 import numpy
 import talus
 
@@ -47,17 +51,10 @@ assert slip[0] > 2 * slip[1] and slip[1] > 2 * slip[2], "more friction, less sli
 worst = found.run(0)
 frame = worst.frame()
 print(f"{len(frame.polygons)} blocks at {frame.time:g} s; the crest has come to {worst.histories['crest.displacement_x [m]'][-1]:.3f} m")
-try:
-    import matplotlib
-except ImportError:
-    print("no figure: Matplotlib is not installed")
-else:
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as pyplot
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4))
-    left.plot(phi, 100 * slip, "o-")
-    left.set_xlabel("friction angle of the bedding [deg]"), left.set_ylabel("largest slip [cm]")
-    frame.plot("displacement", axes=right)
-    figure.tight_layout()
-    figure.savefig(OUT / "slope.png", dpi=150)
-    print(f"{OUT}/slope.png")
+figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4))
+left.plot(phi, 100 * slip, "o-")
+left.set_xlabel("friction angle of the bedding [deg]"), left.set_ylabel("largest slip [cm]")
+frame.plot("displacement", axes=right)
+figure.tight_layout()
+figure.savefig(OUT / "slope.png", dpi=150)
+print(f"{OUT}/slope.png")

@@ -112,7 +112,7 @@ class Cuts(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             cut = talus.Cut(EXAMPLES / "slope/slope.toml")
             self.assertEqual(len(cut.blocks), len(cut.polygons))
-            self.assertEqual(len(cut.blocks), cut.summary["after"]["blocks"] if "after" in cut.summary else len(cut.blocks))
+            self.assertEqual(len(cut.blocks), cut.summary["after"]["blocks"])
             x, y = numpy.array(cut.polygons[0]).T
             area = 0.5 * numpy.sum(x * numpy.roll(y, -1) - numpy.roll(x, -1) * y)
             self.assertGreater(area, 0)

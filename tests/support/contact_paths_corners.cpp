@@ -1,0 +1,142 @@
+#include "support/contact_paths_corners.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "support/block_scene.h"
+#include "talus/contact/contact_rows.h"
+#include "talus/contact/pairs.h"
+
+namespace talus::test {
+
+namespace {
+
+constexpr double kStiffness = 1e9;  // normal and shear [Pa/m]
+constexpr StepClock kClock{.dt = 1e-3, .dt_kick = 1e-3};
+
+Scene path_scene(const ContactPath& path) {
+  Model model = jointed_rock();
+  model.joints[0].normal_stiffness = model.joints[0].shear_stiffness = kStiffness;
+  std::vector<ScenePart> parts;
+  for (const Polygon& p : path.blocks) parts.push_back({p, BlockKind::kRigid});
+  return block_scene(std::move(model), parts);
+}
+
+// Impulse of one row at a point that stands still.
+double yielding(const Row& row, double by_partner, Bounds bounds) {
+  if (row.compliance <= 0) return 0;
+  return std::clamp(-(row.bias + by_partner) / row.compliance, bounds.lower, bounds.upper);
+}
+
+// Row k of a point, and of its partner where it has one.
+void solve_couple(int k, size_t first, RowSet& rows) {
+  const PointRows& p = rows.points[first];
+  const auto row = static_cast<size_t>(k);
+  double& here = rows.impulse[first][row];
+  here = 0;
+  if (p.partner < 0) {
+    here = yielding(p.row[k], 0, bounds_of(p, k, rows.impulse[first][0]));
+    return;
+  }
+  const auto second = static_cast<size_t>(p.partner);
+  const PointRows& q = rows.points[second];
+  double& there = rows.impulse[second][row];
+  there = 0;
+  constexpr int kSweeps = 30;  // each leaves a quarter of the error
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    here = yielding(p.row[k], p.cross(k) * there, bounds_of(p, k, rows.impulse[first][0]));
+    there = yielding(q.row[k], q.cross(k) * here, bounds_of(q, k, rows.impulse[second][0]));
+  }
+}
+
+class CornerForces : public ContactForces {
+ public:
+  explicit CornerForces(const ContactPath& path)
+      : path_(&path), scene_(std::make_shared<const Scene>(path_scene(path))), state_(start_state(*scene_)) {
+    state_.step = 1;  // no stress of the ground
+  }
+
+  std::unique_ptr<ContactForces> copy() const override { return std::make_unique<CornerForces>(*this); }
+
+  PathForces at(double s, double ds) override {
+    if (!begun_) {  // the overlaps of the start were not born there
+      find(s, ds);
+      for (Contact& c : state_.contacts) c.allowed = 0;
+      begun_ = true;
+    }
+    return find(s, ds);
+  }
+
+ private:
+  PathForces find(double s, double ds) {
+    put_blocks(s, ds);
+    const LookAhead ahead{kClock, state_.rate};
+    renew_pairs(scene_->blocks, scene_->bonds, scene_->laws, ahead, Workers(), state_);
+    update_contacts(scene_->blocks, scene_->bonds, scene_->layout, scene_->laws, ahead, Workers(), state_);
+    const std::vector<BlockRate> still(path_->blocks.size());
+    rows_.restart();
+    add_contact_rows(scene_->blocks, scene_->model, scene_->laws, scene_->give, state_, still, kClock,
+                     Workers(), rows_, place_);
+    rows_.finish();
+    for (size_t i = 0; i < rows_.size(); ++i) {
+      const int partner = rows_.points[i].partner;
+      if (partner >= 0 && static_cast<size_t>(partner) < i) continue;
+      solve_couple(0, i, rows_), solve_couple(1, i, rows_);
+    }
+    const PathForces forces = summed();
+    remember_contacts(rows_, rows_.range(Family::kContact), place_, kClock, state_);
+    return forces;
+  }
+
+  void put_blocks(double s, double ds) {
+    const std::vector<PathPose> now = path_->pose(s), before = path_->pose(s - ds),
+                                after = path_->pose(s + ds);
+    for (size_t i = 0; i < now.size(); ++i) {
+      state_.displacement[i] = now[i].displacement;
+      state_.angle[i] = now[i].turn;
+      state_.strain_part[i] = rotation_minus_identity(now[i].turn);
+      const double per = 1 / (2 * kClock.dt);
+      state_.rate[i] = {per * (after[i].displacement - before[i].displacement),
+                        spin_matrix(per * (after[i].turn - before[i].turn))};
+    }
+  }
+
+  PathForces summed() const {
+    PathForces out(path_->blocks.size());
+    const double per = 1 / (kClock.dt_kick * kStiffness * scene_->blocks.thickness);
+    for (size_t i = 0; i < rows_.size(); ++i) {
+      const PointRows& p = rows_.points[i];
+      const double size = rows_.impulse[i][0] * per;
+      const Vec2 normal = size * p.normal;
+      const Vec2 whole = normal + rows_.impulse[i][1] * per * turn_right(p.normal);
+      for (const bool on_b : {false, true}) {
+        const auto block = static_cast<size_t>(on_b ? p.block_b : p.block_a);
+        const Vec2 arm = on_b ? p.arm_b : p.arm_a;
+        const double sign = on_b ? -1 : 1;
+        add(sign * normal, arm, out.normal[block]), add(sign * whole, arm, out.whole[block]);
+        out.load[block] += size;
+      }
+      out.pairs.push_back({std::min(p.block_a, p.block_b), std::max(p.block_a, p.block_b), size});
+    }
+    return out;
+  }
+
+  void add(Vec2 force, Vec2 arm, Resultant& sum) const {
+    sum.force += force, sum.moment += cross(arm, force) / path_->size;
+  }
+
+  const ContactPath* path_;
+  std::shared_ptr<const Scene> scene_;
+  State state_;
+  RowSet rows_;
+  std::vector<ContactPlace> place_;
+  bool begun_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<ContactForces> corner_forces(const ContactPath& path) {
+  return std::make_unique<CornerForces>(path);
+}
+
+}  // namespace talus::test

@@ -190,6 +190,19 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
   return bonds;
 }
 
+std::vector<BondFace> shared_faces(const Layout& layout, const BlockSet& blocks) {
+  std::vector<BondFace> faces;
+  if (blocks.count == 0) return faces;
+  std::vector<Box> boxes;
+  for (const BlockShape& b : layout.blocks) boxes.push_back(bounding_box(b.polygon));
+  const double largest = *std::max_element(blocks.size.begin(), blocks.size.end());
+  for (const auto& [a, b] : close_pairs(boxes, std::max(layout.touching, kTouching * largest)))
+    if (blocks.moves_freely(a) || blocks.moves_freely(b)) add_faces(blocks, a, b, layout.touching, faces);
+  for (BondFace& face : faces)
+    face.joint = layout.joint_at({face.block_a, face.edge_a}, {face.block_b, face.edge_b});
+  return faces;
+}
+
 FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face) {
   const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
   const Vec2 edge =

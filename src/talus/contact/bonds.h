@@ -34,6 +34,10 @@ struct BondSet {
 /// Faces between all pairs of blocks whose joint is bonded or has strength, from the reference shape.
 BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks);
 
+/// All faces that blocks share in the reference shape, with the joint along each: overlaps of antiparallel edges of
+/// two blocks that touch, at least one of them moving freely. In the order of (block_a, block_b).
+std::vector<BondFace> shared_faces(const Layout& layout, const BlockSet& blocks);
+
 /// Whether contact between two blocks is left to intact bonds.
 bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 

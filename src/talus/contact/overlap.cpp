@@ -1,0 +1,405 @@
+#include "talus/contact/overlap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+
+namespace {
+
+constexpr double kAll = std::numeric_limits<double>::infinity();
+
+// Corners of a part in line within this angle [rad] are one side for what hard contacts stand on: of sides that
+// turn by more, the next one is reached by a turn that shows.
+constexpr double kInLine = 1e-4;
+
+struct Moments {
+  double area = 0;
+  Vec2 first;  // integral of the place
+};
+
+Moments moments(const std::vector<Vec2>& p) {
+  Moments m;
+  if (p.size() < 3) return m;
+  for (size_t i = 1; i + 1 < p.size(); ++i) {
+    const Vec2 u = p[i] - p[0], v = p[i + 1] - p[0];
+    const double half = 0.5 * cross(u, v);
+    m.area += half, m.first += (half / 3) * (u + v);
+  }
+  m.first += m.area * p[0];
+  return m;
+}
+
+// What of a convex polygon has value(corner) >= 0, the value being linear.
+template <class F>
+void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
+  out.clear();
+  if (in.empty()) return;
+  double here = value(in[0]);
+  const double first = here;
+  for (size_t i = 0; i < in.size(); ++i) {
+    const size_t next = i + 1 == in.size() ? 0 : i + 1;
+    const double there = next == 0 ? first : value(in[next]);
+    if (here >= 0) out.push_back(in[i]);
+    if ((here >= 0) != (there >= 0)) out.push_back(in[i] + (here / (here - there)) * (in[next] - in[i]));
+    here = there;
+  }
+  if (out.size() < 3) out.clear();
+}
+
+}  // namespace
+
+double PartsMeeting::depth_of(bool of_b, size_t side, Vec2 x) const {
+  return cross(part(of_b).along[side], x - corner(of_b, side));
+}
+
+// Convex parts overlap unless a side of one has all of the other before it.
+void PartsMeeting::find_ways(double margin, double rounding) {
+  bool apart = false, blocked = false;
+  ways_.clear();
+  for (const bool of_b : {true, false}) {
+    const PartNow &own = part(of_b), &other = part(!of_b);
+    for (size_t j = 0; j < own.size(); ++j) {
+      const Vec2 along = own.along[j];
+      const Vec2 from = of_b ? own.corner[j] + shift_ : own.corner[j] - shift_;
+      double most = -kAll, least = kAll;
+      size_t nearest = 0;
+      for (size_t i = 0; i < other.size(); ++i) {
+        const double depth = cross(along, other.corner[i] - from);
+        if (depth > most) most = depth, nearest = i;
+        least = std::min(least, depth);
+      }
+      if (of_b) least_[j] = least;
+      met_.kind = PartsMet::kFar;
+      if (-most > margin) return;
+      if (own.role_of(j) != SideRole::kCut) ways_.push_back({of_b, j, nearest, -most});
+      if (own.role_of(j) == SideRole::kOut)
+        apart = apart || most <= rounding;
+      else
+        blocked = blocked || most < 0;
+    }
+  }
+  if (!blocked && !ways_.empty()) met_.kind = apart ? PartsMet::kApart : PartsMet::kOverlap;
+}
+
+// Parts that are apart meet along the way along which they are furthest apart, or least in each other, at the end of
+// the step. Where that is one that they are in each other along now, as corners of level blocks are that slide past
+// each other, nothing keeps them apart: the overlap to come is the matter of the step after.
+void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, double rounding,
+                              WayBefore before) {
+  const Way *best = nullptr, *kept = nullptr;
+  for (Way& w : ways_) {
+    const PartMotion &own = w.of_b ? motion_b : motion_a, &other = w.of_b ? motion_a : motion_b;
+    w.then = then_before(w, own, other);
+    if (!best || w.then > best->then) best = &w;
+    if (w.number() == before.way) kept = &w;
+  }
+  const bool apart = met_.kind == PartsMet::kApart;
+  const auto stands = [&](const Way& w) { return !apart || w.gap >= -rounding; };
+  if (kept && stands(*kept) && kept->then >= best->then - before.by) best = kept;
+  if (!stands(*best)) met_.kind = PartsMet::kFar;
+  met_.at_corner = false;
+  for (const Way& w : ways_) {
+    double low = 0;
+    if (&w != best && w.then >= best->then - before.by &&
+        facing_along(part(w.of_b).along[w.side], low) <= before.by)
+      met_.at_corner = true;
+  }
+  met_.tied = part(best->of_b).role_of(best->side) != SideRole::kOut;
+  const Vec2 out = turn_right(part(best->of_b).along[best->side]);
+  met_.way = best->number();
+  met_.normal = best->of_b ? out : -out;
+  (best->of_b ? met_.side_b : met_.side_a) = static_cast<int>(best->side);
+  (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(!best->of_b, best->corner, out));
+}
+
+// How far the nearest corner of the other part is going to be before a side at the end of the step.
+double PartsMeeting::then_before(const Way& w, const PartMotion& own, const PartMotion& other) const {
+  const Vec2 out = turn_right(part(w.of_b).along[w.side]), from = part(w.of_b).corner[w.side];
+  double least = kAll;
+  for (const Vec2 x : part(!w.of_b).corner) {
+    const Vec2 seen = w.of_b ? x - shift_ : x + shift_;  // from the origin of the side's part
+    const Vec2 moved = (other.way + other.turn * x) - (own.way + own.turn * seen);
+    least = std::min(least, dot(out, seen - from + moved));
+  }
+  return least;
+}
+
+// Over how much of a line the two parts lie beside each other; `low` is where that begins.
+double PartsMeeting::facing_along(Vec2 tangent, double& low) const {
+  low = -kAll;
+  double high = kAll;
+  for (const bool of_b : {false, true}) {
+    double first = kAll, last = -kAll;
+    for (size_t k = 0; k < part(of_b).size(); ++k) {
+      const double s = dot(tangent, corner(of_b, k));
+      first = std::min(first, s), last = std::max(last, s);
+    }
+    low = std::max(low, first), high = std::min(high, last);
+  }
+  return high - low;
+}
+
+// Of the two sides at a corner the one that faces a direction the most.
+size_t PartsMeeting::facing_side(bool of_b, size_t corner, Vec2 direction) const {
+  const PartNow& own = part(of_b);
+  const size_t before = corner == 0 ? own.size() - 1 : corner - 1;
+  return dot(turn_right(own.along[before]), direction) < dot(turn_right(own.along[corner]), direction)
+             ? before
+             : corner;
+}
+
+void PartsMeeting::clip() {
+  region_.assign(a_.corner.begin(), a_.corner.end());
+  for (size_t j = 0; j < b_.size() && !region_.empty(); ++j) {
+    if (least_[j] >= 0) continue;
+    keep(
+        region_, [&](Vec2 x) { return depth_of(true, j, x); }, work_);
+    region_.swap(work_);
+  }
+}
+
+// The sides that are the nearest way out somewhere in the overlap, and the one that is it for most of it.
+bool PartsMeeting::take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const {
+  const PartNow& own = part(of_b);
+  sides.clear(), low_.assign(own.size(), kAll), middle_.assign(own.size(), kAll);
+  double best = kAll;
+  double tied = kAll;  // depth of all of the overlap below a side that a third block ties
+  for (size_t k = 0; k < own.size(); ++k) {
+    if (own.role_of(k) == SideRole::kCut) continue;
+    double high = -kAll, sum = 0;
+    for (const Vec2 x : region_) {
+      const double depth = depth_of(of_b, k, x);
+      low_[k] = std::min(low_[k], depth), high = std::max(high, depth), sum += depth;
+    }
+    if (own.role_of(k) == SideRole::kTied) {
+      tied = std::min(tied, high), low_[k] = kAll;
+      continue;
+    }
+    middle_[k] = sum, best = std::min(best, high);
+  }
+  // all of it lies at a glued crossing, with no way out but the far sides: left to the bonds around it
+  if (*std::min_element(low_.begin(), low_.end()) > tied) return false;
+  main = 0;
+  for (size_t k = 0; k < own.size(); ++k) {
+    if (!(low_[k] < best)) continue;
+    if (!sides.empty() && middle_[k] < middle_[static_cast<size_t>(sides[main])]) main = sides.size();
+    sides.push_back(static_cast<int>(k));
+  }
+  return !sides.empty();
+}
+
+// What of a polygon is nearest to one of the sides (theory 3.2). Between neighbours the bisector goes through
+// their common corner, which is exact where they are nearly in line too.
+void PartsMeeting::keep_nearest(bool of_b, const std::vector<int>& sides, size_t which, const Polygon& from,
+                                Polygon& out) const {
+  const PartNow& own = part(of_b);
+  const auto n = own.size(), j = static_cast<size_t>(sides[which]);
+  out = from;
+  for (size_t i = 0; i < sides.size() && !out.empty(); ++i) {
+    if (i == which) continue;
+    const auto k = static_cast<size_t>(sides[i]);
+    const bool next = k == (j + 1) % n, before = j == (k + 1) % n;
+    if (next || before) {
+      const Vec2 at = corner(of_b, next ? k : j), way = own.along[j] + own.along[k];
+      const double sign = next ? -1 : 1;
+      keep(
+          out, [&](Vec2 x) { return sign * dot(way, x - at); }, work_);
+    } else {
+      keep(
+          out, [&](Vec2 x) { return depth_of(of_b, k, x) - depth_of(of_b, j, x); }, work_);
+    }
+    out.swap(work_);
+  }
+}
+
+SideCell PartsMeeting::cell(bool of_b, int side, double area, Vec2 first) const {
+  const auto j = static_cast<size_t>(side);
+  return {side, area, first, cross(part(of_b).along[j], first - area * corner(of_b, j))};
+}
+
+// Cells of all sides, the largest as what the others leave.
+void PartsMeeting::cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& out) {
+  const std::vector<int>& sides = of_b ? near_b_ : near_a_;
+  out.clear();
+  const Moments all = moments(region_);
+  double area = all.area;
+  Vec2 first = all.first;
+  for (size_t i = 0; i < sides.size(); ++i) {
+    if (i == main) continue;
+    keep_nearest(of_b, sides, i, region_, cell_);
+    const Moments m = moments(cell_);
+    if (!(m.area > 0)) continue;
+    area -= m.area, first -= m.first;
+    out.push_back(cell(of_b, sides[i], m.area, m.first));
+  }
+  if (area > 0) out.push_back(cell(of_b, sides[main], area, first));
+  bearing_ = region_;
+  met_.area = all.area;
+}
+
+bool PartsMeeting::any_tied() const {
+  const auto tied = [](const PartNow& p, const std::vector<int>& sides) {
+    return std::any_of(sides.begin(), sides.end(),
+                       [&](int k) { return p.role_of(static_cast<size_t>(k)) == SideRole::kTiedHere; });
+  };
+  return tied(a_, near_a_) || tied(b_, near_b_);
+}
+
+// Cells of both, each cut by those of the other: what is nearest to a tie of the two bears nothing.
+void PartsMeeting::nested_cells() {
+  met_.cells_a.clear(), met_.cells_b.clear(), bearing_.clear(), met_.area = 0;
+  for (size_t i = 0; i < near_a_.size(); ++i) {
+    if (a_.role_of(static_cast<size_t>(near_a_[i])) == SideRole::kTiedHere) continue;
+    keep_nearest(false, near_a_, i, region_, cell_);
+    for (size_t j = 0; j < near_b_.size() && !cell_.empty(); ++j) {
+      if (b_.role_of(static_cast<size_t>(near_b_[j])) == SideRole::kTiedHere) continue;
+      keep_nearest(true, near_b_, j, cell_, cell_of_cell_);
+      const Moments m = moments(cell_of_cell_);
+      if (!(m.area > 0)) continue;
+      met_.cells_a.push_back(cell(false, near_a_[i], m.area, m.first));
+      met_.cells_b.push_back(cell(true, near_b_[j], m.area, m.first));
+      bearing_.insert(bearing_.end(), cell_of_cell_.begin(), cell_of_cell_.end());
+      met_.area += m.area;
+    }
+  }
+}
+
+// Resultant, moment and energy of the cells; chord and closures (eqs. 3.2 to 3.4).
+bool PartsMeeting::sum_up() {
+  if (!(met_.area > 0)) return false;
+  Vec2 centre;
+  for (const SideCell& c : met_.cells_b) centre += c.first;
+  centre = centre / met_.area;
+  Vec2 force;
+  double moment = 0;
+  met_.energy = 0;
+  const auto add = [&](bool of_b, const std::vector<SideCell>& cells, int& side) {
+    double most = 0;
+    side = -1;
+    for (const SideCell& c : cells) {
+      const Vec2 out = (of_b ? 0.5 : -0.5) * turn_right(part(of_b).along[static_cast<size_t>(c.side)]);
+      force += c.area * out, moment += cross(c.first - c.area * centre, out);
+      met_.energy += 0.5 * c.depth;
+      if (c.area > most) most = c.area, side = c.side;
+    }
+  };
+  add(true, met_.cells_b, met_.side_b), add(false, met_.cells_a, met_.side_a);
+  met_.force = norm(force);
+  // an overlap that its sides push both ways alike has no direction
+  if (!(met_.force > 1e-14 * met_.area)) return false;
+  met_.normal = force / met_.force;
+  const Vec2 t = turn_right(met_.normal);
+  double low = kAll, high = -kAll;
+  for (const Vec2 x : bearing_)
+    low = std::min(low, dot(t, x - centre)), high = std::max(high, dot(t, x - centre));
+  const double b = high - low, at = moment / met_.force - low, m = std::clamp(at, 0.0, b);
+  if (!(b > 0)) return false;
+  met_.beyond = at != m;
+  met_.across[0] = met_.across[1] = 0;
+  met_.begin = centre + low * t, met_.end = centre + high * t;
+  const double per = 2 * met_.force / (b * b);
+  met_.closure[0] = per * (2 * b - 3 * m), met_.closure[1] = per * (3 * m - b);
+  return true;
+}
+
+const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
+                                   double rounding, const PartMotion& motion_a, const PartMotion& motion_b,
+                                   WayBefore before) {
+  a_ = a, b_ = b, shift_ = shift;
+  least_.resize(b.size());
+  find_ways(margin, rounding);
+  if (met_.kind != PartsMet::kFar) choose_way(motion_a, motion_b, rounding, before);
+  return met_;
+}
+
+bool PartsMeeting::measure_overlap() {
+  clip();
+  size_t main_a = 0, main_b = 0;
+  if (region_.empty() || !take_nearest(false, near_a_, main_a) || !take_nearest(true, near_b_, main_b))
+    return false;
+  if (any_tied()) {
+    nested_cells();
+  } else {
+    cells_by_rest(false, main_a, met_.cells_a);
+    cells_by_rest(true, main_b, met_.cells_b);
+  }
+  return sum_up();
+}
+
+// How far the surface of a part that faces the other reaches along the normal, at place s along the tangent.
+double PartsMeeting::surface(bool of_b, double s) const {
+  const PartNow& own = part(of_b);
+  const double towards = of_b ? 1 : -1;
+  const Vec2 n = met_.normal, t = turn_right(n);
+  double most = -kAll;
+  for (size_t k = 0; k < own.size(); ++k) {
+    const Vec2 p = corner(of_b, k), q = corner(of_b, k + 1 == own.size() ? 0 : k + 1);
+    const double sp = dot(t, p), sq = dot(t, q);
+    if (s < std::min(sp, sq) - same_ || s > std::max(sp, sq) + same_) continue;
+    // a side along the normal is reached where it comes nearest
+    if (std::abs(sq - sp) <= same_) {
+      most = std::max({most, towards * dot(n, p), towards * dot(n, q)});
+      continue;
+    }
+    const double share = std::clamp((s - sp) / (sq - sp), 0.0, 1.0);
+    most = std::max(most, towards * dot(n, p + share * (q - p)));
+  }
+  return towards * most;
+}
+
+bool PartsMeeting::face_ends(double reach) {
+  const Vec2 n = met_.normal, t = turn_right(n);
+  double low = 0;
+  const double facing = facing_along(t, low), high = low + facing;
+  if (!(low < high)) return false;
+  same_ = 1e-12 * (high - low);
+  gaps_.clear();
+  const auto put = [&](double s) { gaps_.push_back({s, surface(false, s) - surface(true, s)}); };
+  put(low), put(high);
+  for (const bool of_b : {false, true})
+    for (size_t k = 0; k < part(of_b).size(); ++k)
+      if (const double s = dot(t, corner(of_b, k)); s > low && s < high) put(s);
+  std::sort(gaps_.begin(), gaps_.end(), [](const Gap& x, const Gap& y) { return x.s < y.s; });
+  gaps_.erase(
+      std::unique(gaps_.begin(), gaps_.end(), [&](const Gap& x, const Gap& y) { return y.s - x.s <= same_; }),
+      gaps_.end());
+  // the gap is convex along the tangent: on from the smallest along the flatter side
+  size_t at = 0;
+  for (size_t k = 1; k < gaps_.size(); ++k)
+    if (gaps_[k].g < gaps_[at].g) at = k;
+  const auto slope = [&](size_t from, size_t to) {
+    const double way = std::abs(gaps_[to].s - gaps_[from].s);
+    return way > 0 ? (gaps_[to].g - gaps_[from].g) / way : -kAll;
+  };
+  const auto last = gaps_.size() - 1;
+  const double back = at > 0 ? slope(at, at - 1) : kAll, on = at < last ? slope(at, at + 1) : kAll;
+  const bool up = on <= back;
+  const auto go_on = [&](size_t from, bool forward, double slope_of_all) {
+    while (forward ? from < last : from > 0) {
+      const size_t next = forward ? from + 1 : from - 1;
+      if (slope(from, next) > slope_of_all + kInLine) break;
+      from = next;
+    }
+    return from;
+  };
+  const double flat = std::max(0.0, std::min(on, back));
+  const size_t far = go_on(at, up, flat);
+  // where the side is level the corner of the smallest gap may be any on it
+  Gap one = gaps_[flat <= kInLine ? go_on(at, !up, 0) : at], two = gaps_[far];
+  if (one.g > two.g) std::swap(one, two);
+  if (two.g - one.g > reach) {
+    const double share = reach / (two.g - one.g);
+    two = {one.s + share * (two.s - one.s), one.g + reach};
+  }
+  if (one.s > two.s) std::swap(one, two);
+  if (!(one.s < two.s)) return false;
+  const auto place = [&](const Gap& x) { return x.s * t + surface(false, x.s) * n; };
+  met_.begin = place(one), met_.end = place(two);
+  met_.closure[0] = -one.g, met_.closure[1] = -two.g;
+  met_.across[0] = one.g, met_.across[1] = two.g;
+  return true;
+}
+
+}  // namespace talus

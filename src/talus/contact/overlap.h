@@ -1,0 +1,143 @@
+#pragma once
+// Two convex parts as they lie: what they have in common, the energy of that and its gradient, or how far they
+// are apart. Geometry only: no stiffness, no memory. Theory: docs/theory.md 3.2, 3.3.
+
+#include <span>
+#include <vector>
+
+#include "talus/base/vec2.h"
+
+namespace talus {
+
+/// What a side of a part is to the other one.
+enum class SideRole : char {
+  kOut,      // a way out
+  kCut,      // between two parts of a block: no side
+  kTied,     // to a third block: no way out
+  kTiedHere  // tied to the other part's block: what is nearest to it is left to the tie
+};
+
+/// A convex part as it lies now, in any frame.
+struct PartNow {
+  std::span<const Vec2> corner;    // counter-clockwise [m]
+  std::span<const Vec2> along;     // unit vector of the side from each corner to the next
+  std::span<const SideRole> role;  // empty: all sides are ways out
+  SideRole role_of(size_t side) const { return role.empty() ? SideRole::kOut : role[side]; }
+  size_t size() const { return corner.size(); }
+};
+
+/// How a part is going to move in a step: a place x by way + turn x, seen from the origin of the part.
+struct PartMotion {
+  Vec2 way;   // [m]
+  Mat2 turn;  // [-]
+};
+
+/// Of two parts that met before: PartsMet::way then, and by how much another way must be better to be taken [m].
+struct WayBefore {
+  int way = 0;
+  double by = 0;
+};
+
+/// The part of an overlap that is nearest to one side of a block.
+struct SideCell {
+  int side = -1;     // of the part
+  double area = 0;   // [m2]
+  Vec2 first;        // integral of the place [m3]
+  double depth = 0;  // integral of the distance to the line of the side [m3]
+};
+
+/// How two parts lie to each other. Places are seen from the origin of the first.
+struct PartsMet {
+  enum Kind : char { kFar, kApart, kOverlap } kind = kFar;
+  double area = 0;      // of the overlap that bears [m2]
+  double force = 0;     // resultant over stiffness and thickness [m2] (eq. 3.3)
+  double energy = 0;    // over the same [m3] (eq. 3.2)
+  Vec2 normal;          // direction of the force on a, apart: of the widest gap; unit, from b to a
+  Vec2 begin, end;      // of the chord, along the tangent: the normal turned clockwise; of face ends on a [m]
+  double across[2]{};   // how far b's surface lies from there, against the normal: of face ends [m]
+  double closure[2]{};  // at begin and end, linear between, of this force and moment [m]; < 0: a gap
+  int way = 0;          // the side whose normal that is: of b 1, 2 and so on, of a -1, -2
+  bool at_corner = false;  // along another way, as good, nothing of the two faces each other: two corners
+  bool tied = false;       // the nearest way out of an overlap is one that a tie closes
+  bool beyond = false;     // the force acts beyond an end of the chord, and is put there
+  int side_a = -1, side_b = -1;            // the sides that have most of it
+  std::vector<SideCell> cells_a, cells_b;  // of an overlap
+  double length() const { return norm(end - begin); }
+};
+
+/// Sees how two convex parts lie to each other; keeps its memory from pair to pair.
+class PartsMeeting {
+ public:
+  /// @param b       seen from its own origin
+  /// @param shift   of b's origin, seen from a's [m]
+  /// @param margin    gaps up to this are told [m]
+  /// @param rounding  overlaps up to this have no shape: the parts are apart, by less than nothing [m]
+  /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last
+  /// @note  tells kind, normal and sides; measure_overlap() or face_ends() say the rest
+  /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
+  const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding,
+                       const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
+
+  /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these. False: it
+  /// has no way out but those that ties close, or pushes both ways alike.
+  /// @pre  look() found one
+  bool measure_overlap();
+
+  /// Chord and closures by the gaps along the normal: from where it is smallest to the end of the flatter side
+  /// there, or to where it is larger by `reach`. Of a face its two ends, of a corner alone the corner and a
+  /// place that bears nothing. False: nothing faces each other.
+  /// @pre  look() found them apart or in overlap
+  bool face_ends(double reach);
+
+  const PartsMet& met() const { return met_; }
+
+ private:
+  using Polygon = std::vector<Vec2>;
+  // How much of the other part a side has before it.
+  struct Way {
+    bool of_b;
+    size_t side, corner;  // the corner of the other part that is nearest to it
+    double gap;           // of its nearest corner, < 0: behind it
+    double then = 0;      // the same at the end of the step
+
+    int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
+  };
+
+  void find_ways(double margin, double rounding);
+  void clip();
+  bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
+  double depth_of(bool of_b, size_t side, Vec2 x) const;
+  void keep_nearest(bool of_b, const std::vector<int>& sides, size_t which, const Polygon& from,
+                    Polygon& out) const;
+  SideCell cell(bool of_b, int side, double area, Vec2 first) const;
+  void cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& out);
+  bool any_tied() const;
+  void nested_cells();
+  bool sum_up();
+  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, double rounding, WayBefore before);
+
+  double then_before(const Way& w, const PartMotion& own, const PartMotion& other) const;
+  double facing_along(Vec2 tangent, double& low) const;
+  size_t facing_side(bool of_b, size_t corner, Vec2 direction) const;
+  double surface(bool of_b, double s) const;
+  const PartNow& part(bool of_b) const { return of_b ? b_ : a_; }
+  Vec2 corner(bool of_b, size_t k) const { return of_b ? b_.corner[k] + shift_ : a_.corner[k]; }
+
+  PartNow a_, b_;
+  Vec2 shift_;
+  std::vector<Way> ways_;
+  std::vector<double> least_;  // [sides of b] least depth of a's corners below it
+  Polygon region_, bearing_;   // the overlap; the corners of what of it bears
+  mutable Polygon work_;
+  Polygon cell_, cell_of_cell_;
+  std::vector<int> near_a_, near_b_;  // sides that are the nearest somewhere in the overlap
+  mutable std::vector<double> low_, high_, middle_;
+  struct Gap {
+    double s, g;
+  };
+  std::vector<Gap> gaps_;
+  double same_ = 0;  // places along the tangent this near are one [m]
+  PartsMet met_;
+};
+
+}  // namespace talus

@@ -60,6 +60,10 @@ py::array Views::rate_gradient() const {
 py::array contacts_of(const State& state) {
   std::vector<ContactRecord> rows;
   rows.reserve(state.contacts.size());
+  for (const Patch& p : state.patches)
+    for (size_t end = 0; end < 2; ++end)
+      rows.push_back(
+          {p.block_a, p.block_b, p.joint, p.force[end][0], p.force[end][1], 0.5 * p.length, p.slip[end]});
   for (const Contact& c : state.contacts)
     rows.push_back({c.key.block_a, c.key.block_b, c.joint, c.force[0], c.force[1], c.length, c.slip});
   return records(rows);

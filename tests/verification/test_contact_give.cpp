@@ -38,10 +38,11 @@ std::vector<double> posts_under_a_beam(const std::vector<int>& order, const std:
   std::vector<double> force(kPosts.size());
   run_case(text + rest, more, [&](const Instant& i) {
     if (!i.last) return;
-    for (const Contact& c : i.state.contacts)
-      for (const int block : {c.key.block_a, c.key.block_b}) {
+    for (const Patch& c : i.state.patches)
+      for (const int block : {c.block_a, c.block_b}) {
         const std::string& name = i.scene.blocks.name[static_cast<size_t>(block)];
-        if (name.starts_with("post")) force.at(static_cast<size_t>(name[4] - '0')) += c.force[0];
+        if (name.starts_with("post"))
+          force.at(static_cast<size_t>(name[4] - '0')) += c.force[0][0] + c.force[1][0];
       }
   });
   return force;
@@ -133,9 +134,9 @@ TEST_CASE("a tower of 100 rigid blocks stands at default settings") {
           "[[stage]]\nname = \"stand\"\nkind = \"dynamic\"\nduration = \"1 s\"\ndamping_mass = \"5 1/s\"\n",
       {}, [&](const Instant& i) {
         if (!i.last) return;
-        for (const Contact& c : i.state.contacts)
-          if (i.scene.blocks.name[static_cast<size_t>(std::min(c.key.block_a, c.key.block_b))] == "ground")
-            foot += c.force[0];
+        for (const Patch& c : i.state.patches)
+          if (i.scene.blocks.name[static_cast<size_t>(c.block_a)] == "ground")
+            foot += c.force[0][0] + c.force[1][0];
         for (const Vec2 d : i.state.displacement) moved = std::max(moved, norm(d));
       });
   check_close("tower of 100: force at its foot [N]", foot, 100 * 0.5 * 2000 * kG, 1e-3, 1e-5);

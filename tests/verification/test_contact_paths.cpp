@@ -14,7 +14,7 @@
 #include "support/box_polygon.h"
 #include "support/contact_jumps.h"
 #include "support/contact_paths.h"
-#include "support/contact_paths_corners.h"
+#include "support/contact_paths_laws.h"
 #include "talus/audit/shapes.h"
 #include "talus/geometry/polygon_check.h"
 
@@ -215,15 +215,17 @@ TEST_CASE("contact paths: corners over edges bear the overlap of a face, and its
 }
 
 TEST_SUITE("long: paths") {
-  TEST_CASE("contact paths: defects of corners over edges") {
-    constexpr int kPaths = 400;  // a family
-    const auto print_line = [](char family, double deepest) {
+  TEST_CASE("contact paths: defects of the laws") {
+    const int kPaths = std::getenv("PATHS") ? std::atoi(std::getenv("PATHS")) : 400;  // a family
+    const bool corners = std::getenv("CORNERS");
+    const auto print_line = [&](char family, double deepest) {
       int touching = 0, normal = 0, whole = 0, without_overlap = 0, without_force = 0;
       Jump worst_normal, worst_whole;
       uint64_t worst_seed = 0;
-      for (uint64_t seed = 1; seed <= kPaths; ++seed) {
+      for (uint64_t seed = 1; seed <= static_cast<uint64_t>(kPaths); ++seed) {
         const ContactPath path = contact_path(family, seed, deepest);
-        const PathFindings found = walk(path, *corner_forces(path), {.normal = 1e-2, .whole = 1e-2});
+        const PathFindings found = walk(path, *(corners ? corner_forces(path) : patch_forces(path)),
+                                        {.normal = 1e-4, .whole = 1e-2});
         if (found.load == 0) continue;
         ++touching;
         normal += found.normal.size > 0, whole += found.whole.size > 0;

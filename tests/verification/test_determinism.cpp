@@ -171,7 +171,9 @@ uint64_t hash_of(const State& s) {
     hash.add(s.rate[i].a), hash.add(s.rate[i].G);
     hash.add(s.row_force[i].f), hash.add(s.row_force[i].Q);
   }
-  for (const Contact& c : s.contacts) hash.add(c.force[0]), hash.add(c.force[1]);
+  for (const Patch& c : s.patches)
+    for (size_t end = 0; end < 2; ++end)
+      hash.add(c.force[end][0]), hash.add(c.force[end][1]), hash.add(c.stretch[end]), hash.add(c.slip[end]);
   const WorkDone& w = s.work;
   hash.add(w[Cause::kContactClosing]), hash.add(w[Cause::kFriction]), hash.add(w[Cause::kImplicit]),
       hash.add(s.energy_start);
@@ -192,7 +194,7 @@ Seen check_threads(Scene& scene, int steps) {
     march(scene, steps, workers, state);
     CHECK(hash_of(state) == hash_of(once));
     CHECK(state.pairs.size() == once.pairs.size());
-    CHECK(state.contacts.size() == once.contacts.size());
+    CHECK(state.patches.size() == once.patches.size());
   }
   return seen;
 }

@@ -173,8 +173,9 @@ TEST_CASE("from rest: what is excavated before anything has rested pushes nothin
       kElastic,
       "[[block]]\nname = \"prop\"\npolygon = [[1, 0], [2, 0], [2, 1], [1, 1]]\nmaterial = \"m\"\n" + rest));
   CHECK(r.run.stages[0].at_rest);
+  // joints close by up to 3e-5 of their length, and bear less by as much (theory 3.3)
   check_close("from rest, settlement beside what was excavated", r.column("top.displacement_y").back(),
-              settlement(true), 1e-5, 1e-6);
+              settlement(true), 3e-5, 1e-6);
 }
 
 TEST_CASE("from rest: what is flung out is told by its name") {

@@ -197,6 +197,8 @@ const std::vector<Known> kKnown = {
     {"wall", "units x 1000", 2.5e-02},
     {"wall", "turned and moved by 1e6 m", 4.6e-02},
     {"wall", "half and quarter step, ratio of changes", 1.2e+00},
+    {"slope", "moved by 2^20 m", 1.8e-09},
+    {"tunnel", "units x 1000", 1.6e-08},
     {"arch", "a pebble far away", 8.6e-09},
     {"arch", "blocks backwards", 1.8e-05},
     {"arch", "blocks shuffled", 1.1e-05},

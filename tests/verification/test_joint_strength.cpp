@@ -114,8 +114,9 @@ TEST_CASE("dilation: the block rises by tan(dilation) x slip, both ways, up to d
     check_close(what + "rise after 17 mm [m]", one.column("c.displacement_y").back(),
                 std::tan(radians(10)) * (17e-3 - elastic) - sink, 1e-2, 3e-3);
     double slip = 0;
-    for (const Contact& c : one.state.contacts) slip = std::max(slip, c.slip);
-    check_close(what + "slip [m]", slip, 17e-3 - elastic, 1e-6, 1e-9);
+    for (const Patch& c : one.state.patches) slip = std::max({slip, c.slip[0], c.slip[1]});
+    // of a compliant joint at the place between two ends of a step at which its law holds: up to one step, 20 um, back
+    check_close(what + "slip [m]", slip, 17e-3 - elastic, soft ? 20e-6 / 17e-3 : 1e-6, 1e-9);
     check_energy(one);
 
     const CaseResult two = run_case(shear_text(joint, and_back));
@@ -152,7 +153,7 @@ TEST_CASE("joint stiffness: force = k x closure, the way back the same as the wa
     check_below(what + "normal force off kn x closure, of the largest", off_normal, 2e-3, 1e-6);
     check_below(what + "shear force off ks x slip, of the largest", off_shear, 2e-3, 1e-6);
     CHECK(r.run.broken_faces == 0);
-    for (const Contact& c : r.state.contacts) CHECK(c.slip == 0);
+    for (const Patch& c : r.state.patches) CHECK(std::max(c.slip[0], c.slip[1]) == 0);
     check_energy(r);
   }
 }

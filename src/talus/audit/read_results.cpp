@@ -286,6 +286,7 @@ class Reader {
     const auto column = [&vtk, n](const char* name) -> const std::vector<double>& {
       return vtk.at(name, 1, n).values;
     };
+    const auto& force = vtk.at("force [N]", 3, n).values;
     const auto &place = vtk.at("Points", 3).values, &kind = column("kind"), &a = column("block a"),
                &b = column("block b"), &corner = column("corner"), &edge = column("edge"),
                &partner = column("partner"), &gap = column("gap [m]"), &normal = column("normal force [N]"),
@@ -303,11 +304,16 @@ class Reader {
           throw FileError(fmt::format("{}: a point names a block that is not in its frame", vtk.file));
       if (kind[i] == 0) {
         p.corner = whole(vtk, corner[i]), p.edge = whole(vtk, edge[i]);
-        check_number(vtk, p.corner, frame.blocks[static_cast<size_t>(p.block_a)].polygon.size());
-        check_number(vtk, p.edge, frame.blocks[static_cast<size_t>(p.block_b)].polygon.size());
+        if (!p.patch()) {
+          check_number(vtk, p.corner, frame.blocks[static_cast<size_t>(p.block_a)].polygon.size());
+          check_number(vtk, p.edge, frame.blocks[static_cast<size_t>(p.block_b)].polygon.size());
+        } else if (p.edge < kMostParts) {
+          throw FileError(fmt::format("{}: {} is no number of an edge", vtk.file, p.edge));
+        }
       }
       p.place = {place[3 * i], place[3 * i + 1]};
       p.gap = gap[i], p.normal_force = normal[i], p.shear_force = shear[i];
+      if (p.patch()) p.normal = normal_of({force[3 * i], force[3 * i + 1]}, p.normal_force, p.shear_force);
       const auto joint = joint_of_pair_.find(std::minmax(p.block_a, p.block_b));
       p.joint = joint == joint_of_pair_.end() || laws_change_ ? kUnknownJoint : joint->second;
       // the way up to which a joint rises is not in the folder: the frame's slip is
@@ -326,8 +332,16 @@ class Reader {
     }
   }
 
+  static constexpr int kMostParts = -1000000;  // of a block, as the edge of a patch
+
+  // From a force and its two components, along the normal and the normal turned clockwise.
+  static Vec2 normal_of(Vec2 force, double normal, double shear) {
+    const double square = dot(force, force);
+    return square > 0 ? (normal * force + shear * turn_left(force)) / square : Vec2{};
+  }
+
   static int whole(const VtkFrame& vtk, double value) {
-    if (!(value >= -1 && value <= std::numeric_limits<int>::max()))
+    if (!(value >= kMostParts && value <= std::numeric_limits<int>::max()))
       throw FileError(fmt::format("{}: {} is no number of a block, corner or edge", vtk.file, value));
     return static_cast<int>(value);
   }

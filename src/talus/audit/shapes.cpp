@@ -31,6 +31,21 @@ Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, d
   return of(a, corner) - ((1 - along) * of(b, edge) + along * of(b, (edge + 1) % b.polygon.size()));
 }
 
+Vec2 velocity_at(const Block& block, Vec2 place, std::vector<Vec2> Block::*velocity) {
+  const std::vector<Vec2>& v = block.*velocity;
+  if (v.empty()) return {};
+  const Polygon& p = block.polygon;
+  // the widest of the triangles at the first corner
+  size_t j = 1, k = 2;
+  for (size_t i = 1; i + 1 < p.size(); ++i)
+    if (std::abs(cross(p[i] - p[0], p[i + 1] - p[0])) > std::abs(cross(p[j] - p[0], p[k] - p[0])))
+      j = i, k = i + 1;
+  const double area = cross(p[j] - p[0], p[k] - p[0]);
+  if (area == 0) return v[0];
+  const double s = cross(place - p[0], p[k] - p[0]) / area, t = cross(p[j] - p[0], place - p[0]) / area;
+  return v[0] + s * (v[j] - v[0]) + t * (v[k] - v[0]);
+}
+
 Polygon cut_below(std::span<const Vec2> polygon, Vec2 point, Vec2 normal) {
   Polygon out;
   const size_t n = polygon.size();

@@ -24,6 +24,9 @@ Common common_part(const Polygon& a, const Polygon& b);
 Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, double along,
                    std::vector<Vec2> Block::*velocity);
 
+/// Velocity of a place that moves with a block, whose motion is affine [m/s].
+Vec2 velocity_at(const Block& block, Vec2 place, std::vector<Vec2> Block::*velocity);
+
 /// What of a convex polygon lies at or below the line through `point` with outward normal `normal`.
 Polygon cut_below(std::span<const Vec2> polygon, Vec2 point, Vec2 normal);
 

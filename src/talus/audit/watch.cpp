@@ -84,6 +84,7 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
   if (step.blocks[a].hold == Hold::kRemoved || step.blocks[b].hold == Hold::kRemoved) return;
   const double size = std::min(step.blocks[a].size, step.blocks[b].size);
   const Block shape_a = step.shape(before.block_a), shape_b = step.shape(before.block_b);
+  if (before.edge < -1) return judge_patch(step, before, mean, shape_a, shape_b, report);
   const Vec2 place = shape_a.polygon[static_cast<size_t>(before.corner)];
   const auto e = static_cast<size_t>(before.edge), next = (e + 1) % shape_b.polygon.size();
   const Vec2 side = shape_b.polygon[next] - shape_b.polygon[e], normal = turn_right(side) / norm(side);
@@ -119,6 +120,35 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
   const bool invalid = depth > kDeep * size || (depth > kFirm * size && before.normal_force > kCounts * mean);
   report.add(
       {Defect::kForceVanished, invalid, before.block_a, before.block_b, step.time, place, depth / size,
+       fmt::format("a force of {:.4g} N is gone from one step to the next, while the two overlap by {:.3g} m",
+                   before.normal_force, depth)});
+}
+
+// A patch without its force: do the two still overlap there, and does nothing else push them apart?
+void Watch::judge_patch(const Step& step, const StepPoint& before, double mean, const Block& a,
+                        const Block& b, Report& report) const {
+  const double size = std::min(step.blocks[static_cast<size_t>(before.block_a)].size,
+                               step.blocks[static_cast<size_t>(before.block_b)].size);
+  const auto moves = [&](std::vector<Vec2> Block::*velocity) {
+    return velocity_at(a, before.place, velocity) - velocity_at(b, before.place, velocity);
+  };
+  const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
+  const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance +
+                         rules_.give * before.normal_force + 3 * step.step * speed;
+  // both surfaces must lie that deep in the other block
+  const double depth = depth_in(a.polygon, before.place) + depth_in(b.polygon, before.place);
+  if (depth <= allowed) return;
+  if (before.hard && dot(before.normal, moves(&Block::next)) > 0) return;
+  const double near = kSamePlace * size + step.step * speed;
+  for (const StepPoint& p : step.points) {
+    if (p.normal_force <= 0) continue;
+    if (pair_of(p) == pair_of(before)) return;
+    if ((p.block_a == before.block_a || p.block_b == before.block_a) && norm(p.place - before.place) <= near)
+      return;
+  }
+  const bool invalid = depth > kDeep * size || (depth > kFirm * size && before.normal_force > kCounts * mean);
+  report.add(
+      {Defect::kForceVanished, invalid, before.block_a, before.block_b, step.time, before.place, depth / size,
        fmt::format("a force of {:.4g} N is gone from one step to the next, while the two overlap by {:.3g} m",
                    before.normal_force, depth)});
 }
@@ -189,7 +219,7 @@ void Watch::exchange(X& x, Self& self, const std::string& name) {
     field("block_a", p.block_a), field("corner", p.corner), field("block_b", p.block_b),
         field("edge", p.edge);
     field("normal_force", p.normal_force), field("gap", p.gap);
-    field("hard", p.hard);
+    field("hard", p.hard), field("place", p.place), field("normal", p.normal);
   });
   x(name + ".centroid_before", self.centroid_before_);
 }
@@ -204,6 +234,9 @@ bool Watch::fits(const std::vector<int>& corners) const {
   };
   return (!known_ || centroid_before_.size() == corners.size()) &&
          std::all_of(before_.begin(), before_.end(), [&](const StepPoint& p) {
+           if (p.edge < -1)
+             return is_corner(p.block_a, 0) && is_corner(p.block_b, 0) && is_finite(p.place) &&
+                    is_finite(p.normal);
            return is_corner(p.block_a, p.corner) && is_corner(p.block_b, p.edge);
          });
 }

@@ -15,6 +15,7 @@ struct StepPoint {
   int block_a = -1, corner = -1, block_b = -1, edge = -1;
   double normal_force = 0, gap = 0;  // [N], [m] of positions
   bool hard = false;                 // no force by its overlap: it may keep one as the two part
+  Vec2 place = {}, normal = {};      // of an end of a patch, whose edge is less than -1
 
   bool same_place(const StepPoint& o) const {
     return block_a == o.block_a && corner == o.corner && block_b == o.block_b && edge == o.edge;
@@ -58,6 +59,8 @@ class Watch {
   void forces_gone(const Step& step, Report& report) const;
   void judge(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
              Report& report) const;
+  void judge_patch(const Step& step, const StepPoint& before, double mean, const Block& a, const Block& b,
+                   Report& report) const;
   void blocks_through(const Step& step, Report& report) const;
   bool went_through(const Step& step, int i, int j, Vec2& at) const;
 

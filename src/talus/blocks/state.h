@@ -84,6 +84,31 @@ struct Contact {
   double slip_signed = 0;         // [m] the same with its sign: > 0 along the tangent
 };
 
+/// Where two convex parts of two blocks touch or nearly do, and what that place carries to the next step. It is
+/// known by the two parts; what it remembers lies along its chord, whose ends are material points of both.
+struct Patch {
+  int block_a = -1, block_b = -1;    // a < b
+  int part_a = -1, part_b = -1;      // of Outlines
+  int side_a = -1, side_b = -1;      // edges of the blocks that have most of it; -1: none in particular
+  int joint = -1, other_joint = -1;  // -1: hard and frictionless; the other one where two meet
+  double other_share = 0;            // of the other one
+  int way = 0;                       // side of the parts along which it keeps them apart: of b > 0, of a < 0
+  bool touched = false;              // the two have been in touch here
+  bool overlaps = false;             // they do
+  Vec2 normal;                       // unit, from b into a; the tangent is the normal turned clockwise
+  std::array<Vec2, 2> arm_a, arm_b;  // reference arms of the chord's ends, the first along the tangent first
+  std::array<double, 2> closure{};   // at the ends, of what it bears; < 0: a gap [m]
+  std::array<double, 2> gap{};       // at the ends, of positions: > 0 apart [m]
+  std::array<double, 2> allowed{};   // of hard contacts: overlap it was born with and may keep for now [m]
+  double length = 0;                 // of the chord [m]
+  double area = 0;                   // of the overlap [m2]
+  double root = 0, root_kept = 0;    // sqrt(U/(k t)) now, and of what it keeps for good (theory 3.5)
+  std::array<std::array<double, 2>, 2> force{};  // at the ends: normal, tangential [N]
+  std::array<double, 2> stretch{};               // elastic slip at the ends [m]
+  std::array<double, 2> slip{};                  // [m] beyond the elastic one, both ways added up
+  std::array<double, 2> slip_signed{};           // [m] the same with its sign: > 0 along the tangent
+};
+
 /// A third block that covers a side of a pair: a place beside that side lies in it.
 struct Cover {
   int block = -1;     // -1: none
@@ -99,6 +124,8 @@ struct alignas(64) ContactPair {  // every step reads them all: what covers side
   int a = -1, b = -1;             // a < b
   int begin = 0, count = 0;       // contact points, in State::contacts
   int face = -1;                  // first of their faces in the bond set, -1: none
+  int joint = -1;                 // of any two sides of theirs; kByEdges: each has its own
+  static constexpr int kByEdges = -3;
   // Joints carry the stress of the ground between blocks that share a face since the first step, and where
   // blocks that were near each other then come to share one.
   bool from_start = false, shares_face = false;
@@ -199,7 +226,8 @@ struct State {
   std::vector<Vec2> column_rate;          // [n_column_nodes] at the middle of the step before [m/s]
   CandidateList candidates;
   std::vector<ContactPair> pairs;  // sorted by (a, b)
-  std::vector<Contact> contacts;   // pair by pair
+  std::vector<Contact> contacts;   // pair by pair, of formulations that go by corners
+  std::vector<Patch> patches;      // pair by pair, of the one that goes by patches
 
   std::vector<Mat2>
       initial_stress;  // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7); empty: none

@@ -92,7 +92,22 @@ void validate_contact(const State& s, const BlockSet& b, const ContactPair& pair
           "contact {} of blocks {} and {} is no partner of its partner", k, pair.a, pair.b);
 }
 
+void validate_patch(const State& s, const BlockSet& b, const ContactPair& pair, int k) {
+  const Patch& p = s.patches[static_cast<size_t>(pair.begin + k)];
+  promise(p.block_a == pair.a && p.block_b == pair.b,
+          "a patch of blocks {} and {} is listed with those of {} and {}", p.block_a, p.block_b, pair.a,
+          pair.b);
+  promise(p.part_a >= 0 && p.part_b >= 0, "a patch of blocks {} and {} has no parts", pair.a, pair.b);
+  promise(p.side_a >= -1 && p.side_a < b.vertex_count(pair.a) && p.side_b >= -1 &&
+              p.side_b < b.vertex_count(pair.b),
+          "a patch of blocks {} and {} lies on sides {} and {}", pair.a, pair.b, p.side_a, p.side_b);
+  promise(p.joint >= -1 && p.other_joint >= -1, "a patch has joints {} and {}", p.joint, p.other_joint);
+  promise(p.length > 0, "a patch of blocks {} and {} has length {}", pair.a, pair.b, p.length);
+}
+
 void validate_pairs(const State& s, const BlockSet& b) {
+  const size_t most = std::max(s.contacts.size(), s.patches.size());
+  promise(s.contacts.empty() || s.patches.empty(), "a state has contacts and patches");
   const auto blocks = static_cast<size_t>(b.count);
   size_t contacts = 0;
   for (size_t p = 0; p < s.pairs.size(); ++p) {
@@ -106,7 +121,7 @@ void validate_pairs(const State& s, const BlockSet& b) {
     promise(pair.count >= 0 && pair.begin == static_cast<int>(contacts),
             "contacts of blocks {} and {} begin at {}, not {}", pair.a, pair.b, pair.begin, contacts);
     contacts += static_cast<size_t>(pair.count);
-    promise(contacts <= s.contacts.size(), "pairs have more contacts than there are, {}", s.contacts.size());
+    promise(contacts <= most, "pairs have more contacts than there are, {}", most);
     promise(pair.face >= -1 && (pair.face < 0 || is_index(pair.face, s.face.size())),
             "blocks {} and {} have face {} of {}", pair.a, pair.b, pair.face, s.face.size());
     promise(pair.covers >= 0 && static_cast<size_t>(pair.covers) <= pair.cover.size(),
@@ -115,9 +130,10 @@ void validate_pairs(const State& s, const BlockSet& b) {
       const int third = pair.cover[static_cast<size_t>(k)].block;
       promise(is_index(third, blocks), "block {} of {} covers a side", third, blocks);
     }
-    for (int k = 0; k < pair.count; ++k) validate_contact(s, b, pair, k);
+    for (int k = 0; k < pair.count; ++k)
+      s.patches.empty() ? validate_contact(s, b, pair, k) : validate_patch(s, b, pair, k);
   }
-  promise_length(s.contacts, contacts, "the list of contacts");
+  promise(contacts == most, "pairs have {} contacts of {}", contacts, most);
 }
 
 void validate_bolt(const Bolt& bolt, size_t blocks) {

@@ -70,7 +70,7 @@ struct Point {
 };
 
 // The part of an interface that is closed, or is going to be in this step: from one end on, as share of its
-// length. 1: all of it, or nothing yet (theory 4.6).
+// length. 1: all of it, or nothing yet (theory 13.6).
 double closed_share(double gap, double other, double gap_then, double other_then) {
   if (gap >= 0 && other >= 0) gap = gap_then, other = other_then;
   if ((gap < 0) == (other < 0)) return 1;
@@ -79,7 +79,7 @@ double closed_share(double gap, double other, double gap_then, double other_then
 }
 
 // The closed part of a corner that has gone into an edge: Winkler's foundation under its two sides
-// (theory 4.6).
+// (theory 13.6).
 struct Toe {
   double length = 0;   // closed, along the edge [m]
   double closure = 0;  // mean of it [m]
@@ -299,7 +299,7 @@ class ContactRows {
     return p;
   }
 
-  // A corner alone: the part of its two sides that has gone into the edge (theory 4.6).
+  // A corner alone: the part of its two sides that has gone into the edge (theory 13.6).
   double close_corner(Point& q, const Contact& c, double size, PointRows& p) const {
     const double gap = q.gap + q.closure.x, then = gap + clock_.dt * q.u[0];
     const Toe toe = toe_of(q, c, -(gap < 0 ? gap : then));

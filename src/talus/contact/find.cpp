@@ -167,7 +167,7 @@ int ContactSearch::Outline::edge_beside(int first, Vec2 place) const {
 }
 
 // Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards, by more than
-// -`dip` (sine) (theory 3.2).
+// -`dip` (sine) (theory 13.6).
 bool ContactSearch::Outline::may_enter(int k, Vec2 n, double dip) const {
   const auto v = static_cast<size_t>(k), b = static_cast<size_t>(before(k));
   return convex[v] && !flat[v] && dot(edge[v], n) >= -dip * length[v] && -dot(edge[b], n) >= -dip * length[b];
@@ -191,7 +191,7 @@ bool ContactSearch::Outline::on_convex_chain(int edge_1, int edge_2) const {
 
 // Corner v of a comes towards edge e of b level with its end, where b's other edge there and an edge of a lie
 // in one line: a slides over the joint between b and its neighbour. It touches b's other edge next, not the
-// side of b (theory 3.3).
+// side of b (theory 13.6).
 bool ContactSearch::is_flush(const BlockSet& blocks, const State& s, const Outline& a, int v,
                              const Outline& b, int e, int end) const {
   const int other = end == e ? b.before(e) : end;
@@ -231,7 +231,7 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
 }
 
 // Whether x is the way out rather than y: what was in touch before, else the larger gap, or of nearly equal
-// ones what is coming (theory 3.3 iv).
+// ones what is coming (theory 13.6 iv).
 bool ContactSearch::is_better(const Hit& x, const Hit& y) {
   const bool x_stays = x.held && !x.covered, y_stays = y.held && !y.covered;
   if (x_stays != y_stays) return x_stays;
@@ -250,7 +250,7 @@ bool ContactSearch::is_better(const Hit& x, const Hit& y) {
 }
 
 // Whether corner v of a bore on the straight side of b's edge e before, with a force or an overlap that it
-// keeps (theory 3.3 i).
+// keeps (theory 13.6 i).
 bool ContactSearch::was_in_touch(const Outline& a, int v, const Outline& b, int e) const {
   for (const Contact& c : range_.known) {
     if (c.key.block_a != a.block || c.key.vertex != v || c.memory == Contact::kNone) continue;
@@ -320,7 +320,7 @@ bool covers(const BlockSet& blocks, const State& s, int a, int b, const Cover& c
 
 // Whether a third block fills the place through which a hit would be pushed out: beside the side of b, or
 // beside the antiparallel side of a, at the middle of the stretch that they share. Gaps narrower than `reach`
-// hide nothing (theory 3.3 ii).
+// hide nothing (theory 13.6 ii).
 bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Outline& a, const Outline& b,
                                Vec2 shift, const Hit& h, double reach) {
   if (range_.neighbours == nullptr) return false;
@@ -388,7 +388,7 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
 }
 
 // All corner-edge pairs of corners of a over edges of b. `shift` leads from the centroid of b to that of a
-// (theory 3.2, 3.3).
+// (theory 13.6).
 void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, const Outline& a,
                                        const Outline& b, Vec2 shift) {
   const auto ia = static_cast<size_t>(a.block), ib = static_cast<size_t>(b.block);
@@ -487,7 +487,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
   }
 }
 
-// Where corner of a meets corner of b there may be hits both ways; one stays (theory 3.3 iv).
+// Where corner of a meets corner of b there may be hits both ways; one stays (theory 13.6 iv).
 void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 shift) {
   // a tip and the corner that it went in beside, each in the other
   const auto both_in = [&](const Hit& x, const Hit& y) {
@@ -562,7 +562,7 @@ void ContactSearch::spans_of(const Outline& a, const Outline& b, const Hit& h,
 }
 
 // Two points that end the overlap of the same two antiparallel sides share its length. `shift` leads from the
-// centroid of b to that of a (theory 3.3, interfaces).
+// centroid of b to that of a (theory 13.6, interfaces).
 void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) {
   if (spans_.size() < hits_.size()) spans_.resize(hits_.size());
   for (size_t i = 0; i < hits_.size(); ++i) spans_of(a, b, hits_[i], spans_[i]);
@@ -619,7 +619,7 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
 }
 
 // Which sides of a corner alone bear on its edge by themselves: not those whose interface has its own two
-// ends (theory 4.6).
+// ends (theory 13.6).
 void ContactSearch::find_toes(const Outline& a, const Outline& b) {
   for (Hit& h : hits_) {
     if (h.point.partner >= 0) continue;

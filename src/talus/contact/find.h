@@ -1,5 +1,5 @@
 #pragma once
-// Which corners of two simple polygons touch which edges. Geometry only. Theory: docs/theory.md section 3,
+// Which corners of two simple polygons touch which edges. Geometry only. Theory: docs/theory.md 13.6,
 // with sketches.
 
 #include <limits>
@@ -34,7 +34,7 @@ struct CornerEdge {
 };
 
 inline CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner,
-                                   BlockEdge on) {  // theory 3.2
+                                   BlockEdge on) {  // theory 13.6
   const auto ia = static_cast<size_t>(corner.block), ib = static_cast<size_t>(on.block);
   const Vec2 Xa = blocks.corner(corner), Xb = blocks.corner({on.block, on.edge}),
              E = blocks.corner(blocks.end_of(on)) - Xb;
@@ -66,13 +66,13 @@ struct Found {
   std::vector<Cover> cover;     // sides covered here: were a block to leave one, there were more points
 };
 
-/// Whether the place beside the side of one of the two still lies in the third block (theory 3.3 ii).
+/// Whether the place beside the side of one of the two still lies in the third block (theory 13.6 ii).
 bool covers(const BlockSet& blocks, const State& state, int a, int b, const Cover& cover);
 
 /// Looks for contact points; keeps its memory from pair to pair.
 class ContactSearch {
  public:
-  /// The contact points of two blocks (theory 3.2 and 3.3).
+  /// The contact points of two blocks (theory 13.6).
   ///  - A corner acts on an edge only above the edge itself (never its extension), and only where its own two
   ///    edges do not lie behind the edge (entrance condition).
   ///  - A flat corner (turning by less than 1e-4) enters nothing: the edges beside it are one straight side.

@@ -11,7 +11,7 @@ namespace {
 // Corners closer to the end of a face than this share of its length stand in its place.
 constexpr double kAtEnd = 0.01;
 
-// Theory 3.5.
+// Theory 13.6.
 void take_from_face(const BlockSet& blocks, const BondFace& face, const FaceState& broken, Contact& c) {
   const Vec2 corner = blocks.corner(c.key.corner());
   for (size_t end = 0; end < 2; ++end) {

@@ -1,6 +1,6 @@
 #pragma once
 // What contact points that come new take over: from the broken face in whose place they come, or from the
-// other end of their own face. Theory: docs/theory.md section 3.5.
+// other end of their own face. Theory: docs/theory.md 13.6.
 
 #include "talus/contact/bonds.h"
 

@@ -59,6 +59,9 @@ double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
   double rise = 0;
   for (const Contact& c : state.contacts)
     if (c.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(c.joint)].rise(c.slip));
+  for (const Patch& p : state.patches)
+    for (const double slip : p.slip)
+      if (p.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(p.joint)].rise(slip));
   return rise;
 }
 
@@ -110,6 +113,15 @@ int first_face(const BondSet& bonds, int a, int b) {
   return found ? static_cast<int>(it - bonds.faces.begin()) : -1;
 }
 
+// The joint of a pair where it is the same for all of its sides.
+int joint_of(const BlockSet& blocks, const Layout& layout, int a, int b) {
+  const int given =
+      layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
+  if (given != Layout::kNoPair) return given;
+  const auto own = [&](int i) { return !layout.blocks[static_cast<size_t>(i)].edge_joint.empty(); };
+  return own(a) || own(b) ? ContactPair::kByEdges : layout.default_joint;
+}
+
 bool held_by_faces(const BondSet& bonds, const State& state, const ContactPair& pair) {
   if (pair.face < 0) return false;
   for (auto f = static_cast<size_t>(pair.face); f < bonds.faces.size(); ++f) {
@@ -129,7 +141,7 @@ BySize by_size(const BlockSet& blocks, const ContactPair& p) {
 }
 
 // How far the two have moved against each other since their contact points were sought, at the worst place of
-// the smaller block, where they touch (theory 3.7).
+// the smaller block, where they touch (theory 13.6).
 double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p) {
   const auto [small, large] = by_size(blocks, p);
   const Vec2 off = (blocks.centroid[small] - blocks.centroid[large] - p.arm) +
@@ -145,7 +157,7 @@ void keep_cover(const std::vector<Cover>& cover, ContactPair& p) {
   std::copy_n(cover.begin(), p.covers, p.cover.begin());
 }
 
-// Whether a block that covers a side of the pair has gone, or left that side (theory 3.7).
+// Whether a block that covers a side of the pair has gone, or left that side (theory 13.6).
 bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p) {
   return std::any_of(p.cover.begin(), p.cover.begin() + p.covers,
                      [&](const Cover& c) { return !covers(blocks, s, p.a, p.b, c); });
@@ -228,7 +240,7 @@ class Memory {
 };
 
 // A found point with what a known one at the same place remembers. `plain`: every straight side is one edge
-// (theory 3.3, memory).
+// (theory 13.6, memory).
 Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& point, const Memory& memory,
                    bool plain, const Layout& joints_of) {
   Contact c;
@@ -474,7 +486,7 @@ Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& 
       state.pairs.size(), 2048, [&](size_t begin, size_t end, Approach& most) {
         for (size_t i = begin; i < end; ++i) {
           const ContactPair& pair = state.pairs[i];
-          if (held_by_faces(bonds, state, pair)) continue;
+          if (pair.count == 0 && held_by_faces(bonds, state, pair)) continue;
           const auto [small, large] = by_size(blocks, pair);
           const Vec2 arm = (blocks.centroid[small] - blocks.centroid[large]) +
                            (state.displacement[small] - state.displacement[large]);
@@ -488,8 +500,9 @@ Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& 
 }
 
 // Theory 3.1.
-bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
-                 const LookAhead& ahead, const Workers& workers, State& state) {
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
+                 const std::vector<JointLaw>& joints, const LookAhead& ahead, const Workers& workers,
+                 State& state) {
   TALUS_ASSERT(ahead.before.size() == static_cast<size_t>(blocks.count) &&
                state.face.size() == bonds.faces.size());
   const double rise = highest_rise(joints, state);
@@ -514,7 +527,9 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
   const std::vector<ContactPair> before = std::move(state.pairs);
   std::vector<ContactPair> now;
   std::vector<Contact> contacts;
+  std::vector<Patch> patches;
   contacts.reserve(state.contacts.size() + state.contacts.size() / 32);
+  patches.reserve(state.patches.size() + state.patches.size() / 32);
   auto known = before.begin();
   const std::vector<std::pair<int, int>> close = close_pairs(boxes, 0);
   list_neighbours(blocks, close, list.neighbours);
@@ -530,19 +545,27 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector
       pair.from_start = state.step == 0;
       pair.face = first_face(bonds, a, b);
       pair.shares_face = pair.from_start && pair.face >= 0;
+      pair.joint = joint_of(blocks, joints_of, a, b);
     }
-    const auto from = state.contacts.begin() + pair.begin;
-    pair.begin = static_cast<int>(contacts.size());
-    contacts.insert(contacts.end(), from, from + pair.count);
+    const int from = pair.begin;
+    if (!state.patches.empty()) {
+      pair.begin = static_cast<int>(patches.size());
+      patches.insert(patches.end(), state.patches.begin() + from, state.patches.begin() + from + pair.count);
+    } else {
+      pair.begin = static_cast<int>(contacts.size());
+      contacts.insert(contacts.end(), state.contacts.begin() + from,
+                      state.contacts.begin() + from + pair.count);
+    }
     now.push_back(pair);
   }
   now.shrink_to_fit();
   state.pairs = std::move(now);
   state.contacts = std::move(contacts);
+  state.patches = std::move(patches);
   return true;
 }
 
-// Theory 3.7.
+// Theory 13.6.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
                              const std::vector<JointLaw>& joints, const LookAhead& ahead,
                              const Workers& workers, State& state) {

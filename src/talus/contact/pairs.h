@@ -1,7 +1,7 @@
 #pragma once
 // Which blocks are near each other and where they touch, kept from step to step: a list of close pairs with a
 // skin, and in each pair contact points that are sought anew only when the two have moved against each other.
-// Theory: docs/theory.md 3.7.
+// Theory: docs/theory.md 3.1, 13.6.
 
 #include <algorithm>
 
@@ -21,8 +21,9 @@ struct LookAhead {
 /// Renews state.pairs when some block has moved half its skin since they were made, or looks further ahead
 /// than then: all pairs (a < b), at least one moving freely, that may come into touch and are not glued for
 /// good. Pairs and contacts known before stay. Returns whether it did.
-bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& joints,
-                 const LookAhead& ahead, const Workers& workers, State& state);
+bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
+                 const std::vector<JointLaw>& joints, const LookAhead& ahead, const Workers& workers,
+                 State& state);
 
 /// How far the blocks of a pair move against each other in a step, at most: the smaller one as seen by the larger.
 struct Approach {

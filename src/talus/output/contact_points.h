@@ -22,7 +22,8 @@ struct FramePoint {
   int kind = 0;                                       // index in kPointKinds
   int state = -1;                                     // of a joint: index in kJointStates; -1: no joint
   int block_a = -1, block_b = -1;                     // -1: the ground
-  // of a contact the corner of block_a and the edge of block_b; else the index of the point and 0: the same
+  // of a patch twice the part of block_a, one more for its second end, and -2 less the part of block_b; of a corner
+  // on an edge the corner of block_a and the edge of block_b; else the index of the point and 0: the same
   // point has the same numbers in every frame
   int corner = 0, edge = 0;
   int partner = -1;  // index in the frame of the other end of what the two blocks share, -1: none

@@ -106,7 +106,15 @@ void Auditor::look_at_stage(const Instant& i) {
 void Auditor::watch(const Instant& i) {
   const State& state = i.state;
   points_.clear();
-  points_.reserve(state.contacts.size());
+  points_.reserve(state.contacts.size() + 2 * state.patches.size());
+  for (const Patch& c : state.patches) {
+    const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
+    for (int end = 0; end < 2; ++end) {
+      const auto [corner, edge] = patch_numbers(scene_, c, end);
+      points_.push_back({c.block_a, corner, c.block_b, edge, c.force[static_cast<size_t>(end)][0],
+                         c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal});
+    }
+  }
   for (size_t k = 0; k < state.contacts.size(); ++k) {
     const Contact& c = state.contacts[k];
     const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
@@ -119,6 +127,27 @@ void Auditor::watch(const Instant& i) {
   watch_.look(
       {state.time, i.work.clock.dt, points_, centroid_, blocks_, [&](int block) { return shape(i, block); }},
       report_);
+}
+
+Vec2 Auditor::place_of(const State& state, const Patch& c, int end) const {
+  const auto a = static_cast<size_t>(c.block_a);
+  return scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[static_cast<size_t>(end)]);
+}
+
+audit::Point Auditor::patch_point(const State& state, const Patch& c, int end) const {
+  const auto e = static_cast<size_t>(end);
+  audit::Point p;
+  const auto [corner, edge] = patch_numbers(scene_, c, end);
+  p.block_a = c.block_a, p.block_b = c.block_b, p.corner = corner, p.edge = edge;
+  p.place = place_of(state, c, end), p.normal = c.normal, p.gap = c.gap[e];
+  p.normal_force = c.force[e][0], p.shear_force = c.force[e][1];
+  p.joint = c.other_share > 0 ? audit::kUnknownJoint : c.joint < 0 ? audit::kNoJoint : c.joint;
+  if (c.joint >= 0) {
+    const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];  // as law_of
+    p.rise = std::tan(joint.dilation_angle) * std::min(c.slip[e], joint.dilation_slip);
+  }
+  p.in_situ = std::max(0.0, c.closure[e] + c.gap[e]);
+  return p;
 }
 
 audit::Block Auditor::shape(const Instant& i, int block) const {
@@ -154,8 +183,13 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
     p.partner = static_cast<int>(r % 2 == 0 ? r + 1 : r - 1);
     frame.points.push_back(p);
   }
+  for (const Patch& c : i.state.patches)
+    for (int end = 0; end < 2; ++end) {
+      frame.points.push_back(patch_point(i.state, c, end));
+      frame.points.back().partner = static_cast<int>(frame.points.size()) - (end == 0 ? 0 : 2);
+    }
   for (const ContactPair& pair : i.state.pairs) {
-    for (int n = 0; n < pair.count; ++n) {
+    for (int n = 0; n < pair.count && i.state.patches.empty(); ++n) {
       const auto k = static_cast<size_t>(pair.begin + n);
       const Contact& c = i.state.contacts[k];
       audit::Point p;

@@ -28,6 +28,8 @@ class Auditor {
   static void exchange(X& x, Self& self);
   void look_at_stage(const Instant& instant);
   void watch(const Instant& instant);
+  Vec2 place_of(const State& state, const Patch& c, int end) const;
+  audit::Point patch_point(const State& state, const Patch& c, int end) const;
   audit::Block shape(const Instant& instant, int block) const;
   audit::Frame frame_of(const Instant& instant) const;
 

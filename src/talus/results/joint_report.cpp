@@ -95,7 +95,77 @@ double residual_slip(const Scene& scene, const Instant& i, size_t k) {
   return dot(turn_right(over.normal), gone) + to_come + closure - c.stretch;
 }
 
+// Whether a place lies on an edge of a block in the reference shape; seen from its centroid.
+bool lies_on(const BlockSet& blocks, BlockEdge edge, Vec2 place, double near) {
+  if (edge.edge < 0) return false;
+  const Vec2 from = blocks.corner({edge.block, edge.edge}), side = blocks.corner(blocks.end_of(edge)) - from,
+             at = place - from;
+  const double length = norm(side);
+  return std::abs(cross(side, at)) <= near * length && dot(side, at) >= -near * length &&
+         dot(side, at) <= (length + near) * length;
+}
+
+bool is_corner(const BlockSet& blocks, int block, Vec2 arm) {
+  const double same = 2e-3 * blocks.size[static_cast<size_t>(block)];  // chords end a closure off
+  for (int v = 0; v < blocks.vertex_count(block); ++v)
+    if (norm(blocks.corner({block, v}) - arm) <= same) return true;
+  return false;
+}
+
+// The same of an end of a patch: of the material point of one of the two that lay on the side of the other when the
+// run began.
+double residual_slip(const Scene& scene, const Instant& i, const Patch& c, size_t end, size_t row) {
+  const State& state = i.state;
+  const BlockSet& blocks = scene.blocks;
+  const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
+  const double near = 0.02 * std::min(blocks.size[a], blocks.size[b]);
+  const Vec2 apart = blocks.centroid[a] - blocks.centroid[b];
+  // on the side of b where the end is a corner of a; level ends are corners of both
+  const bool of_a = is_corner(blocks, c.block_a, c.arm_a[end]),
+             of_b = is_corner(blocks, c.block_b, c.arm_b[end]);
+  if (!of_a && !of_b) return c.slip_signed[end];
+  const bool on_b = !of_b;
+  const Vec2 in_a = on_b ? c.arm_a[end] : c.arm_b[end] - apart, in_b = in_a + apart;
+  const bool lay_there = on_b ? lies_on(blocks, {c.block_b, c.side_b}, in_b, near)
+                              : lies_on(blocks, {c.block_a, c.side_a}, in_a, near);
+  if (!lay_there) return c.slip_signed[end];
+  const Vec2 gone = displacement_at(state, a, in_a) - displacement_at(state, b, in_b);
+  double closure = 0;  // elastic slip by the stress of the ground, at the start
+  if (scene.model.in_situ.given && c.joint >= 0 && c.side_b >= 0 &&
+      std::binary_search(scene.outlines.closed.begin(), scene.outlines.closed.end(),
+                         std::pair(c.block_a, c.block_b))) {
+    const BlockEdge edge{c.block_b, c.side_b};
+    const Vec2 side = blocks.corner(blocks.end_of(edge)) - blocks.corner({edge.block, edge.edge});
+    const Mat2 stress =
+        in_situ_stress(scene.model.in_situ, scene.model.gravity, blocks.centroid[b].y + in_b.y);
+    closure = scene.laws[static_cast<size_t>(c.joint)].closure(stress, turn_right(side) / norm(side)).y;
+  }
+  // what patches remember is already that of the end of the step
+  const double to_come = i.work.clock.dt * relative_velocity(i.work.rows.points[row], state.rate)[1];
+  return dot(turn_right(c.normal), gone) + to_come + closure - c.stretch[end];
+}
+
+JointPoint patch_point(const Scene& scene, const Instant& i, size_t k) {
+  const Patch& c = i.state.patches[k / 2];
+  const size_t end = k % 2;
+  JointPoint out;
+  out.id = fmt::format("{}:{} on {}:{} end {}", c.block_a, c.side_a, c.block_b, c.side_b, end);
+  out.joint = c.joint;
+  out.set = set_of(scene, c.block_b, c.side_b);
+  if (out.set.empty()) out.set = set_of(scene, c.block_a, c.side_a);
+  out.length = 0.5 * c.length;
+  out.slip = c.slip[end];
+  out.slip_signed = residual_slip(scene, i, c, end, i.work.rows.range(Family::kContact).begin + k);
+  if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip[end]);
+  out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
+  const double noticed =
+      noticeable(scene.blocks, static_cast<size_t>(c.block_a), static_cast<size_t>(c.block_b));
+  out.state = static_cast<int>(joint_state(c.touched, c.force[end][0], out.slip, out.opening, noticed));
+  return out;
+}
+
 JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
+  if (scene.by_patches()) return patch_point(scene, i, k);
   const Contact& c = i.state.contacts[k];
   JointPoint out;
   out.id = fmt::format("{}:{} on {}:{}", c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge);
@@ -113,6 +183,12 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
 }
 
 }  // namespace
+
+std::pair<int, int> patch_numbers(const Scene& scene, const Patch& c, int end) {
+  const std::vector<int>& first = scene.outlines.part_begin;
+  return {2 * (c.part_a - first[static_cast<size_t>(c.block_a)]) + end,
+          -2 - (c.part_b - first[static_cast<size_t>(c.block_b)])};
+}
 
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
   const auto a = static_cast<size_t>(p.block_a);
@@ -145,8 +221,14 @@ void take_row(const Scene& scene, const Instant& i, size_t r, FramePoint& out) {
   if (owner.family == Family::kFace) {
     out.corner = owner.index;
   } else if (owner.family == Family::kContact) {
-    const ContactKey& key = i.state.contacts[owner.at()].key;
-    out.corner = key.vertex, out.edge = key.edge, out.gap = i.work.places[owner.at()].gap;
+    if (scene.by_patches()) {
+      const Patch& c = i.state.patches[owner.at() / 2];
+      std::tie(out.corner, out.edge) = patch_numbers(scene, c, static_cast<int>(owner.at() % 2));
+    } else {
+      const ContactKey& key = i.state.contacts[owner.at()].key;
+      out.corner = key.vertex, out.edge = key.edge;
+    }
+    out.gap = i.work.places[owner.at()].gap;
   } else {  // number among those of its kind that act
     const Family first = owner.family == Family::kTie ? Family::kBoundary : owner.family;
     out.corner = static_cast<int>(r - rows.range(first).begin);
@@ -188,8 +270,10 @@ std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
   const RowRange bonds = i.work.rows.range(Family::kFace);
   const size_t first = i.work.rows.range(Family::kContact).begin;
   for (size_t r = bonds.begin; r < bonds.end; r += 2) out.emplace_back(r, r + 1);  // the two ends of a face
+  for (size_t k = 0; k < i.state.patches.size(); ++k) out.emplace_back(first + 2 * k, first + 2 * k + 1);
+  if (!i.state.patches.empty()) return out;
   for (const ContactPair& pair : i.state.pairs) {
-    for (int k = 0; k < pair.count; ++k) {
+    for (int k = 0; k < pair.count && !i.state.contacts.empty(); ++k) {
       const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
       if (partner > k)
         out.emplace_back(first + static_cast<size_t>(pair.begin + k),

@@ -29,6 +29,10 @@ struct JointPoint : FramePoint {
 /// The point of row `row`; none for supports, boundaries and bonds that never break.
 std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant, size_t row);
 
+/// Numbers by which an end of a patch is known from frame to frame: of its part of block a, with its end, and of
+/// its part of block b, < -1.
+std::pair<int, int> patch_numbers(const Scene& scene, const Patch& patch, int end);
+
 /// Where a point of rows is now [m].
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
 

@@ -552,10 +552,20 @@ class StagedRun::Runner {
   // How deep a contact has gone, where, and what would keep it from it.
   std::string closed_text(const StepReport& r, const State& state) const {
     const auto row = static_cast<size_t>(r.closed_row);
-    const Contact& c = state.contacts[work_.rows.owner[row].at()];
-    const auto a = static_cast<size_t>(c.key.block_a);
-    const Vec2 at = scene_.blocks.centroid[a] + offset_now(state, a, scene_.blocks.corner(c.key.corner()));
-    const JointProperty* joint = c.joint < 0 ? nullptr : &scene_.model.joints[static_cast<size_t>(c.joint)];
+    const size_t owner = work_.rows.owner[row].at();
+    int of_joint = -1;
+    Vec2 at;
+    if (scene_.by_patches()) {
+      const Patch& c = state.patches[owner / 2];
+      const auto a = static_cast<size_t>(c.block_a);
+      of_joint = c.joint, at = scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[owner % 2]);
+    } else {
+      const Contact& c = state.contacts[owner];
+      const auto a = static_cast<size_t>(c.key.block_a);
+      of_joint = c.joint;
+      at = scene_.blocks.centroid[a] + offset_now(state, a, scene_.blocks.corner(c.key.corner()));
+    }
+    const JointProperty* joint = of_joint < 0 ? nullptr : &scene_.model.joints[static_cast<size_t>(of_joint)];
     const std::string cure =
         joint && joint->normal_stiffness > 0
             ? fmt::format("normal_stiffness = {:.2g} Pa/m of joint \"{}\" would keep it at 1 %",

@@ -94,6 +94,23 @@ void judge_contacts(const State& s, const Scene& scene) {
   }
 }
 
+void judge_patches(const State& s, const Scene& scene) {
+  promise_loaded(s.patches.empty() || scene.by_patches(), "it has patches, and its formulation has none");
+  for (const Patch& p : s.patches) {
+    const auto joints = static_cast<int>(scene.model.joints.size());
+    promise_loaded(
+        p.joint < joints && p.other_joint < joints,
+        fmt::format("a patch is of joint {}, which there is not", std::max(p.joint, p.other_joint)));
+    const auto is_part = [&](int part, int block) {
+      const auto k = static_cast<size_t>(block);
+      return part >= scene.outlines.part_begin[k] && part < scene.outlines.part_begin[k + 1];
+    };
+    promise_loaded(is_part(p.part_a, p.block_a) && is_part(p.part_b, p.block_b),
+                   "a patch lies on a part that its blocks do not have");
+    promise_loaded(std::abs(norm(p.normal) - 1) < 1e-6, "the normal of a patch is no unit vector");
+  }
+}
+
 void judge_bolts(const State& s, const Scene& scene) {
   for (const Bolt& bolt : s.bolts) {
     promise_loaded(is_below(bolt.input, scene.model.bolts.size()),
@@ -176,6 +193,7 @@ void validate_loaded(const Standing& standing, const State& state, const Prepare
   promise_loaded(state.rest.sharper > 0 && state.rest.sharper <= 1,
                  fmt::format("\"sharper\" is {}", state.rest.sharper));
   judge_contacts(state, prepared.scene);
+  judge_patches(state, prepared.scene);
   judge_bolts(state, prepared.scene);
   judge_standing(standing, state, prepared);
   judge_pairs(standing, state, prepared.scene);

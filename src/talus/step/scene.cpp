@@ -73,6 +73,8 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.laws = joint_laws(scene.model.joints);
   scene.give = contact_give(scene.model, scene.layout, scene.blocks);
   scene.bonds = find_bonds(scene.model, scene.layout, scene.blocks);
+  if (scene.by_patches())
+    scene.outlines = build_outlines(scene.model, scene.layout, scene.blocks, scene.bonds, scene.laws);
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);

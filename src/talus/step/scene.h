@@ -3,6 +3,7 @@
 
 #include "talus/contact/bonds.h"
 #include "talus/contact/contact_give.h"
+#include "talus/contact/outlines.h"
 #include "talus/supports/bolts.h"
 #include "talus/supports/boundaries.h"
 #include "talus/supports/loads.h"
@@ -25,9 +26,12 @@ struct Scene {
   std::vector<JointLaw> laws;  // of the model's joints, in the stage
   ContactGive give;            // of hard contacts
   BondSet bonds;
+  Outlines outlines;  // of the formulation that goes by patches; empty: contacts are of corners on edges
   std::vector<SupportedPoint> supported;
   BoundarySet boundaries;
   LoadSet loads;
+
+  bool by_patches() const { return model.formulation == Formulation::kContactForces; }
 };
 
 /// Boundaries and bolts that cannot be are told to `findings`; such a scene is not to be run.

@@ -32,12 +32,22 @@ void check_travel(const BlockSet& blocks, const std::vector<BlockRate>& rate, co
   }
 }
 
+PatchWorld patch_world(const Scene& scene) {
+  return {scene.blocks, scene.outlines, scene.bonds, scene.layout, scene.model, scene.laws};
+}
+
 void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport& report) {
   const std::vector<BlockRate>& expected = work.clock.from_rest ? work.rate_expected : work.rate_before;
   // a step from rest that goes far is taken again
   if (!work.clock.from_rest) check_travel(scene.blocks, expected, state, work.clock.dt);
   const LookAhead ahead{work.clock, expected};
-  renew_pairs(scene.blocks, scene.bonds, scene.laws, ahead, work.workers, state);
+  renew_pairs(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, work.workers, state);
+  if (scene.by_patches()) {
+    const InPart part(work.profile, Profile::kSearch);
+    report.searched = work.patches.update(patch_world(scene), ahead, work.workers, state);
+    report.contacts = static_cast<int>(2 * state.patches.size());
+    return;
+  }
   const SearchReport sought =
       update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, work.workers, state);
   // threads seek side by side
@@ -56,8 +66,11 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   rows.restart();
   work.profile.go_on_with(Profile::kRows);
   add_bond_rows(blocks, scene.bonds, scene.laws, state, before, clock, work.workers, rows);
-  add_contact_rows(blocks, model, scene.laws, scene.give, state, before, clock, work.workers, rows,
-                   work.places);
+  if (scene.by_patches())
+    add_patch_rows(patch_world(scene), scene.give, state, before, clock, work.workers, rows, work.places);
+  else
+    add_contact_rows(blocks, model, scene.laws, scene.give, state, before, clock, work.workers, rows,
+                     work.places);
   work.profile.go_on_with(Profile::kHeld);
   add_support_rows(blocks, model, scene.supported, state, clock, rows);
   add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.columns, rows);
@@ -103,13 +116,18 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
 }
 
 // The work of the rows, and in the same look what contacts carry to the step after.
-RowSums settle_rows(const BlockSet& blocks, const StepWork& work, State& state) {
+RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
+  const BlockSet& blocks = scene.blocks;
   const RowRange contacts = work.rows.range(Family::kContact);
   return work.workers.sum_chunks<RowSums>(
       work.rows.size(), kChunkOfRows, [&](size_t begin, size_t end, RowSums& s) {
         for (size_t r = begin; r < end; ++r) tally_row(blocks, work, state, r, s);
         const RowRange here{std::max(begin, contacts.begin), std::min(end, contacts.end)};
-        if (here.begin < here.end) remember_contacts(work.rows, here, work.places, work.clock, state);
+        if (here.begin >= here.end) return;
+        if (scene.by_patches())
+          remember_patches(work.rows, here, work.places, work.rate_before, work.clock, state);
+        else
+          remember_contacts(work.rows, here, work.places, work.clock, state);
       });
 }
 
@@ -158,7 +176,7 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   profile.go_on_with(Profile::kRest);
   solve_rows(scene, settings, work, state, report);
   profile.go_on_with(Profile::kRemember);
-  const RowSums rows = settle_rows(scene.blocks, work, state);
+  const RowSums rows = settle_rows(scene, work, state);
   remember(scene, work, state);
   profile.go_on_with(Profile::kLedger);
   tally(scene, scheme, rows, work, state, report);

@@ -33,6 +33,11 @@ std::string row_name(const Scene& scene, const State& state, const StepWork& wor
     case Family::kFace:
       break;
     case Family::kContact: {
+      if (scene.by_patches()) {
+        const Patch& c = state.patches[owner.at() / 2];
+        return fmt::format("{} {} side {} on {} side {}", kind, name(c.block_a), c.side_a, name(c.block_b),
+                           c.side_b);
+      }
       const ContactKey& k = state.contacts[owner.at()].key;
       return fmt::format("{} {} corner {} on {} edge {}", kind, name(k.block_a), k.vertex, name(k.block_b),
                          k.edge);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/contact/contact_rows.h"
+#include "talus/contact/patch_rows.h"
 #include "talus/rows/profile.h"
 #include "talus/solve/solvers.h"
 #include "talus/step/energy.h"
@@ -60,10 +60,11 @@ struct StepWork {
   Workers workers;
   Profile profile;
   SolverSet solvers;
+  PatchSearch patches;
   StepClock clock;                   // of this step
   std::vector<Mobility> mobility;    // of this step
   double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
-  std::vector<ContactPlace> places;  // of state.contacts
+  std::vector<ContactPlace> places;  // of the rows of contacts
   RowSet rows;                       // of all families
   std::vector<BlockRate> rate_before;
   std::vector<BlockRate> rate_expected;  // of a step from rest: those of the one before

@@ -59,10 +59,9 @@ void check_said(const std::function<void(Bricks&)>& harm, const std::string& pie
 
 TEST_CASE("validate: a step keeps every promise") {
   const Bricks bricks;
-  REQUIRE(bricks.state.contacts.size() >= 4);
+  REQUIRE(bricks.state.patches.size() >= 2);
   REQUIRE(bricks.state.pairs.size() == 3);
-  REQUIRE(bricks.state.contacts[0].partner >= 0);
-  REQUIRE(bricks.work.rows.size() == bricks.state.contacts.size());
+  REQUIRE(bricks.work.rows.size() == 2 * bricks.state.patches.size());
   CHECK(said([](Bricks&) {}) == "");
   // motions that are not finite are told by the run, with time and block
   CHECK(said([](Bricks& b) {
@@ -95,14 +94,13 @@ TEST_CASE("validate: states") {
   check_said([](Bricks& b) { b.state.pairs[0].face = 0; }, "have face 0 of 0");
   check_said([](Bricks& b) { b.state.pairs[0].covers = 1, b.state.pairs[0].cover[0].block = 3; },
              "block 3 of 3 covers a side");
-  check_said([](Bricks& b) { b.state.contacts.emplace_back(); }, "the list of contacts has");
-  check_said([](Bricks& b) { b.state.contacts[0].key.block_a = 2; }, "is listed with those of 0 and 1");
-  check_said([](Bricks& b) { b.state.contacts[0].key.vertex = 4; }, "has no corner 4");
-  check_said([](Bricks& b) { b.state.contacts[0].key.edge = -1; }, "has no edge -1");
-  check_said([](Bricks& b) { b.state.contacts[0].partner = 0; }, "has partner 0 of");
-  check_said(
-      [](Bricks& b) { b.state.contacts[static_cast<size_t>(b.state.contacts[0].partner)].partner = -1; },
-      "is no partner of its partner");
+  check_said([](Bricks& b) { b.state.contacts.emplace_back(); }, "has contacts and patches");
+  check_said([](Bricks& b) { b.state.patches.emplace_back(); }, "contacts of");
+  check_said([](Bricks& b) { b.state.patches[0].block_a = 2; }, "is listed with those of 0 and 1");
+  check_said([](Bricks& b) { b.state.patches[0].part_b = -1; }, "has no parts");
+  check_said([](Bricks& b) { b.state.patches[0].side_a = 4; }, "lies on sides 4 and");
+  check_said([](Bricks& b) { b.state.patches[0].joint = -2; }, "has joints -2");
+  check_said([](Bricks& b) { b.state.patches[0].length = 0; }, "has length 0");
   check_said([](Bricks& b) { b.state.candidates.neighbours.block[0] = 3; }, "neighbour 3 is no block");
   check_said([](Bricks& b) { b.state.candidates.skin.pop_back(); }, "skins has 2 entries, not 3");
   check_said([](Bricks& b) { b.state.column_rate.emplace_back(); }, "rates of columns");

@@ -28,7 +28,8 @@ Scene crossing() {
 int update(const Scene& scene, State& state) {
   const StepClock clock{1e-3};
   const LookAhead ahead{clock, state.rate};
-  renew_pairs(scene.blocks, scene.bonds, joint_laws(scene.model.joints), ahead, Workers(), state);
+  renew_pairs(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead, Workers(),
+              state);
   return update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead,
                          Workers(), state)
       .searched;

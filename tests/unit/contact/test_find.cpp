@@ -306,7 +306,8 @@ TEST_CASE("a corner over the edge of a turned and strained block") {
 }
 
 std::vector<std::pair<int, int>> renewed(const Scene& s, State& state) {
-  renew_pairs(s.blocks, s.bonds, joint_laws(s.model.joints), {StepClock{1e-3}, state.rate}, Workers(), state);
+  renew_pairs(s.blocks, s.bonds, s.layout, joint_laws(s.model.joints), {StepClock{1e-3}, state.rate},
+              Workers(), state);
   std::vector<std::pair<int, int>> pairs;
   for (const ContactPair& p : state.pairs) pairs.emplace_back(p.a, p.b);
   return pairs;

@@ -190,7 +190,7 @@ TEST_CASE("forged states: what would be found late is refused at once") {
     while (p < first.size() && !(first[p] > prop && (p == 0 || first[p - 1] < prop))) ++p;
     REQUIRE(p < first.size());
     for (const char* side : {"block_a", "block_b"}) {
-      std::vector<double>& block = a.numbers.at(std::string("state.contacts.") + side);
+      std::vector<double>& block = a.numbers.at(std::string("state.patches.") + side);
       for (auto c = static_cast<size_t>(begin[p]); c < static_cast<size_t>(begin[p] + count[p]); ++c)
         if (block[c] == first[p]) block[c] = prop;
     }

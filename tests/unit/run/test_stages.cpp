@@ -126,7 +126,7 @@ reset_displacements = true
 )",
                                 {}, [&](const Instant& i) {
                                   if (i.stage == 0) return;
-                                  contacts = std::max(contacts, i.state.contacts.size());
+                                  contacts = std::max(contacts, i.state.patches.size());
                                   const std::string vtu =
                                       blocks_vtu(i.scene.blocks, i.state, i.work.rate_before);
                                   if (i.last) drawn = vtu.find("NumberOfCells=\"2\"");

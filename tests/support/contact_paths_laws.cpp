@@ -1,4 +1,4 @@
-#include "support/contact_paths_corners.h"
+#include "support/contact_paths_laws.h"
 
 #include <algorithm>
 #include <utility>
@@ -6,13 +6,15 @@
 #include "support/block_scene.h"
 #include "talus/contact/contact_rows.h"
 #include "talus/contact/pairs.h"
+#include "talus/contact/patch_rows.h"
 
 namespace talus::test {
 
 namespace {
 
 constexpr double kStiffness = 1e9;  // normal and shear [Pa/m]
-constexpr StepClock kClock{.dt = 1e-3, .dt_kick = 1e-3};
+// what slides stays where its law has put it: the blocks go on by themselves
+constexpr StepClock kClock{.dt = 1e-3, .dt_kick = 1e-3, .alpha = 1};
 
 Scene path_scene(const ContactPath& path) {
   Model model = jointed_rock();
@@ -49,14 +51,17 @@ void solve_couple(int k, size_t first, RowSet& rows) {
   }
 }
 
-class CornerForces : public ContactForces {
+class LawForces : public ContactForces {
  public:
-  explicit CornerForces(const ContactPath& path)
-      : path_(&path), scene_(std::make_shared<const Scene>(path_scene(path))), state_(start_state(*scene_)) {
+  LawForces(const ContactPath& path, bool by_patches)
+      : by_patches_(by_patches),
+        path_(&path),
+        scene_(std::make_shared<const Scene>(path_scene(path))),
+        state_(start_state(*scene_)) {
     state_.step = 1;  // no stress of the ground
   }
 
-  std::unique_ptr<ContactForces> copy() const override { return std::make_unique<CornerForces>(*this); }
+  std::unique_ptr<ContactForces> copy() const override { return std::make_unique<LawForces>(*this); }
 
   PathForces at(double s, double ds) override {
     if (!begun_) {  // the overlaps of the start were not born there
@@ -69,14 +74,23 @@ class CornerForces : public ContactForces {
 
  private:
   PathForces find(double s, double ds) {
+    if (by_patches_ && rows_.size() > 0) go_on_to(s);
     put_blocks(s, ds);
     const LookAhead ahead{kClock, state_.rate};
-    renew_pairs(scene_->blocks, scene_->bonds, scene_->laws, ahead, Workers(), state_);
-    update_contacts(scene_->blocks, scene_->bonds, scene_->layout, scene_->laws, ahead, Workers(), state_);
+    const Scene& scene = *scene_;
+    renew_pairs(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, Workers(), state_);
     const std::vector<BlockRate> still(path_->blocks.size());
     rows_.restart();
-    add_contact_rows(scene_->blocks, scene_->model, scene_->laws, scene_->give, state_, still, kClock,
-                     Workers(), rows_, place_);
+    if (by_patches_) {
+      const PatchWorld world{scene.blocks, scene.outlines, scene.bonds,
+                             scene.layout, scene.model,    scene.laws};
+      PatchSearch().update(world, ahead, Workers(), state_);
+      add_patch_rows(world, scene.give, state_, still, kClock, Workers(), rows_, place_);
+    } else {
+      update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, Workers(), state_);
+      add_contact_rows(scene.blocks, scene.model, scene.laws, scene.give, state_, still, kClock, Workers(),
+                       rows_, place_);
+    }
     rows_.finish();
     for (size_t i = 0; i < rows_.size(); ++i) {
       const int partner = rows_.points[i].partner;
@@ -84,7 +98,8 @@ class CornerForces : public ContactForces {
       solve_couple(0, i, rows_), solve_couple(1, i, rows_);
     }
     const PathForces forces = summed();
-    remember_contacts(rows_, rows_.range(Family::kContact), place_, kClock, state_);
+    last_ = s;
+    if (!by_patches_) remember_contacts(rows_, rows_.range(Family::kContact), place_, kClock, state_);
     return forces;
   }
 
@@ -99,6 +114,17 @@ class CornerForces : public ContactForces {
       state_.rate[i] = {per * (after[i].displacement - before[i].displacement),
                         spin_matrix(per * (after[i].turn - before[i].turn))};
     }
+  }
+
+  // What patches remember goes along with the blocks, turns and all, from the last place to this one.
+  void go_on_to(double s) {
+    const std::vector<PathPose> from = path_->pose(last_), to = path_->pose(s);
+    const double per = 1 / kClock.dt;
+    for (size_t i = 0; i < to.size(); ++i)
+      state_.rate[i] = {per * (to[i].displacement - from[i].displacement),
+                        per * rotation_minus_identity(to[i].turn - from[i].turn)};
+    const std::vector<BlockRate> still(path_->blocks.size());
+    remember_patches(rows_, rows_.range(Family::kContact), place_, still, kClock, state_);
   }
 
   PathForces summed() const {
@@ -125,18 +151,24 @@ class CornerForces : public ContactForces {
     sum.force += force, sum.moment += cross(arm, force) / path_->size;
   }
 
+  bool by_patches_;
   const ContactPath* path_;
   std::shared_ptr<const Scene> scene_;
   State state_;
   RowSet rows_;
   std::vector<ContactPlace> place_;
+  double last_ = 0;  // where it was asked last
   bool begun_ = false;
 };
 
 }  // namespace
 
 std::unique_ptr<ContactForces> corner_forces(const ContactPath& path) {
-  return std::make_unique<CornerForces>(path);
+  return std::make_unique<LawForces>(path, false);
+}
+
+std::unique_ptr<ContactForces> patch_forces(const ContactPath& path) {
+  return std::make_unique<LawForces>(path, true);
 }
 
 }  // namespace talus::test

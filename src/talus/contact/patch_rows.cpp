@@ -1,0 +1,246 @@
+#include "talus/contact/patch_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "talus/base/error.h"
+#include "talus/contact/joint_state.h"
+
+namespace talus {
+
+namespace {
+
+// Overlaps below this share of the thinner block are not measured against it.
+constexpr double kDeepNoticed = 0.01;
+
+// Pairs to a chunk.
+constexpr size_t kPatchRowGrain = 256;
+
+// A hard contact that faces the other block over less than this share of the smaller one is a corner against a
+// corner: it gives the more, the shorter that is (theory 4.22).
+constexpr double kFullFace = 1e-4;
+
+// What an overlap that a hard contact was born with loses in a step: a thousandth of it, at most this share of the
+// smaller block. Pushed out at once it would leave with the speed of overlap over time step.
+constexpr double kPatchPushedOut = 1e-3, kPatchMostPushedOut = 1e-7;
+
+// What is left of it and forgotten, as share of the smaller block.
+constexpr double kPatchLeastAllowed = 1e-12;
+
+double hard_gap_bias(double gap, double slop, double dt) {
+  if (gap >= 0) return gap / dt;
+  return std::min(gap + 0.5 * slop, 0.0) / dt;
+}
+
+// What of a distance lies beyond half the slop (theory 4.10).
+double beyond_slop(double off, double slop) {
+  if (std::abs(off) <= 0.5 * slop) return 0;
+  return off > 0 ? off - 0.5 * slop : off + 0.5 * slop;
+}
+
+class PatchRows {
+ public:
+  PatchRows(const PatchWorld& world, const ContactGive& give, const State& state,
+            const std::vector<BlockRate>& before, const StepClock& clock, size_t first, RowSet& rows,
+            std::vector<ContactPlace>& place)
+      : w_(world),
+        state_(state),
+        before_(before),
+        clock_(clock),
+        give_(give.per_force(world.blocks.thickness) / (clock.dt * clock.dt_kick)),
+        least_give_(give.shortest_step > 0
+                        ? give.shortest_step * give.shortest_step / (clock.dt * clock.dt_kick) / kLeastYield
+                        : clock.dt / clock.dt_kick / kLeastYield),
+        first_(first),
+        rows_(rows),
+        place_(place) {
+    const std::vector<double>& thin = world.blocks.thinness;
+    if (!thin.empty()) thinnest_ = *std::min_element(thin.begin(), thin.end());
+  }
+
+  void add(const ContactPair& pair) const {
+    for (int k = 0; k < pair.count; ++k) {
+      const auto i = static_cast<size_t>(pair.begin + k);
+      std::array<std::array<double, 2>, 2> u{};
+      for (const size_t end : {0U, 1U}) write(pair, i, end, u[end]);
+      const size_t r = first_ + 2 * i;
+      PointRows &one = rows_.points[r], &two = rows_.points[r + 1];
+      if (one.partner >= 0) {
+        guess_compliant({&one, &two}, u, {&rows_.impulse[r], &rows_.impulse[r + 1]});
+      } else {
+        guess_compliant({&one, &one}, {u[0], u[0]}, {&rows_.impulse[r], &rows_.impulse[r]});
+        guess_compliant({&two, &two}, {u[1], u[1]}, {&rows_.impulse[r + 1], &rows_.impulse[r + 1]});
+      }
+    }
+  }
+
+ private:
+  double size_of(const ContactPair& pair) const {
+    return std::min(w_.blocks.size[static_cast<size_t>(pair.a)], w_.blocks.size[static_cast<size_t>(pair.b)]);
+  }
+
+  void write(const ContactPair& pair, size_t i, size_t end, std::array<double, 2>& u) const {
+    const Patch& c = state_.patches[i];
+    const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
+    const JointLaw& law = c.joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.joint)];
+    const size_t r = first_ + 2 * i + end;
+    PointRows& p = rows_.points[r];
+    p = kFreshRows;
+    p.block_a = c.block_a, p.block_b = c.block_b, p.normal = c.normal;
+    p.arm_a = acting_arm(w_.blocks, state_, a, c.arm_a[end]);
+    p.arm_b = acting_arm(w_.blocks, state_, b, c.arm_b[end]);
+    const double half_area = 0.5 * c.length * w_.blocks.thickness;
+    const JointStrength bears = strength_of(c, w_.laws, end);
+    p.friction = bears.friction, p.lower = 0, p.cohesion = 0;
+    const double size = size_of(pair), slop = w_.model.contact.slop * size;
+    place_[2 * i + end] = {c.gap[end], c.stretch[end], size, closed_part(c, end)};
+    // what a broken face keeps while it is in touch
+    if (was_face(pair, c) && -c.closure[end] <= noticeable(w_.blocks, a, b))
+      bound(bears.over(half_area * clock_.dt_kick), p);
+    const bool soft = law.is_soft(0), springs = law.is_soft(), gives = give_ > 0 && !(soft && law.is_soft(1));
+    const double gap = soft ? -c.closure[end] : c.allowed[end] - c.closure[end];
+    p.row[0].bias = soft || gives ? gap / clock_.dt : hard_gap_bias(gap, slop, clock_.dt);
+    p.row[1].bias =
+        (law.is_soft(1) || gives ? c.stretch[end] : beyond_slop(c.stretch[end], slop)) / clock_.dt;
+    bool rebounds = false;
+    u = relative_velocity(p, before_);
+    if (law.restitution() >= 0 && gap + clock_.dt * u[0] <= 0 && u[0] < 0) {
+      rebounds = true;
+      p.row[0].bias = std::min(p.row[0].bias, law.restitution() * u[0]);
+    }
+    if (gives) {
+      p.gives = {!soft && !rebounds, !law.is_soft(1)};
+      const double corner = std::max(1.0, kFullFace * size / c.length);
+      for (size_t row = 0; row < 2; ++row)
+        if (p.gives[row]) p.row[row].compliance = corner * std::min(give_, least_give_ * yield(pair));
+    }
+    if (springs) {
+      p.partner = static_cast<int>(end == 0 ? r + 1 : r - 1);
+      add_mixed_compliance(c, law, half_area, u, p);
+    }
+    rows_.impulse[r] = {c.force[end][0] * clock_.dt_kick, c.force[end][1] * clock_.dt_kick};
+    rows_.owner[r] = {Family::kContact, static_cast<int>(2 * i + end)};
+  }
+
+  // The two ends share the compliance 2/(k b t) [[2, -1], [-1, 2]] (eq. 3.4); where two joints meet, k is mixed.
+  void add_mixed_compliance(const Patch& c, const JointLaw& law, double half_area,
+                            const std::array<double, 2>& u, PointRows& p) const {
+    if (c.other_share == 0) return add_compliance(law, half_area, true, clock_, u, p);
+    const JointLaw& other = c.other_joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.other_joint)];
+    const double k = clock_.position_factor();
+    for (int i = 0; i < 2; ++i) {
+      if (!law.is_soft(i)) continue;
+      const double second = other.is_soft(i) ? other.stiffness(i, half_area) : law.stiffness(i, half_area);
+      const double mixed = (1 - c.other_share) * law.stiffness(i, half_area) + c.other_share * second;
+      p.row[i].compliance = 2 * k / (mixed * clock_.dt * clock_.dt_kick);
+      p.row[i].bias = k * p.row[i].bias - clock_.old_share() * u[static_cast<size_t>(i)];
+    }
+  }
+
+  // Whether a face that has broken lay on the sides of a patch.
+  bool was_face(const ContactPair& pair, const Patch& c) const {
+    if (pair.face < 0) return false;
+    const std::vector<BondFace>& faces = w_.bonds.faces;
+    for (auto f = static_cast<size_t>(pair.face); f < faces.size(); ++f) {
+      if (faces[f].block_a != pair.a || faces[f].block_b != pair.b) break;
+      if (state_.face[f].broken && faces[f].edge_a == c.side_a && faces[f].edge_b == c.side_b) return true;
+    }
+    return false;
+  }
+
+  // About what two blocks yield at a corner, together [1/kg].
+  double yield(const ContactPair& pair) const {
+    double sum = 0;
+    for (const int block : {pair.a, pair.b})
+      if (w_.blocks.moves_freely(block)) sum += kYield / w_.blocks.mass[static_cast<size_t>(block)];
+    return sum;
+  }
+
+  // Overlap as share of the mean thickness, along the normal, of the thinner block.
+  double closed_part(const Patch& c, size_t end) const {
+    double share = 0;
+    if (-c.gap[end] <= kDeepNoticed * thinnest_) return share;
+    for (const int block : {c.block_a, c.block_b})
+      if (-c.gap[end] > kDeepNoticed * w_.blocks.thinness[static_cast<size_t>(block)])
+        share = std::max(share, -c.gap[end] / thickness_along(block, c.normal));
+    return share;
+  }
+
+  // Mean thickness of a block: its area over its extent across `normal` [m].
+  double thickness_along(int block, Vec2 normal) const {
+    const auto k = static_cast<size_t>(block);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int v = 0; v < w_.blocks.vertex_count(block); ++v) {
+      const Vec2 X = w_.blocks.corner({block, v});
+      const double at = cross(normal, X + state_.strain_part[k] * X);
+      least = std::min(least, at), most = std::max(most, at);
+    }
+    return w_.blocks.size[k] * w_.blocks.size[k] / (most - least);
+  }
+
+  const PatchWorld& w_;
+  const State& state_;
+  const std::vector<BlockRate>& before_;
+  const StepClock& clock_;
+  const double give_;        // compliance of hard contacts [1/kg]
+  const double least_give_;  // which need not be larger than this share of what their blocks yield
+  const size_t first_;
+  RowSet& rows_;
+  std::vector<ContactPlace>& place_;
+  const JointLaw none_;  // of contacts without a joint
+  double thinnest_ = 0;  // least thinness of a block [m]
+};
+
+}  // namespace
+
+void add_patch_rows(const PatchWorld& world, const ContactGive& give, const State& state,
+                    const std::vector<BlockRate>& before, const StepClock& clock, const Workers& workers,
+                    RowSet& rows, std::vector<ContactPlace>& place) {
+  const size_t count = 2 * state.patches.size(), first = rows.add_more(Family::kContact, count);
+  resize_sparingly(place, count);
+  const PatchRows patch_rows(world, give, state, before, clock, first, rows, place);
+  workers.for_chunks(state.pairs.size(), kPatchRowGrain, [&](size_t begin, size_t end) {
+    for (size_t q = begin; q < end; ++q) patch_rows.add(state.pairs[q]);
+  });
+}
+
+// Eq. 4.7.
+void remember_patches(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
+                      const std::vector<BlockRate>& before, const StepClock& clock, State& state) {
+  const RowRange all = rows.range(Family::kContact);
+  TALUS_ASSERT(all.size() == 2 * state.patches.size() && place.size() == all.size());
+  for (size_t r = range.begin; r < range.end; ++r) {
+    const PointRows& p = rows.points[r];
+    const Impulse& impulse = rows.impulse[r];
+    const size_t end = (r - all.begin) % 2;
+    const ContactPlace& at = place[r - all.begin];
+    Patch& c = state.patches[(r - all.begin) / 2];
+    const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
+    const double u = relative_velocity(p, state.rate)[1];
+    if (slid) {
+      // the law holds at a place between the two ends of the step; what is left of the step goes on from there
+      const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
+      const double until = p.is_soft(1) ? clock.dt / clock.position_factor() *
+                                              (u - clock.old_share() * relative_velocity(p, before)[1])
+                                        : clock.dt * u;
+      if (held) {
+        const double gone = c.stretch[end] + until - elastic;
+        c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
+      }
+      c.stretch[end] = held ? elastic + clock.dt * u - until : 0;
+    } else {
+      c.stretch[end] += clock.dt * u;
+    }
+    c.touched = c.touched || held;
+    c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
+    double& allowed = c.allowed[end];
+    if (allowed > 0) {
+      allowed = std::min(allowed, c.closure[end]);
+      allowed -= std::min(kPatchPushedOut * allowed, kPatchMostPushedOut * at.size);
+      if (!(allowed > kPatchLeastAllowed * at.size)) allowed = 0;
+    }
+  }
+}
+
+}  // namespace talus

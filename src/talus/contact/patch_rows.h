@@ -1,0 +1,25 @@
+#pragma once
+// Patches and their joint law as rows, two to a patch, and what they carry to the next step.
+// Theory: docs/theory.md 3.8, 4.6, 4.22.
+
+#include "talus/contact/compliance.h"
+#include "talus/contact/contact_rows.h"
+#include "talus/contact/patches.h"
+
+namespace talus {
+
+/// Rows of state.patches, appended: the ends of the chord of each, normal row and friction; compliant where the
+/// joint has stiffness, the two ends coupled as those of a closure that is linear along the chord (eq. 3.4).
+/// @param before  rates half a step ago
+/// @param place   gets gap and closed share of each end [2 n_patches]
+void add_patch_rows(const PatchWorld& world, const ContactGive& give, const State& state,
+                    const std::vector<BlockRate>& before, const StepClock& clock, const Workers& workers,
+                    RowSet& rows, std::vector<ContactPlace>& place);
+
+/// Stores forces, elastic slip at the end of the step and slip of the patches of some rows in the state.
+/// @param before  rates half a step ago
+/// @pre  state.rate are the rates after the kick
+void remember_patches(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
+                      const std::vector<BlockRate>& before, const StepClock& clock, State& state);
+
+}  // namespace talus

@@ -1,0 +1,514 @@
+#include "talus/contact/patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "talus/base/error.h"
+#include "talus/blocks/in_situ.h"
+
+namespace talus {
+
+namespace {
+
+// Pairs to a chunk.
+constexpr size_t kPatchGrain = 256;
+
+// Gaps up to this share of the smaller block are looked at: what is further apart has no force, and costs its row.
+constexpr double kMargin = 0.02;
+
+// What a contact without stiffness stands on is no corner against a corner: the two face each other over more
+// than what contacts give (theory 4.22), ten times.
+constexpr double kLeastFace = 10 * kGiveClosure;
+
+// What coordinates are rounded to, a hundred times.
+constexpr double kRounding = 1e-14;
+
+// Of a side: less of it is no shared face, as where blocks that meet at a crossing are moved out.
+constexpr double kHair = 1e-9;
+
+// Of the smaller block: a contact keeps the way along which it keeps two blocks apart unless another one is better by
+// more, ten times what contacts give.
+constexpr double kSticks = 10 * kGiveClosure;
+
+// Sine of the angle between a side and one that is no part of it.
+constexpr double kTurns = 1e-4;
+
+// The fields of two normals are one field while these turn by less than 60 deg.
+constexpr double kSameWay = 0.5;
+
+}  // namespace
+
+// One pair of blocks on its way to patches.
+class PairSearch {
+ public:
+  PairSearch(const PatchWorld& world, const LookAhead& ahead, const PatchSearch& search, const State& state)
+      : w_(world), ahead_(ahead), search_(search), state_(state) {}
+
+  // The patches of a pair, in the order of their parts; returns how far ahead they were sought [m].
+  double look(const ContactPair& pair, std::vector<Patch>& out) {
+    out.clear();
+    pair_ = &pair;
+    const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+    shift_ =
+        (w_.blocks.centroid[b] - w_.blocks.centroid[a]) + (state_.displacement[b] - state_.displacement[a]);
+    known_ = {state_.patches.data() + pair.begin, static_cast<size_t>(pair.count)};
+    size_ = std::min(w_.blocks.size[a], w_.blocks.size[b]);
+    approach_ = ahead_.clock.dt * approach_speed(a, b);
+    highest_ = 0;
+    for (const Patch& p : known_) highest_ = std::max({highest_, rise(p, 0), rise(p, 1)});
+    rounding_ = kRounding * (norm(shift_) + w_.blocks.radius[a] + w_.blocks.radius[b]);
+    margin_ = std::max(kMargin * size_, 2 * approach_ + 2 * highest_);
+    const Outlines& o = w_.outlines;
+    for (int p = o.part_begin[a]; p < o.part_begin[a + 1]; ++p)
+      for (int q = o.part_begin[b]; q < o.part_begin[b + 1]; ++q) look_at_parts(p, q, out);
+    return margin_;
+  }
+
+ private:
+  double approach_speed(size_t a, size_t b) const {
+    const std::vector<BlockRate>& rate = ahead_.before;
+    const auto turning = [&](size_t k) {
+      return std::sqrt(contract(rate[k].G, rate[k].G)) * w_.blocks.radius[k];
+    };
+    return norm(rate[a].a - rate[b].a) + turning(a) + turning(b);
+  }
+
+  PartMotion motion(int block) const {
+    const auto k = static_cast<size_t>(block);
+    const BlockRate& v = ahead_.before[k];
+    const bool deforms = w_.blocks.kind[k] == BlockKind::kDeformable;  // G acts on the reference arm
+    return {ahead_.clock.dt * v.a,
+            ahead_.clock.dt * (deforms ? v.G * inverse(kIdentity + state_.strain_part[k]) : v.G)};
+  }
+
+  double rise(const Patch& p, size_t end) const {
+    return p.joint < 0 ? 0 : w_.laws[static_cast<size_t>(p.joint)].rise(p.slip[end]);
+  }
+
+  PartNow part_now(int part, int block, int other, std::vector<SideRole>& roles) const {
+    const Outlines& o = w_.outlines;
+    const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
+               n = static_cast<size_t>(o.corners_of(part));
+    roles.clear();
+    for (size_t k = 0; k < n; ++k) {
+      const PartSide& side = o.side[begin + k];
+      if (side.edge >= 0 && side.face < 0) continue;
+      if (side.edge >= 0 && state_.face[static_cast<size_t>(side.face)].broken) continue;
+      roles.resize(n, SideRole::kOut);
+      roles[k] = side.edge < 0 ? SideRole::kCut : role_of_face(side.face, block, other);
+    }
+    return {{search_.corner_.data() + begin, n}, {search_.along_.data() + begin, n}, roles};
+  }
+
+  SideRole role_of_face(int face, int block, int other) const {
+    const BondFace& f = w_.bonds.faces[static_cast<size_t>(face)];
+    if (!w_.blocks.interact(f.block_a, f.block_b)) return SideRole::kOut;
+    return (f.block_a == block ? f.block_b : f.block_a) == other ? SideRole::kTiedHere : SideRole::kTied;
+  }
+
+  // Whether a side of a part goes on in line with the next or the one before.
+  bool goes_on(int part, const PartNow& now, size_t k) const {
+    const auto begin = static_cast<size_t>(w_.outlines.corner_begin[static_cast<size_t>(part)]);
+    const auto in_line = [&](size_t other) {
+      return w_.outlines.side[begin + other].edge >= 0 &&
+             std::abs(cross(now.along[k], now.along[other])) <= kTurns;
+    };
+    return in_line((k + 1) % now.size()) || in_line((k + now.size() - 1) % now.size());
+  }
+
+  // Whether a bond ties a whole side of one part to the other part: convex parts share no more than that.
+  bool tied_along_side(int p, const PartNow& a, int q, const PartNow& b) const {
+    const Outlines& o = w_.outlines;
+    const auto face = [&](int part, size_t k) {
+      return o.side[static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]) + k].face;
+    };
+    for (size_t k = 0; k < a.role.size(); ++k)
+      for (size_t m = 0; m < b.role.size(); ++m)
+        if (a.role[k] == SideRole::kTiedHere && b.role[m] == SideRole::kTiedHere &&
+            face(p, k) == face(q, m) && (!goes_on(p, a, k) || !goes_on(q, b, m)))
+          return true;
+    return false;
+  }
+
+  void look_at_parts(int p, int q, std::vector<Patch>& out) {
+    const PartNow a = part_now(p, pair_->a, pair_->b, roles_a_),
+                  b = part_now(q, pair_->b, pair_->a, roles_b_);
+    if (tied_along_side(p, a, q, b)) return;
+    const Patch* before = nullptr;
+    for (const Patch& known : known_)
+      if (known.part_a == p && known.part_b == q) before = &known;
+    Vec2 shift = shift_;
+    double lifted = 0;  // both ends alike
+    if (before && highest_ > 0)
+      lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
+    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, motion(pair_->a), motion(pair_->b),
+                                        {before ? before->way : 0, kSticks * size_});
+    if (met.kind == PartsMet::kFar) return;
+    Patch patch;
+    patch.block_a = pair_->a, patch.block_b = pair_->b, patch.part_a = p, patch.part_b = q;
+    patch.way = met.way;
+    patch.overlaps = met.kind == PartsMet::kOverlap;
+    take_joint(met, p, q, patch);
+    const bool soft = patch.joint >= 0 && w_.laws[static_cast<size_t>(patch.joint)].is_soft(0);
+    if (soft && patch.overlaps) {
+      if (!meeting_.measure_overlap()) return;
+      patch.area = met.area;
+      mix_joints(met, p, q, patch);
+    } else {
+      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return;
+      if (!patch.overlaps && met.length() <= std::max(approach_, kLeastFace * size_)) return;
+    }
+    write_place(met, shift, patch);
+    for (size_t end = 0; end < 2; ++end)
+      patch.gap[end] = lifted + (soft ? ground_at(patch, end).x : 0) - met.closure[end];
+    remember(before, patch);
+    for (size_t end = 0; end < 2; ++end)
+      if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
+    if (soft)
+      measure(met, before, patch);
+    else if (!before || dot(before->normal, patch.normal) < kSameWay)
+      for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
+    out.push_back(patch);
+  }
+
+  int edge_of(int part, int side) const {
+    if (side < 0) return -1;
+    return w_.outlines.side[static_cast<size_t>(w_.outlines.corner_begin[static_cast<size_t>(part)] + side)]
+        .edge;
+  }
+
+  // Joint between an edge of a and one of b. Where a glued edge meets a third block, the joint of the other one.
+  int joint_between(int edge_a, int edge_b) const {
+    if (pair_->joint != ContactPair::kByEdges) return pair_->joint;
+    const Layout& l = w_.layout;
+    const auto glued = [&](int joint) { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].bonded(); };
+    int joint = l.joint_at({pair_->a, edge_a}, {pair_->b, edge_b});
+    if (glued(joint)) joint = l.joint_at({pair_->a, -1}, {pair_->b, edge_b});
+    return glued(joint) && l.default_joint >= 0 ? l.default_joint : joint;
+  }
+
+  void take_joint(const PartsMet& met, int p, int q, Patch& patch) const {
+    patch.side_a = edge_of(p, met.side_a), patch.side_b = edge_of(q, met.side_b);
+    patch.joint = joint_between(patch.side_a, patch.side_b);
+  }
+
+  // The joint of most of an overlap, and the next one with its share (theory 3.8).
+  void mix_joints(const PartsMet& met, int p, int q, Patch& patch) {
+    take_joint(met, p, q, patch);
+    if (pair_->joint != ContactPair::kByEdges) return;
+    shares_.clear();
+    double all = 0;
+    const auto add = [&](int joint, double area) {
+      all += area;
+      for (auto& [known, sum] : shares_)
+        if (known == joint) return void(sum += area);
+      shares_.emplace_back(joint, area);
+    };
+    for (const SideCell& c : met.cells_a) add(joint_between(edge_of(p, c.side), patch.side_b), c.area);
+    for (const SideCell& c : met.cells_b) add(joint_between(patch.side_a, edge_of(q, c.side)), c.area);
+    std::stable_sort(shares_.begin(), shares_.end(),
+                     [](const auto& x, const auto& y) { return x.second > y.second; });
+    patch.joint = shares_[0].first;
+    if (shares_.size() > 1) patch.other_joint = shares_[1].first, patch.other_share = shares_[1].second / all;
+  }
+
+  void write_place(const PartsMet& met, Vec2 shift, Patch& patch) const {
+    const auto a = static_cast<size_t>(patch.block_a), b = static_cast<size_t>(patch.block_b);
+    patch.normal = met.normal, patch.length = met.length();
+    patch.closure = {met.closure[0], met.closure[1]};
+    const Mat2 back_a = inverse(kIdentity + state_.strain_part[a]),
+               back_b = inverse(kIdentity + state_.strain_part[b]);
+    const std::array<Vec2, 2> x{met.begin, met.end};
+    for (size_t end = 0; end < 2; ++end)
+      patch.arm_a[end] = back_a * x[end],
+      patch.arm_b[end] = back_b * (x[end] - met.across[end] * met.normal - shift);
+  }
+
+  // How far the two blocks have slid past each other at a known chord since then: its ends are somewhere between.
+  Vec2 slid(const Patch& p) const {
+    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    const Vec2 in_a = p.arm_a[0] + state_.strain_part[a] * p.arm_a[0],
+               in_b = p.arm_b[0] + state_.strain_part[b] * p.arm_b[0] + shift_;
+    return in_a - in_b;
+  }
+
+  // Where an end of a known chord lies now: half way between where the two blocks have carried it.
+  Vec2 place_of(const Patch& p, size_t end) const {
+    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    const Vec2 in_a = p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
+               in_b = p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_;
+    return 0.5 * (in_a + in_b);
+  }
+
+  // The field of elastic slip on a new chord as it is added up: moments over the chord, and which span of it has
+  // its own already, as shares of its length.
+  struct Field {
+    double m0 = 0, m1 = 0;
+    double from = 0, to = 0;
+
+    // A piece [u, v] of a linear field that is e0 at s0 and e1 at s1.
+    void add(double u, double v, double s0, double s1, const std::array<double, 2>& e) {
+      if (!(v > u)) return;
+      const double slope = (e[1] - e[0]) / (s1 - s0), eu = e[0] + (u - s0) * slope,
+                   ev = e[0] + (v - s0) * slope;
+      m0 += (v - u) * 0.5 * (eu + ev), m1 += (v - u) * (u * (2 * eu + ev) + v * (eu + 2 * ev)) / 6;
+    }
+    // All of it within the chord that no field before it has.
+    void take(double s0, double s1, double reach, const std::array<double, 2>& e) {
+      const double u = std::max(s0 - reach, 0.0), v = std::min(s1 + reach, 1.0);
+      if (!(v > u)) return;
+      if (!(to > from)) return from = u, to = v, add(u, v, s0, s1, e);
+      add(u, std::min(v, from), s0, s1, e), add(std::max(u, to), v, s0, s1, e);
+      from = std::min(from, u), to = std::max(to, v);
+    }
+    std::array<double, 2> ends() const { return {4 * m0 - 6 * m1, 6 * m1 - 2 * m0}; }
+  };
+
+  // What the patches before remember at the place of this one: its own parts' first, then what others on the same
+  // sides say of places that these have not (theory 3.7).
+  void remember(const Patch* own, Patch& patch) const {
+    const auto a = static_cast<size_t>(patch.block_a);
+    const Vec2 t = turn_right(patch.normal);
+    const Vec2 x0 = patch.arm_a[0] + state_.strain_part[a] * patch.arm_a[0];
+    Field field;
+    double nearest = -1;
+    const auto take = [&](const Patch& old) {
+      if (dot(old.normal, patch.normal) < kSameWay) return;
+      const double s0 = dot(t, place_of(old, 0) - x0) / patch.length,
+                   s1 = dot(t, place_of(old, 1) - x0) / patch.length;
+      patch.touched = patch.touched || old.touched;
+      if (const double common = std::min(s1, 1.0) - std::max(s0, 0.0); &old == own || common > nearest)
+        nearest = &old == own ? 1 : common, take_slip(old, s0, s1, patch);
+      field.take(s0, s1, std::abs(dot(t, slid(old))) / (2 * patch.length), old.stretch);
+    };
+    if (own) take(*own);
+    for (const Patch& old : known_)
+      if (&old != own && old.side_a == patch.side_a && old.side_b == patch.side_b) take(old);
+    if (pair_->face >= 0) take_from_faces(t, x0, nearest, field, patch);
+    patch.stretch = field.ends();
+    if (own) {
+      patch.force = own->force, patch.allowed = own->allowed, patch.root_kept = own->root_kept;
+    }
+    if (state_.step == 0) stretch_by_ground(patch);
+  }
+
+  // Slip is of all of a joint: beyond the ends of the old chord it is that of the end.
+  static void take_slip(const Patch& old, double s0, double s1, Patch& patch) {
+    for (size_t end = 0; end < 2; ++end) {
+      const double z = s1 > s0 ? std::clamp((static_cast<double>(end) - s0) / (s1 - s0), 0.0, 1.0) : 0;
+      patch.slip[end] = (1 - z) * old.slip[0] + z * old.slip[1];
+      patch.slip_signed[end] = (1 - z) * old.slip_signed[0] + z * old.slip_signed[1];
+    }
+  }
+
+  // A face on the same sides that broke in the step before hands over what it has slipped, and the shear of an elastic
+  // one, at the places that no patch before has had.
+  void take_from_faces(Vec2 t, Vec2 x0, double nearest, Field& field, Patch& patch) const {
+    for (auto f = static_cast<size_t>(pair_->face); f < w_.bonds.faces.size(); ++f) {
+      const BondFace& face = w_.bonds.faces[f];
+      if (face.block_a != pair_->a || face.block_b != pair_->b) break;
+      const FaceState& broken = state_.face[f];
+      if (!broken.broken || face.edge_a != patch.side_a || face.edge_b != patch.side_b) continue;
+      patch.touched = true;
+      if (broken.broken_step + 1 != state_.step) continue;
+      Patch as_patch = patch;
+      // along the tangent: from b's normal turned clockwise the face runs the other way
+      const bool forward = dot(t, place_on(face, 1) - place_on(face, 0)) > 0;
+      for (size_t end = 0; end < 2; ++end) {
+        const size_t from = forward ? end : 1 - end;
+        const double gone = face.elastic_shear ? broken.slip[from] : broken.offset[from];
+        as_patch.stretch[end] = face.elastic_shear ? broken.offset[from] : 0;
+        as_patch.slip[end] = std::abs(gone), as_patch.slip_signed[end] = gone;
+      }
+      const double s0 = dot(t, place_on(face, forward ? 0 : 1) - x0) / patch.length,
+                   s1 = dot(t, place_on(face, forward ? 1 : 0) - x0) / patch.length;
+      if (nearest <= 0) take_slip(as_patch, s0, s1, patch);
+      if (face.elastic_shear) field.take(s0, s1, 0, as_patch.stretch);
+    }
+  }
+  Vec2 place_on(const BondFace& face, int end) const {
+    return face.arm_a[end] + state_.strain_part[static_cast<size_t>(face.block_a)] * face.arm_a[end];
+  }
+
+  // What the stress of the ground has closed and slipped at an end, along normal and tangent (theory 1.7).
+  Vec2 ground_at(const Patch& patch, size_t end) const {
+    if (!w_.model.in_situ.given || patch.joint < 0 || !pair_->shares_face) return {};
+    const double height = w_.blocks.centroid[static_cast<size_t>(patch.block_b)].y + patch.arm_b[end].y;
+    const Vec2 closure = w_.laws[static_cast<size_t>(patch.joint)].closure(
+        in_situ_stress(w_.model.in_situ, w_.model.gravity, height), patch.normal);
+    return {-closure.x, closure.y};
+  }
+
+  // Elastic slip by the stress of the ground, at the start (theory 3.5).
+  void stretch_by_ground(Patch& patch) const {
+    patch.stretch = {ground_at(patch, 0).y, ground_at(patch, 1).y};
+  }
+
+  // Normal closure less what the patch keeps for good (theory 3.5).
+  void measure(const PartsMet& met, const Patch* before, Patch& patch) const {
+    patch.root = patch.overlaps ? std::sqrt(std::max(0.0, met.energy)) : 0;
+    if (!before && patch.overlaps && state_.step == 0 && w_.model.in_situ.given) keep_start(met, patch);
+    if (patch.root_kept == 0 || !patch.overlaps || !(patch.root > 0)) return;
+    const double share = 1 - patch.root_kept / patch.root;
+    for (double& c : patch.closure) c *= share;
+  }
+
+  // At the start a patch bears what the stress of the ground asks of the faces there, a crossing nothing.
+  void keep_start(const PartsMet& met, Patch& patch) const {
+    const double wanted = closed_by_ground(patch);
+    patch.root_kept = met.force > 0 ? patch.root * (1 - wanted / met.force) : 0;
+  }
+
+  // Where along an edge of block b the sides of a part lie that are of that edge of its block: a span that is
+  // empty, if there are none [m].
+  struct Span {
+    double from = std::numeric_limits<double>::infinity(), to = -std::numeric_limits<double>::infinity();
+  };
+  Span span_of(int part, int edge, Vec2 shift, Vec2 from, Vec2 along) const {
+    const Outlines& o = w_.outlines;
+    const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
+               n = static_cast<size_t>(o.corners_of(part));
+    Span out;
+    for (size_t k = 0; k < n; ++k)
+      if (o.side[begin + k].edge == edge)
+        for (const size_t c : {k, (k + 1) % n}) {
+          const double s = dot(along, o.corner[begin + c] + shift - from);
+          out.from = std::min(out.from, s), out.to = std::max(out.to, s);
+        }
+    return out;
+  }
+
+  // Integral of the closure by the stress of the ground over the face that two parts share in the reference
+  // shape [m2].
+  double closed_by_ground(const Patch& patch) const {
+    if (!pair_->shares_face || patch.side_a < 0 || patch.side_b < 0) return 0;
+    const auto a = static_cast<size_t>(patch.block_a), b = static_cast<size_t>(patch.block_b);
+    const BlockEdge edge{patch.block_b, patch.side_b};
+    const Vec2 from = w_.blocks.corner({edge.block, edge.edge}),
+               side = w_.blocks.corner(w_.blocks.end_of(edge)) - from;
+    const double length = norm(side);
+    const Vec2 along = side / length;
+    const Span of_a = span_of(patch.part_a, patch.side_a, w_.blocks.centroid[a] - w_.blocks.centroid[b], from,
+                              along),
+               of_b = span_of(patch.part_b, patch.side_b, {}, from, along);
+    const Vec2 apart = w_.blocks.centroid[a] - w_.blocks.centroid[b];
+    const BlockEdge other{patch.block_a, patch.side_a};
+    const double s0 = dot(along, w_.blocks.corner({other.block, other.edge}) + apart - from),
+                 s1 = dot(along, w_.blocks.corner(w_.blocks.end_of(other)) + apart - from);
+    const double low = std::max({0.0, of_a.from, of_b.from, std::min(s0, s1)}),
+                 high = std::min({length, of_a.to, of_b.to, std::max(s0, s1)});
+    // what the two sides share of a hair is none
+    if (!(high - low > kHair * length)) return 0;
+    const double height = w_.blocks.centroid[b].y + from.y + 0.5 * (low + high) * along.y;
+    const Mat2 stress = in_situ_stress(w_.model.in_situ, w_.model.gravity, height);
+    const JointLaw& law = w_.laws[static_cast<size_t>(patch.joint)];
+    return std::max(0.0, -(high - low) * law.closure(stress, turn_right(along)).x);
+  }
+
+  const PatchWorld& w_;
+  const LookAhead& ahead_;
+  const PatchSearch& search_;
+  const State& state_;
+  PartsMeeting meeting_;
+  const ContactPair* pair_ = nullptr;
+  Vec2 shift_;
+  std::span<const Patch> known_;
+  double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
+  std::vector<SideRole> roles_a_, roles_b_;
+  std::vector<std::pair<int, double>> shares_;
+};
+
+// Parts as they lie, from the centroid of their block.
+void PatchSearch::place_parts(const PatchWorld& world, const Workers& workers, const State& state) {
+  const Outlines& o = world.outlines;
+  corner_.resize(o.corner.size()), along_.resize(o.corner.size());
+  workers.for_chunks(static_cast<size_t>(world.blocks.count), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Mat2& h = state.strain_part[i];
+      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p) {
+        const auto first = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p)]),
+                   last = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p) + 1]);
+        for (size_t k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
+        for (size_t k = first; k < last; ++k) {
+          const Vec2 side = o.corner[k + 1 == last ? first : k + 1] - o.corner[k], now = side + h * side;
+          along_[k] = now / norm(now);
+        }
+      }
+    }
+  });
+}
+
+int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
+                        State& state) {
+  TALUS_ASSERT(world.outlines.part_begin.size() == static_cast<size_t>(world.blocks.count) + 1);
+  place_parts(world, workers, state);
+  const size_t n = state.pairs.size();
+  changed_.resize((n + kPatchGrain - 1) / kPatchGrain);
+  workers.for_chunks(n, kPatchGrain, [&](size_t begin, size_t end) {
+    Changed& changed = changed_[begin / kPatchGrain];
+    changed.pair.clear(), changed.patch.clear(), changed.met = 0;
+    PairSearch search(world, ahead, *this, state);
+    std::vector<Patch> found;
+    for (size_t i = begin; i < end; ++i) {
+      ContactPair& pair = state.pairs[i];
+      if (state.step == 0)
+        pair.shares_face =
+            pair.from_start && std::binary_search(world.outlines.closed.begin(), world.outlines.closed.end(),
+                                                  std::pair(pair.a, pair.b));
+      pair.margin = search.look(pair, found);
+      changed.met += !found.empty();
+      if (static_cast<int>(found.size()) == pair.count) {
+        std::copy(found.begin(), found.end(), state.patches.begin() + pair.begin);
+        continue;
+      }
+      changed.pair.emplace_back(i, static_cast<int>(found.size()));
+      changed.patch.insert(changed.patch.end(), found.begin(), found.end());
+    }
+  });
+  int met = 0;
+  bool any = false;
+  for (const Changed& c : changed_) met += c.met, any = any || !c.pair.empty();
+  if (any) put_together(state);
+  return met;
+}
+
+// Patches of all pairs one after the other again.
+void PatchSearch::put_together(State& state) {
+  std::vector<Patch> all;
+  all.reserve(state.patches.size() + state.patches.size() / 32);
+  for (size_t c = 0; c < changed_.size(); ++c) {
+    auto changed = changed_[c].pair.begin();
+    auto from = changed_[c].patch.begin();
+    for (size_t i = c * kPatchGrain; i < std::min(state.pairs.size(), (c + 1) * kPatchGrain); ++i) {
+      ContactPair& pair = state.pairs[i];
+      const auto begin = static_cast<int>(all.size());
+      if (changed != changed_[c].pair.end() && changed->first == i) {
+        all.insert(all.end(), from, from + changed->second);
+        from += changed->second, pair.count = changed->second, ++changed;
+      } else {
+        const auto old = state.patches.begin() + pair.begin;
+        all.insert(all.end(), old, old + pair.count);
+      }
+      pair.begin = begin;
+    }
+  }
+  state.patches = std::move(all);
+}
+
+JointStrength strength_of(const Patch& patch, const std::vector<JointLaw>& laws, size_t end) {
+  const auto one = [&](int joint) {
+    if (joint < 0) return JointStrength();
+    const JointLaw& law = laws[static_cast<size_t>(joint)];
+    return law.between(patch.block_a, patch.block_b, law.worn(patch.slip[end]));
+  };
+  JointStrength s = one(patch.joint);
+  if (patch.other_share == 0) return s;
+  const JointStrength other = one(patch.other_joint);
+  const double z = patch.other_share;
+  s.friction = (1 - z) * s.friction + z * other.friction;
+  s.cohesion = (1 - z) * s.cohesion + z * other.cohesion, s.tension = (1 - z) * s.tension + z * other.tension;
+  return s;
+}
+
+}  // namespace talus

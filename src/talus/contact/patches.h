@@ -1,0 +1,50 @@
+#pragma once
+// The patches of all close pairs of blocks, found anew in every step from how the blocks lie, and what each takes
+// over from those before: memory goes by place. Theory: docs/theory.md 3.3 to 3.8.
+
+#include "talus/base/parallel.h"
+#include "talus/contact/bonds.h"
+#include "talus/contact/contact_give.h"
+#include "talus/contact/outlines.h"
+#include "talus/contact/overlap.h"
+#include "talus/contact/pairs.h"
+
+namespace talus {
+
+/// What the search for patches is told.
+struct PatchWorld {
+  const BlockSet& blocks;
+  const Outlines& outlines;
+  const BondSet& bonds;
+  const Layout& layout;
+  const Model& model;
+  const std::vector<JointLaw>& laws;
+};
+
+/// Memory of the search from step to step; nothing of it matters to the result.
+class PatchSearch {
+ public:
+  /// Brings state.patches up to date with how the blocks lie (theory 3.2 to 3.8).
+  /// @pre  renew_pairs() has been called
+  /// @return  pairs whose parts overlap or are near enough to touch
+  int update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers, State& state);
+
+ private:
+  std::vector<Vec2> corner_, along_;  // of all parts as they lie, from each block's centroid
+  struct Changed {
+    std::vector<std::pair<size_t, int>> pair;  // and how many it has now
+    std::vector<Patch> patch;
+    int met = 0;
+  };
+  std::vector<Changed> changed_;
+
+  void place_parts(const PatchWorld& world, const Workers& workers, const State& state);
+  void put_together(State& state);
+  friend class PairSearch;
+};
+
+/// Law of the strength at an end of a patch: of its joint, mixed with the other one's where two meet.
+/// @param end  0 or 1
+JointStrength strength_of(const Patch& patch, const std::vector<JointLaw>& laws, size_t end);
+
+}  // namespace talus

@@ -113,13 +113,19 @@ int first_face(const BondSet& bonds, int a, int b) {
   return found ? static_cast<int>(it - bonds.faces.begin()) : -1;
 }
 
-// The joint of a pair where it is the same for all of its sides.
-int joint_of(const BlockSet& blocks, const Layout& layout, int a, int b) {
+// The joint of a pair where it is the same for all of its sides. Bonded ones go by edges: what meets a bonded edge from
+// elsewhere is not of it.
+int joint_of(const BlockSet& blocks, const Layout& layout, const std::vector<JointLaw>& laws, int a, int b) {
   const int given =
       layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
   if (given != Layout::kNoPair) return given;
-  const auto own = [&](int i) { return !layout.blocks[static_cast<size_t>(i)].edge_joint.empty(); };
-  return own(a) || own(b) ? ContactPair::kByEdges : layout.default_joint;
+  const std::vector<int>&of_a = layout.blocks[static_cast<size_t>(a)].edge_joint,
+        &of_b = layout.blocks[static_cast<size_t>(b)].edge_joint;
+  if (of_a.empty() && of_b.empty()) return layout.default_joint;
+  const int joint = of_a.empty() || of_b.empty() ? layout.default_joint : of_a[0];
+  const auto same = [&](int other) { return other == joint; };
+  const bool one = std::all_of(of_a.begin(), of_a.end(), same) && std::all_of(of_b.begin(), of_b.end(), same);
+  return one && !(joint >= 0 && laws[static_cast<size_t>(joint)].bonded()) ? joint : ContactPair::kByEdges;
 }
 
 bool held_by_faces(const BondSet& bonds, const State& state, const ContactPair& pair) {
@@ -545,7 +551,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
       pair.from_start = state.step == 0;
       pair.face = first_face(bonds, a, b);
       pair.shares_face = pair.from_start && pair.face >= 0;
-      pair.joint = joint_of(blocks, joints_of, a, b);
+      pair.joint = joint_of(blocks, joints_of, joints, a, b);
     }
     const int from = pair.begin;
     if (!state.patches.empty()) {

@@ -192,7 +192,11 @@ int Layout::joint_of_pair(int group_a, int group_b) const {
 int Layout::joint_at(BlockEdge at_a, BlockEdge at_b) const {
   const BlockShape &a = blocks[static_cast<size_t>(at_a.block)], &b = blocks[static_cast<size_t>(at_b.block)];
   const int pair = joint_of_pair(a.group, b.group);
-  if (pair != kNoPair) return pair;
+  return pair != kNoPair ? pair : joint_by_edges(at_a, at_b);
+}
+
+int Layout::joint_by_edges(BlockEdge at_a, BlockEdge at_b) const {
+  const BlockShape &a = blocks[static_cast<size_t>(at_a.block)], &b = blocks[static_cast<size_t>(at_b.block)];
   const auto own = [](const BlockShape& shape, int edge) { return edge >= 0 && !shape.edge_joint.empty(); };
   const bool has_a = own(a, at_a.edge), has_b = own(b, at_b.edge);
   if (has_a && (!has_b || at_a.block < at_b.block)) return a.edge_joint[static_cast<size_t>(at_a.edge)];

@@ -71,6 +71,9 @@ struct Layout {
   /// given for the pair goes first; then that of the edge, where two differ that of the lower block; then
   /// the default.
   int joint_at(BlockEdge a, BlockEdge b) const;
+
+  /// The same of blocks that have no joint as a pair of groups.
+  int joint_by_edges(BlockEdge a, BlockEdge b) const;
   /// Joint of a corner that touches an edge of another block but ends no face: that of the edge; where
   /// the edge is glued, to a third block, that of the joint that ends at the corner, or the default.
   int joint_at_corner(BlockCorner a, BlockEdge b) const;

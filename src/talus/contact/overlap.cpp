@@ -14,6 +14,13 @@ constexpr double kAll = std::numeric_limits<double>::infinity();
 // turn by more, the next one is reached by a turn that shows.
 constexpr double kInLine = 1e-4;
 
+// Sine of the angle within which a side of one part and one of the other lie on each other: which of the two is the way
+// makes no difference then, and the one of the step before is kept.
+constexpr double kOneFace = 0.1;
+
+// Chords this many roundings of coordinates short are none.
+constexpr double kSliver = 100;
+
 struct Moments {
   double area = 0;
   Vec2 first;  // integral of the place
@@ -84,28 +91,29 @@ void PartsMeeting::find_ways(double margin, double rounding) {
 }
 
 // Parts that are apart meet along the way along which they are furthest apart, or least in each other, at the end of
-// the step. Where that is one that they are in each other along now, as corners of level blocks are that slide past
-// each other, nothing keeps them apart: the overlap to come is the matter of the step after.
-void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, double rounding,
-                              WayBefore before) {
+// the step. Where that is one that they are level along now and stay so, as corners of level blocks do that slide past
+// each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
+void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
+  find_moves(false, motion_a, motion_b), find_moves(true, motion_b, motion_a);
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
-    const PartMotion &own = w.of_b ? motion_b : motion_a, &other = w.of_b ? motion_a : motion_b;
-    w.then = then_before(w, own, other);
+    w.then = then_before(w);
     if (!best || w.then > best->then) best = &w;
     if (w.number() == before.way) kept = &w;
   }
   const bool apart = met_.kind == PartsMet::kApart;
-  const auto stands = [&](const Way& w) { return !apart || w.gap >= -rounding; };
-  if (kept && stands(*kept) && kept->then >= best->then - before.by) best = kept;
-  if (!stands(*best)) met_.kind = PartsMet::kFar;
-  met_.at_corner = false;
-  for (const Way& w : ways_) {
-    double low = 0;
-    if (&w != best && w.then >= best->then - before.by &&
-        facing_along(part(w.of_b).along[w.side], low) <= before.by)
-      met_.at_corner = true;
+  const auto stands = [&](const Way& w) { return !apart || w.gap >= -rounding_; };
+  if (!stands(*best) && best->then < -before.by) {
+    best = nullptr;
+    for (const Way& w : ways_)
+      if (stands(w) && (!best || w.then > best->then)) best = &w;
   }
+  if (!stands(*best)) met_.kind = PartsMet::kFar;
+  const auto in_line = [&](const Way& w) {
+    return std::abs(cross(part(w.of_b).along[w.side], part(best->of_b).along[best->side])) <= kOneFace;
+  };
+  if (kept && stands(*kept) && kept->then >= best->then - before.by && (!apart || in_line(*kept)))
+    best = kept;
   met_.tied = part(best->of_b).role_of(best->side) != SideRole::kOut;
   const Vec2 out = turn_right(part(best->of_b).along[best->side]);
   met_.way = best->number();
@@ -114,15 +122,21 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(!best->of_b, best->corner, out));
 }
 
+// Where the corners of a part are going to be at the end of the step, as the other part sees them.
+void PartsMeeting::find_moves(bool of_b, const PartMotion& own, const PartMotion& other) {
+  std::vector<Vec2>& then = then_[of_b];
+  then.resize(part(of_b).size());
+  for (size_t k = 0; k < then.size(); ++k) {
+    const Vec2 x = part(of_b).corner[k], seen = of_b ? x + shift_ : x - shift_;  // from the other's origin
+    then[k] = seen + ((own.way + own.turn * x) - (other.way + other.turn * seen));
+  }
+}
+
 // How far the nearest corner of the other part is going to be before a side at the end of the step.
-double PartsMeeting::then_before(const Way& w, const PartMotion& own, const PartMotion& other) const {
+double PartsMeeting::then_before(const Way& w) const {
   const Vec2 out = turn_right(part(w.of_b).along[w.side]), from = part(w.of_b).corner[w.side];
   double least = kAll;
-  for (const Vec2 x : part(!w.of_b).corner) {
-    const Vec2 seen = w.of_b ? x - shift_ : x + shift_;  // from the origin of the side's part
-    const Vec2 moved = (other.way + other.turn * x) - (own.way + own.turn * seen);
-    least = std::min(least, dot(out, seen - from + moved));
-  }
+  for (const Vec2 x : then_[!w.of_b]) least = std::min(least, dot(out, x - from));
   return least;
 }
 
@@ -295,7 +309,8 @@ bool PartsMeeting::sum_up() {
   for (const Vec2 x : bearing_)
     low = std::min(low, dot(t, x - centre)), high = std::max(high, dot(t, x - centre));
   const double b = high - low, at = moment / met_.force - low, m = std::clamp(at, 0.0, b);
-  if (!(b > 0)) return false;
+  // what is left beside ties may be a sliver of rounding, which would be stiffer than all else
+  if (!(b > kSliver * rounding_)) return false;
   met_.beyond = at != m;
   met_.across[0] = met_.across[1] = 0;
   met_.begin = centre + low * t, met_.end = centre + high * t;
@@ -305,12 +320,10 @@ bool PartsMeeting::sum_up() {
 }
 
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
-                                   double rounding, const PartMotion& motion_a, const PartMotion& motion_b,
-                                   WayBefore before) {
-  a_ = a, b_ = b, shift_ = shift;
+                                   double rounding) {
+  a_ = a, b_ = b, shift_ = shift, rounding_ = rounding;
   least_.resize(b.size());
   find_ways(margin, rounding);
-  if (met_.kind != PartsMet::kFar) choose_way(motion_a, motion_b, rounding, before);
   return met_;
 }
 
@@ -330,21 +343,19 @@ bool PartsMeeting::measure_overlap() {
 
 // How far the surface of a part that faces the other reaches along the normal, at place s along the tangent.
 double PartsMeeting::surface(bool of_b, double s) const {
-  const PartNow& own = part(of_b);
+  const std::vector<Seen>& own = seen_[of_b];
   const double towards = of_b ? 1 : -1;
-  const Vec2 n = met_.normal, t = turn_right(n);
   double most = -kAll;
   for (size_t k = 0; k < own.size(); ++k) {
-    const Vec2 p = corner(of_b, k), q = corner(of_b, k + 1 == own.size() ? 0 : k + 1);
-    const double sp = dot(t, p), sq = dot(t, q);
-    if (s < std::min(sp, sq) - same_ || s > std::max(sp, sq) + same_) continue;
+    const Seen p = own[k], q = own[k + 1 == own.size() ? 0 : k + 1];
+    if (s < std::min(p.s, q.s) - same_ || s > std::max(p.s, q.s) + same_) continue;
     // a side along the normal is reached where it comes nearest
-    if (std::abs(sq - sp) <= same_) {
-      most = std::max({most, towards * dot(n, p), towards * dot(n, q)});
+    if (std::abs(q.s - p.s) <= same_) {
+      most = std::max({most, towards * p.n, towards * q.n});
       continue;
     }
-    const double share = std::clamp((s - sp) / (sq - sp), 0.0, 1.0);
-    most = std::max(most, towards * dot(n, p + share * (q - p)));
+    const double share = std::clamp((s - p.s) / (q.s - p.s), 0.0, 1.0);
+    most = std::max(most, towards * (p.n + share * (q.n - p.n)));
   }
   return towards * most;
 }
@@ -355,12 +366,17 @@ bool PartsMeeting::face_ends(double reach) {
   const double facing = facing_along(t, low), high = low + facing;
   if (!(low < high)) return false;
   same_ = 1e-12 * (high - low);
+  for (const bool of_b : {false, true}) {
+    seen_[of_b].clear();
+    for (size_t k = 0; k < part(of_b).size(); ++k)
+      seen_[of_b].push_back({dot(t, corner(of_b, k)), dot(n, corner(of_b, k))});
+  }
   gaps_.clear();
   const auto put = [&](double s) { gaps_.push_back({s, surface(false, s) - surface(true, s)}); };
   put(low), put(high);
   for (const bool of_b : {false, true})
-    for (size_t k = 0; k < part(of_b).size(); ++k)
-      if (const double s = dot(t, corner(of_b, k)); s > low && s < high) put(s);
+    for (const Seen& x : seen_[of_b])
+      if (x.s > low && x.s < high) put(x.s);
   std::sort(gaps_.begin(), gaps_.end(), [](const Gap& x, const Gap& y) { return x.s < y.s; });
   gaps_.erase(
       std::unique(gaps_.begin(), gaps_.end(), [&](const Gap& x, const Gap& y) { return y.s - x.s <= same_; }),

@@ -32,7 +32,8 @@ struct PartMotion {
   Mat2 turn;  // [-]
 };
 
-/// Of two parts that met before: PartsMet::way then, and by how much another way must be better to be taken [m].
+/// Of two parts that met before: PartsMet::way then, and how far apart or in each other two parts that are level may
+/// be [m]: by more another way out of an overlap must be better to be taken.
 struct WayBefore {
   int way = 0;
   double by = 0;
@@ -57,9 +58,8 @@ struct PartsMet {
   double across[2]{};   // how far b's surface lies from there, against the normal: of face ends [m]
   double closure[2]{};  // at begin and end, linear between, of this force and moment [m]; < 0: a gap
   int way = 0;          // the side whose normal that is: of b 1, 2 and so on, of a -1, -2
-  bool at_corner = false;  // along another way, as good, nothing of the two faces each other: two corners
-  bool tied = false;       // the nearest way out of an overlap is one that a tie closes
-  bool beyond = false;     // the force acts beyond an end of the chord, and is put there
+  bool tied = false;    // the nearest way out of an overlap is one that a tie closes
+  bool beyond = false;  // the force acts beyond an end of the chord, and is put there
   int side_a = -1, side_b = -1;            // the sides that have most of it
   std::vector<SideCell> cells_a, cells_b;  // of an overlap
   double length() const { return norm(end - begin); }
@@ -68,15 +68,19 @@ struct PartsMet {
 /// Sees how two convex parts lie to each other; keeps its memory from pair to pair.
 class PartsMeeting {
  public:
-  /// @param b       seen from its own origin
-  /// @param shift   of b's origin, seen from a's [m]
+  /// Tells whether two parts are far from each other, apart or in overlap; the other functions say the rest.
+  /// @param b         seen from its own origin
+  /// @param shift     of b's origin, seen from a's [m]
   /// @param margin    gaps up to this are told [m]
   /// @param rounding  overlaps up to this have no shape: the parts are apart, by less than nothing [m]
+  const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding);
+
+  /// Normal and sides by the way along which the two are furthest apart, or least in each other, at the end of the
+  /// step. What is apart and not along that way is kFar from now on.
   /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last
-  /// @note  tells kind, normal and sides; measure_overlap() or face_ends() say the rest
   /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
-  const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding,
-                       const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
+  /// @pre  look() found them apart or in overlap
+  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
 
   /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these. False: it
   /// has no way out but those that ties close, or pushes both ways alike.
@@ -86,7 +90,7 @@ class PartsMeeting {
   /// Chord and closures by the gaps along the normal: from where it is smallest to the end of the flatter side
   /// there, or to where it is larger by `reach`. Of a face its two ends, of a corner alone the corner and a
   /// place that bears nothing. False: nothing faces each other.
-  /// @pre  look() found them apart or in overlap
+  /// @pre  choose_way()
   bool face_ends(double reach);
 
   const PartsMet& met() const { return met_; }
@@ -114,9 +118,8 @@ class PartsMeeting {
   bool any_tied() const;
   void nested_cells();
   bool sum_up();
-  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, double rounding, WayBefore before);
-
-  double then_before(const Way& w, const PartMotion& own, const PartMotion& other) const;
+  void find_moves(bool of_b, const PartMotion& own, const PartMotion& other);
+  double then_before(const Way& w) const;
   double facing_along(Vec2 tangent, double& low) const;
   size_t facing_side(bool of_b, size_t corner, Vec2 direction) const;
   double surface(bool of_b, double s) const;
@@ -136,6 +139,12 @@ class PartsMeeting {
     double s, g;
   };
   std::vector<Gap> gaps_;
+  struct Seen {
+    double s, n;  // along the tangent and the normal [m]
+  };
+  std::vector<Seen> seen_[2];  // corners of a and b
+  std::vector<Vec2> then_[2];  // the same at the end of the step, seen from the other's origin
+  double rounding_ = 0;
   double same_ = 0;  // places along the tangent this near are one [m]
   PartsMet met_;
 };

@@ -43,12 +43,15 @@ constexpr double kSameWay = 0.5;
 class PairSearch {
  public:
   PairSearch(const PatchWorld& world, const LookAhead& ahead, const PatchSearch& search, const State& state)
-      : w_(world), ahead_(ahead), search_(search), state_(state) {}
+      : w_(world), ahead_(ahead), search_(search), state_(state) {
+    all_laws_elastic_ = is_elastic(w_.layout.default_joint);
+    for (const JointLaw& law : w_.laws) all_laws_elastic_ = all_laws_elastic_ && law.is_soft(0);
+  }
 
   // The patches of a pair, in the order of their parts; returns how far ahead they were sought [m].
   double look(const ContactPair& pair, std::vector<Patch>& out) {
     out.clear();
-    pair_ = &pair;
+    pair_ = &pair, elastic_ = all_elastic(pair);
     const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
     shift_ =
         (w_.blocks.centroid[b] - w_.blocks.centroid[a]) + (state_.displacement[b] - state_.displacement[a]);
@@ -66,6 +69,13 @@ class PairSearch {
   }
 
  private:
+  bool is_elastic(int joint) const { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].is_soft(0); }
+
+  // Whether all sides of the pair have joints that are elastic along the normal.
+  bool all_elastic(const ContactPair& pair) const {
+    return pair.joint == ContactPair::kByEdges ? all_laws_elastic_ : is_elastic(pair.joint);
+  }
+
   double approach_speed(size_t a, size_t b) const {
     const std::vector<BlockRate>& rate = ahead_.before;
     const auto turning = [&](size_t k) {
@@ -142,31 +152,33 @@ class PairSearch {
     double lifted = 0;  // both ends alike
     if (before && highest_ > 0)
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
-    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, motion(pair_->a), motion(pair_->b),
-                                        {before ? before->way : 0, kSticks * size_});
+    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_);
+    if (met.kind == PartsMet::kFar) return;
+    // an overlap of elastic joints has its normal and sides from its cells
+    if (met.kind == PartsMet::kApart || !elastic_)
+      meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kSticks * size_});
     if (met.kind == PartsMet::kFar) return;
     Patch patch;
     patch.block_a = pair_->a, patch.block_b = pair_->b, patch.part_a = p, patch.part_b = q;
     patch.way = met.way;
     patch.overlaps = met.kind == PartsMet::kOverlap;
-    take_joint(met, p, q, patch);
-    const bool soft = patch.joint >= 0 && w_.laws[static_cast<size_t>(patch.joint)].is_soft(0);
+    bool soft = elastic_;
+    if (!elastic_ || !patch.overlaps) take_joint(met, p, q, patch), soft = is_elastic(patch.joint);
     if (soft && patch.overlaps) {
       if (!meeting_.measure_overlap()) return;
-      patch.area = met.area;
+      patch.area = met.area, patch.way = 0;
       mix_joints(met, p, q, patch);
     } else {
-      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return;
-      if (!patch.overlaps && met.length() <= std::max(approach_, kLeastFace * size_)) return;
+      if (met.tied || !meeting_.face_ends(margin_)) return;
+      if (met.length() <= kLeastFace * size_) return;
     }
     write_place(met, shift, patch);
-    for (size_t end = 0; end < 2; ++end)
-      patch.gap[end] = lifted + (soft ? ground_at(patch, end).x : 0) - met.closure[end];
+    for (size_t end = 0; end < 2; ++end) patch.gap[end] = lifted - met.closure[end];
     remember(before, patch);
     for (size_t end = 0; end < 2; ++end)
       if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
     if (soft)
-      measure(met, before, patch);
+      measure(met, before, patch), from_ground(lifted, patch);
     else if (!before || dot(before->normal, patch.normal) < kSameWay)
       for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
     out.push_back(patch);
@@ -183,8 +195,8 @@ class PairSearch {
     if (pair_->joint != ContactPair::kByEdges) return pair_->joint;
     const Layout& l = w_.layout;
     const auto glued = [&](int joint) { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].bonded(); };
-    int joint = l.joint_at({pair_->a, edge_a}, {pair_->b, edge_b});
-    if (glued(joint)) joint = l.joint_at({pair_->a, -1}, {pair_->b, edge_b});
+    int joint = l.joint_by_edges({pair_->a, edge_a}, {pair_->b, edge_b});
+    if (glued(joint)) joint = l.joint_by_edges({pair_->a, -1}, {pair_->b, edge_b});
     return glued(joint) && l.default_joint >= 0 ? l.default_joint : joint;
   }
 
@@ -196,7 +208,7 @@ class PairSearch {
   // The joint of most of an overlap, and the next one with its share (theory 3.8).
   void mix_joints(const PartsMet& met, int p, int q, Patch& patch) {
     take_joint(met, p, q, patch);
-    if (pair_->joint != ContactPair::kByEdges) return;
+    if (pair_->joint != ContactPair::kByEdges || (met.cells_a.size() == 1 && met.cells_b.size() == 1)) return;
     shares_.clear();
     double all = 0;
     const auto add = [&](int joint, double area) {
@@ -354,6 +366,12 @@ class PairSearch {
     for (double& c : patch.closure) c *= share;
   }
 
+  // Gaps of elastic patches count from what the stress of the ground has closed.
+  void from_ground(double lifted, Patch& patch) const {
+    for (size_t end = 0; end < 2; ++end)
+      patch.gap[end] = lifted + ground_at(patch, end).x - patch.closure[end];
+  }
+
   // At the start a patch bears what the stress of the ground asks of the faces there, a crossing nothing.
   void keep_start(const PartsMet& met, Patch& patch) const {
     const double wanted = closed_by_ground(patch);
@@ -413,6 +431,7 @@ class PairSearch {
   PartsMeeting meeting_;
   const ContactPair* pair_ = nullptr;
   Vec2 shift_;
+  bool all_laws_elastic_ = false, elastic_ = false;  // all joints, those of this pair
   std::span<const Patch> known_;
   double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
   std::vector<SideRole> roles_a_, roles_b_;

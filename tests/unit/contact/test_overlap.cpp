@@ -64,11 +64,14 @@ class Seen {
 
 constexpr double kMargin = 0.05;     // [m]
 constexpr double kRounding = 1e-14;  // [m]
+constexpr double kLevel = 1e-4;      // [m]
 
 PartsMet meet(const Body& a, const Body& b, const PartMotion& motion_b = {}) {
   PartsMeeting meeting;
   const Seen one(a), two(b);
-  PartsMet met = meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding, {}, motion_b);
+  PartsMet met = meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding);
+  if (met.kind != PartsMet::kFar) meeting.choose_way({}, motion_b, {0, kLevel});
+  met = meeting.met();
   if (met.kind != PartsMet::kOverlap) return met;
   const bool any = meeting.measure_overlap();
   met = meeting.met();
@@ -653,8 +656,9 @@ struct Ends {
 Ends ends_of(const Body& a, const Body& b, double reach, const PartMotion& motion_b = {}) {
   const Seen one(a), two(b);
   PartsMeeting meeting;
-  const PartsMet& met =
-      meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding, {}, motion_b);
+  const PartsMet& met = meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding);
+  REQUIRE(met.kind != PartsMet::kFar);
+  meeting.choose_way({}, motion_b, {0, kLevel});
   REQUIRE(met.kind != PartsMet::kFar);
   const bool any = meeting.face_ends(reach);
   PartsMet out = met;  // with its ends half way across the gap
@@ -773,6 +777,11 @@ TEST_CASE("parts apart: corners of level blocks that slide past each other over 
     CHECK(comes.normal.x > 0.8);
     // at rest
     CHECK(meet(a, b).kind == PartsMet::kApart);
+    // further below the top than what is level: it is stopped by what is before it
+    const Body deep{box_polygon(-1, 0, 0, 1), {-kFar, -2 * kLevel}};
+    const PartsMet stopped = meet(a, deep, {{5 * kLevel, 0}, {}});
+    CHECK(stopped.kind == PartsMet::kApart);
+    CHECK(stopped.normal.x > 0.8);
   }
 }
 

@@ -19,9 +19,12 @@ struct FramePoint {
   double slip = 0;                                    // of a joint, all of it to and fro [m]
   double slip_signed = 0;                             // what is left of it [m]
   double opening = 0, rise = 0;                       // of a joint [m]
-  int kind = 0;                                       // index in kPointKinds
-  int state = -1;                                     // of a joint: index in kJointStates; -1: no joint
-  int block_a = -1, block_b = -1;                     // -1: the ground
+  double closure = 0;  // of an end of a patch: what it bears by, the ground's part included; < 0: a gap [m]
+  double closing = 0;  // how much more it is where the force belongs to (theory 4.6) [m]
+  int law = -1;        // of the model's joints; -1: none, -2: two share the patch
+  int kind = 0;        // index in kPointKinds
+  int state = -1;      // of a joint: index in kJointStates; -1: no joint
+  int block_a = -1, block_b = -1;  // -1: the ground
   // of a patch twice the part of block_a, one more for its second end, and -2 less the part of block_b; of a corner
   // on an edge the corner of block_a and the edge of block_b; else the index of the point and 0: the same
   // point has the same numbers in every frame
@@ -78,6 +81,9 @@ inline const std::vector<ContactColumn>& contact_columns() {
       number("residual_slip", "m", &P::slip_signed, InPage::kHalf, kShown, kInJoints),
       number("opening", "m", &P::opening, InPage::kHalf, kShown, kInJoints),
       number("dilation", "m", &P::rise, InPage::kNot, false, kInJoints),
+      number("closure", "m", &P::closure, InPage::kNot, false, false),
+      number("closing", "m", &P::closing, InPage::kNot, false, false),
+      {{"joint", "", [](const P& p) { return static_cast<double>(p.law); }}},
       whole("kind", &P::kind, InPage::kByte, {kPointKinds.begin(), kPointKinds.end()}),
       whole("state", &P::state, InPage::kByte, {kJointStates.begin(), kJointStates.end()}),
       whole("block_a", &P::block_a, InPage::kWhole),

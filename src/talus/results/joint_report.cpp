@@ -190,6 +190,20 @@ std::pair<int, int> patch_numbers(const Scene& scene, const Patch& c, int end) {
           -2 - (c.part_b - first[static_cast<size_t>(c.block_b)])};
 }
 
+int law_number(const Patch& patch) {
+  constexpr int kTwo = -2;
+  return patch.other_share > 0 ? kTwo : patch.joint;
+}
+
+double closing_at(const Instant& i, size_t row) {
+  const PointRows& p = i.work.rows.points[row];
+  const StepClock& clock = i.work.clock;
+  const double before = relative_velocity(p, i.work.rate_before)[0],
+               after = relative_velocity(p, i.state.rate)[0];
+  if (!p.is_soft(0)) return clock.dt * std::max({0.0, -before, -after});
+  return -clock.dt / clock.position_factor() * (after - clock.old_share() * before);
+}
+
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
   const auto a = static_cast<size_t>(p.block_a);
   // the acting arm of a deformable block is the reference one
@@ -220,13 +234,16 @@ void take_row(const Scene& scene, const Instant& i, size_t r, FramePoint& out) {
   out.kind = kind_of(owner.family);
   if (owner.family == Family::kFace) {
     out.corner = owner.index;
+    out.law = scene.bonds.faces[owner.at() / 2].joint;
   } else if (owner.family == Family::kContact) {
     if (scene.by_patches()) {
       const Patch& c = i.state.patches[owner.at() / 2];
       std::tie(out.corner, out.edge) = patch_numbers(scene, c, static_cast<int>(owner.at() % 2));
+      out.law = law_number(c), out.closure = c.closure[owner.at() % 2], out.closing = closing_at(i, r);
     } else {
       const ContactKey& key = i.state.contacts[owner.at()].key;
       out.corner = key.vertex, out.edge = key.edge;
+      out.law = i.state.contacts[owner.at()].joint;
     }
     out.gap = i.work.places[owner.at()].gap;
   } else {  // number among those of its kind that act

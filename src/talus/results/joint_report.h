@@ -33,6 +33,13 @@ std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant
 /// its part of block b, < -1.
 std::pair<int, int> patch_numbers(const Scene& scene, const Patch& patch, int end);
 
+/// Joint of a patch in frames: -2 where two share it.
+int law_number(const Patch& patch);
+
+/// How much further two blocks close at row `row` of an end of a patch, from this instant to where its force belongs: by the
+/// weights of theory 4.6 where the joint is elastic, else the most that they come together by within the step [m].
+double closing_at(const Instant& instant, size_t row);
+
 /// Where a point of rows is now [m].
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p);
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "support/command.h"
+#include "talus/audit/read_results.h"
 #include "talus/base/text_file.h"
 
 namespace test_audit_command {
@@ -109,6 +110,42 @@ TEST_CASE("command audit: with audit = false nothing is said of it, and the verb
   has(run.text, "audit           none (output.audit = false)");
   CHECK(summary(f)["valid"].is_null());
   CHECK(shell(f, "$talus audit out").code == 8);
+}
+
+namespace {
+
+void replace_in(const std::filesystem::path& file, const std::string& what, const std::string& by) {
+  std::string text = read_text_file(file);
+  const size_t at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  std::ofstream(file) << text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "command audit: forces of elastic joints against the energy of overlaps, by the run and by its folder") {
+  const Folder f;
+  write_model(f, 0);
+  replace_in(f / "m.toml", "friction_angle = \"35 deg\"",
+             "friction_angle = \"35 deg\"\nnormal_stiffness = \"1 GPa/m\"\nshear_stiffness = \"1 GPa/m\"");
+  CHECK(shell(f, "$talus run m.toml -o out").code == 0);
+  const json s = summary(f);
+  // the stone bounces into its joint: in the first frame it has not closed it yet
+  const int64_t by_energy = s["audit"]["patches_by_energy"];
+  CHECK(by_energy >= 4);
+  CHECK(s["warnings"].empty());
+  const audit::FolderAudit folder = audit::audit_folder(f / "out");
+  CHECK(folder.report.patches_by_energy == by_energy);
+  CHECK(folder.report.frames == s["audit"]["frames"]);
+  CHECK(folder.report.lines(folder.names).empty());
+
+  // forces 5 % above what the joint of the summary has
+  replace_in(f / "out/summary.json", "\"normal_stiffness [Pa/m]\": 1000000000.0",
+             "\"normal_stiffness [Pa/m]\": 950000000.0");
+  const Outcome audit = shell(f, "$talus audit out");
+  CHECK(audit.code == 8);
+  has(audit.text, "force off the overlap's energy: \"wall\" and \"stone\"");
 }
 
 TEST_CASE("command audit: polygons at their own interval") {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "talus/audit/overlap_energy.h"
 #include "talus/audit/shapes.h"
 
 namespace talus::audit {
@@ -29,6 +31,15 @@ constexpr double kLawSlack = 1e-3;
 // elastic normal force against stiffness x overlap: a closure that is linear along a face, one end of which
 // has opened, is off by up to 2
 constexpr double kNormalWarns = 2, kNormalInvalid = 4;
+// force against the energy of the overlap, as share of the larger: rows are exact to the tolerance of the solver, finite
+// differences to 1e-6. Compared only where the former is below the first share too
+constexpr double kEnergyWarns = 1e-2, kEnergyInvalid = 3e-2;
+// A comparison takes about 10 us: so many a frame take some 5 ms.
+constexpr int kMostByEnergy = 500;
+// What coordinates are rounded to, and distances seen from a corner nearby, times what differences make of it.
+constexpr double kRoundOff = 1e-15, kRoundOffNear = 1e-12;
+// of the mean force: what the joint of an overlap without a point would push with
+constexpr double kPushWarns = 1e-2, kPushInvalid = 0.1;
 constexpr double kBeside = 0.1;     // of the smaller block: where what a corner stands on ends near it
 constexpr double kOtherWay = 0.9;   // cosine of the angle between normals of two sides of a corner, at most
 constexpr double kAlongside = 0.1;  // sides that make an interface are antiparallel within [rad]
@@ -40,7 +51,7 @@ struct Pair {
 
 class Check {
  public:
-  Check(const Rules& rules, const Frame& frame) : rules_(rules), frame_(frame) {
+  Check(const Rules& rules, const Frame& frame, int64_t turn) : rules_(rules), frame_(frame) {
     const size_t n = frame.blocks.size();
     size_.assign(n, 0), area_.assign(n, 0);
     for (size_t i = 0; i < n; ++i) {
@@ -50,6 +61,7 @@ class Check {
     }
     take_points();
     list_pairs();
+    choose_by_energy(turn);
   }
 
   FrameResult run(const Workers& workers) {
@@ -69,6 +81,7 @@ class Check {
       if (r.unexplained_share > all.unexplained_share)
         all.unexplained_share = r.unexplained_share, all.unexplained_area = r.unexplained_area;
       all.closure_share = std::max(all.closure_share, r.closure_share);
+      all.patches_by_energy += r.patches_by_energy;
     }
     return all;
   }
@@ -87,6 +100,10 @@ class Check {
   double size_of(int a, int b) const {
     return std::min(size_[static_cast<size_t>(a)], size_[static_cast<size_t>(b)]);
   }
+  double extent(const Polygon& p) const {
+    const Box box = bounding_box(p);
+    return norm(box.max - box.min);
+  }
   double area_of(int a, int b) const {
     return std::min(area_[static_cast<size_t>(a)], area_[static_cast<size_t>(b)]);
   }
@@ -97,7 +114,8 @@ class Check {
 
   void take_points() {
     const size_t n = frame_.points.size();
-    seen_.resize(n);
+    seen_.resize(n), tied_.assign(frame_.blocks.size(), false);
+    bool corners = false;
     double sum = 0;
     int forces = 0;
     for (size_t i = 0; i < n; ++i) {
@@ -105,8 +123,19 @@ class Check {
       const double force = std::hypot(p.normal_force, p.shear_force);
       if (force > 0) sum += force, ++forces;
       seen_[i] = p.bond() ? see_bond(p) : p.patch() ? see_patch(p) : see_contact(p);
+      if (p.bond()) tied_[static_cast<size_t>(p.block_a)] = tied_[static_cast<size_t>(p.block_b)] = true;
+      corners = corners || !(p.bond() || p.patch());
     }
+    if (!corners && rules_.joints_everywhere && !rules_.changes) softest_ = softest();
     mean_force_ = forces > 0 ? sum / forces : 0;
+  }
+
+  // The least stiffness across any joint [Pa/m]; 0 where one is hard.
+  double softest() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Law& law : rules_.laws)
+      if (!law.bonded) least = std::min(least, law.normal_stiffness);
+    return std::isfinite(least) ? least : 0;
   }
 
   Seen see_patch(const Point& p) const {
@@ -119,9 +148,10 @@ class Check {
     };
     const Vec2 now = moves(&Block::velocity);
     s.approach = std::abs(dot(s.normal, now));
-    const bool known = !a.next.empty() || !b.next.empty();
-    if (known) s.approach = std::max(s.approach, std::abs(dot(s.normal, moves(&Block::next))));
-    s.closing = known ? s.approach : norm(now);
+    // by what the frame tells of the step, the same in the run and from its folder
+    const bool told = std::isfinite(p.closing) && frame_.step > 0;
+    if (told) s.approach = std::max(s.approach, std::abs(p.closing) / frame_.step);
+    s.closing = told ? s.approach : norm(now);
     return s;
   }
 
@@ -214,6 +244,35 @@ class Check {
     }
   }
 
+  // Pairs whose force is known from the energy of their overlap alone: one patch of one elastic joint, closed along its
+  // whole chord, nothing kept from the start or by a rise, no cut and no tied side. Of too many, every so manyth.
+  void choose_by_energy(int64_t turn) {
+    by_energy_.assign(pairs_.size(), false);
+    if (rules_.in_situ || rules_.changes) return;
+    std::vector<size_t> fit;
+    for (size_t q = 0; q < pairs_.size(); ++q)
+      if (has_energy(pairs_[q])) fit.push_back(q);
+    const size_t every = std::max<size_t>(1, (fit.size() + kMostByEnergy - 1) / kMostByEnergy);
+    for (size_t k = static_cast<size_t>(turn) % every; k < fit.size(); k += every) by_energy_[fit[k]] = true;
+  }
+
+  bool has_energy(const Pair& pair) const {
+    if (pair.end - pair.begin != 2 || tied_[static_cast<size_t>(pair.a)] ||
+        tied_[static_cast<size_t>(pair.b)])
+      return false;
+    double normal = 0;
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const int i = order_[static_cast<size_t>(k)];
+      const Point& p = frame_.points[static_cast<size_t>(i)];
+      const Law* law = law_of(p);
+      if (!p.patch() || p.partner < 0 || !law || law->normal_stiffness <= 0 || law->dilates ||
+          !std::isfinite(p.closing) || p.normal_force <= 0)
+        return false;
+      normal += p.normal_force;
+    }
+    return normal > kForceInvalid * mean_force_;
+  }
+
   Finding finding(Defect defect, bool invalid, int a, int b, Vec2 place, double share,
                   std::string text) const {
     return {defect, invalid, a, b, frame_.time, place, share, std::move(text)};
@@ -221,6 +280,7 @@ class Check {
 
   void check_pair(const Pair& pair, FrameResult& out) const {
     check_overlap(pair, out);
+    if (by_energy_[static_cast<size_t>(&pair - pairs_.data())]) check_energy(pair, out);
     for (int k = pair.begin; k < pair.end; ++k) {
       const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
       const Point& p = frame_.points[i];
@@ -261,7 +321,83 @@ class Check {
                                                    "the smaller block) at no point that the run knows of",
                                                    common.area, rest, 100 * share)));
     }
+    if (pair.begin == pair.end) check_push(pair, common, out);
+    if (common.area <= 0) check_apart(pair, out);
     check_normal(pair, common, out);
+  }
+
+  // An overlap without any point, by the force that the softest joint would make of it: what is a share of 1e-4 of a block is
+  // a large force where joints are stiff. Not asked beside bonds: behind a tied side there is no way out.
+  void check_push(const Pair& pair, const Common& common, FrameResult& out) const {
+    if (softest_ == 0 || mean_force_ == 0 || tied_[static_cast<size_t>(pair.a)] ||
+        tied_[static_cast<size_t>(pair.b)])
+      return;
+    const double area = std::max(0.0, common.area - crossing_product(pair, common));
+    const double push = softest_ * rules_.thickness * area, share = push / mean_force_;
+    if (share <= kPushWarns) return;
+    out.findings.push_back(finding(
+        Defect::kUnexplainedOverlap, share > kPushInvalid, pair.a, pair.b, common.at,
+        area / area_of(pair.a, pair.b),
+        fmt::format(
+            "they overlap by {:.3g} m2 at no point that the run knows of, where a joint would push with {:.4g} N",
+            area, push)));
+  }
+
+  // Check 2, by the outlines: patches that press though the two are apart. They may be so by what closes the gap before the
+  // force acts, by rise and by what the ground has closed; what of the latter lies in sides that did not face each other at
+  // the start no patch tells.
+  void check_apart(const Pair& pair, FrameResult& out) const {
+    double normal = 0, may = 0;
+    Vec2 place;
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+      const Point& p = frame_.points[i];
+      if (!p.patch()) return;
+      if (p.normal_force > 0) normal += p.normal_force, place = seen_[i].place;
+      const double closing = std::isfinite(p.closing) ? p.closing : 3 * frame_.step * seen_[i].closing;
+      may = std::max(may, std::max(0.0, closing) + p.rise + 2 * p.in_situ);
+      if (rules_.in_situ && p.in_situ == 0) return;
+    }
+    const double size = size_of(pair.a, pair.b);
+    const double allowed = may + (kPlace + rules_.slop) * size + 2 * rules_.tolerance;
+    if (normal <= kForceSeen * mean_force_ || !std::isfinite(allowed)) return;
+    const double apart = distance_between(polygon(pair.a), polygon(pair.b));
+    if (apart <= allowed) return;
+    out.findings.push_back(finding(
+        Defect::kForceAcrossGap, normal > kForceInvalid * mean_force_, pair.a, pair.b, place,
+        (apart - allowed) / size,
+        fmt::format("a force of {:.4g} N between outlines that are {:.3g} m apart, where {:.2g} m may be",
+                    normal, apart, allowed)));
+  }
+
+  // Check 4, exactly: the force of a patch is minus the gradient of the energy of the overlap, taken by finite differences,
+  // and what its stiffness makes of the way to where the force belongs.
+  void check_energy(const Pair& pair, FrameResult& out) const {
+    const auto i = static_cast<size_t>(order_[static_cast<size_t>(pair.begin)]);
+    const Point &p = frame_.points[i], &q = frame_.points[static_cast<size_t>(p.partner)];
+    const Polygon &a = polygon(p.block_a), &b = polygon(p.block_b);
+    if (!is_convex(a) || !is_convex(b)) return;
+    const OverlapForce overlap = overlap_force(a, b);
+    const double moves = norm(overlap.force);
+    const double stiffness = law_of(p)->normal_stiffness * rules_.thickness;
+    const double wanted = stiffness * (moves + overlap.chord * 0.5 * (p.closing + q.closing));
+    const double found = p.normal_force + q.normal_force;
+    double far = 0;
+    for (const Vec2 x : {p.place, q.place}) far = std::max({far, std::abs(x.x), std::abs(x.y)});
+    // what its own overlap is rounded to says nothing of a patch
+    const double rounding = kRoundOff * far + kRoundOffNear * std::max(extent(a), extent(b));
+    if (!(moves > 100 * rounding * overlap.chord)) return;
+    const double slack = stiffness * overlap.chord * (2 * rules_.tolerance + rounding);
+    const double larger = std::max(std::abs(wanted), found);
+    if (slack > kEnergyWarns * larger) return;
+    ++out.patches_by_energy;
+    const double off = norm(found * seen_[i].normal - wanted / moves * overlap.force) - slack;
+    if (off <= kEnergyWarns * larger) return;
+    out.findings.push_back(finding(
+        Defect::kEnergyLaw, off > kEnergyInvalid * larger, pair.a, pair.b, seen_[i].place, off / larger,
+        fmt::format(
+            "a normal force of {:.6g} N, where the energy of what the two have in common asks for {:.6g} N",
+            found, wanted)));
   }
 
   // The trapezium of the two ends of each face, the wedge of each corner alone, and what the solver may
@@ -589,25 +725,29 @@ class Check {
   std::vector<double> area_, size_;
   std::vector<Seen> seen_;
   double mean_force_ = 0;
+  double softest_ = 0;      // least stiffness of a joint, 0: there is a hard one [Pa/m]
+  std::vector<bool> tied_;  // blocks that an intact face ties to another
   std::vector<int> order_;  // points, pair by pair
   std::vector<Pair> pairs_;
+  std::vector<bool> by_energy_;  // pairs whose force is compared with the energy of their overlap
   std::vector<std::vector<Neighbour>> neighbours_;
 };
 
 }  // namespace
 
-FrameResult check_frame(const Rules& rules, const Frame& frame, const Workers& workers) {
-  return Check(rules, frame).run(workers);
+FrameResult check_frame(const Rules& rules, const Frame& frame, const Workers& workers, int64_t turn) {
+  return Check(rules, frame, turn).run(workers);
 }
 
 void add_frame(const Rules& rules, const Frame& frame, const Workers& workers, Report& report) {
-  const FrameResult r = check_frame(rules, frame, workers);
+  const FrameResult r = check_frame(rules, frame, workers, report.frames);
   report.add(r.findings);
   ++report.frames;
   if (r.unexplained_share > report.unexplained_share)
     report.unexplained_share = r.unexplained_share, report.unexplained_area = r.unexplained_area;
   report.closure_share = std::max(report.closure_share, r.closure_share);
   report.slack = std::max(report.slack, r.slack);
+  report.patches_by_energy += r.patches_by_energy;
 }
 
 }  // namespace talus::audit

@@ -10,15 +10,24 @@ namespace {
 
 constexpr std::array<const char*, kDefects> kKey{
     "prescribed_overlap", "unexplained_overlap", "deep_closure", "force_vanished", "crossed",
-    "covered_side",       "force_across_gap",    "no_joint",     "normal_law",     "shear_law",
-    "closing_work",       "failed_steps"};
+    "covered_side",       "force_across_gap",    "no_joint",     "normal_law",     "energy_law",
+    "shear_law",          "closing_work",        "failed_steps"};
 
 // What a kind of defect is called in lines for readers.
-constexpr std::array<const char*, kDefects> kTitle{
-    "overlap of prescribed blocks", "unexplained overlap",      "deep closure",
-    "force that vanished",          "block that went through",  "force on a covered side",
-    "force across a gap",           "force without a joint",    "normal force off the joint's law",
-    "force beyond the joint's law", "work of closing contacts", "failed steps"};
+constexpr std::array<const char*, kDefects> kTitle{"overlap of prescribed blocks",
+                                                   "unexplained overlap",
+                                                   "deep closure",
+                                                   "force that vanished",
+                                                   "block that went through",
+                                                   "force on a covered side",
+                                                   "force across a gap",
+                                                   "force without a joint",
+                                                   "normal force off the joint's law",
+                                                   "force off the overlap's energy",
+                                                   "force beyond the joint's law",
+                                                   "work of closing contacts",
+
+                                                   "failed steps"};
 
 void exchange_finding(auto& x, const std::string& name, auto& f) {
   x(name + ".defect", f.defect), x(name + ".invalid", f.invalid);
@@ -84,6 +93,7 @@ std::vector<std::string> Report::lines(const std::vector<std::string>& names) co
 template <class X, class Self>
 void Report::exchange(X& x, Self& self, const std::string& name) {
   x(name + ".frames", self.frames), x(name + ".steps", self.steps);
+  x(name + ".patches_by_energy", self.patches_by_energy);
   x(name + ".unexplained_share", self.unexplained_share),
       x(name + ".unexplained_area", self.unexplained_area);
   x(name + ".closure_share", self.closure_share), x(name + ".slack", self.slack);

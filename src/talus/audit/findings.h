@@ -22,6 +22,7 @@ enum class Defect {
   kForceAcrossGap,
   kNoJoint,
   kNormalLaw,
+  kEnergyLaw,
   kShearLaw,
   kClosingWork,
   kFailedSteps,
@@ -65,6 +66,7 @@ class Report {
   std::vector<std::string> lines(const std::vector<std::string>& names) const;
 
   int64_t frames = 0, steps = 0;  // looked at
+  int64_t patches_by_energy = 0;  // whose force was compared with the energy of the overlap
   double unexplained_share = 0;   // largest unexplained overlap, of the smaller block's area
   double unexplained_area = 0;    // the same [m2]
   double slack = 0;          // [J] what all forces may do within slop and tolerance: less work is round-off

@@ -2,6 +2,7 @@
 // What the audit looks at: blocks as polygons and the points between them, as plain data. It does not say how
 // the points were found. Theory: docs/theory.md section 12.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Law {
   double cohesion = 0, tension = 0;  // [Pa]
   double normal_stiffness = 0;       // [Pa/m], 0: hard
   bool bonded = false;               // carries anything
+  bool dilates = false;              // rises as it slips
 };
 
 inline constexpr int kNoJoint = -1, kUnknownJoint = -2;
@@ -40,8 +42,11 @@ struct Point {
   double shear_force = 0;      // [N]
   double rise = 0;             // of the joint over its roughness [m]
   double in_situ = 0;          // closure by the stress of the ground, left out of the gap [m]
+  double closing = kNotKnown;  // of a patch: how much further it closes to where its force belongs [m]
   int partner = -1;            // other end of the face: its place in the list, -1: a corner alone
   int joint = kUnknownJoint;   // index into Rules::laws
+  static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
   bool bond() const { return edge == -1; }
   bool patch() const { return edge < -1; }
 };
@@ -51,6 +56,8 @@ struct Rules {
   std::vector<std::string> names;  // of the blocks
   std::vector<Law> laws;           // of the joints
   bool joints_everywhere = false;  // the model gives a joint for pairs that have none of their own
+  bool in_situ = false;            // the run began in ground under stress
+  bool changes = false;            // stages change what the model began with
   double slop = 0;                 // overlap that hard contacts may keep, share of the smaller block's size
   double give = 0;                 // of a hard contact point under a force [m/N]
   double tolerance = 0;            // largest contact error of a step [m]

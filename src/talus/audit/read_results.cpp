@@ -120,7 +120,7 @@ class Reader {
       if (model.contains("contact_give"))  // of runs since hard contacts give
         rules_.give = model["contact_give"].value("per_force [m/N]", 0.0);
       rules_.joints_everywhere = model.contains("default_joint");
-      in_situ_ = model.value("in_situ_stress", false);
+      rules_.in_situ = model.value("in_situ_stress", false);
       for (const auto& j : model["joints"]) {
         Law law;
         law.bonded = j.value("bonded", false);
@@ -141,7 +141,7 @@ class Reader {
         grow("tensile_strength_scatter [Pa]", law.tension, as_it_is);
         law.normal_stiffness = j.value("normal_stiffness [Pa/m]", 0.0);
         dilation_.push_back(std::tan(kDegree * j.value("dilation_angle [deg]", 0.0)));
-        lifting_ = lifting_ || dilation_.back() > 0;
+        law.dilates = dilation_.back() > 0, lifting_ = lifting_ || law.dilates;
         joint_of_name_[j.value("name", std::string())] = static_cast<int>(rules_.laws.size());
         rules_.laws.push_back(law);
       }
@@ -163,7 +163,7 @@ class Reader {
       const size_t end = std::min(model.find('\n'), model.size());
       std::string_view line = trimmed(model.substr(0, end));
       model.remove_prefix(std::min(end + 1, model.size()));
-      laws_change_ = laws_change_ || line.rfind("[[change]]", 0) == 0;
+      rules_.changes = rules_.changes || line.rfind("[[change]]", 0) == 0;
       if (line.rfind("slop", 0) != 0) continue;
       line = trimmed(line.substr(4));
       if (line.empty() || line[0] != '=') continue;
@@ -292,6 +292,8 @@ class Reader {
                &partner = column("partner"), &gap = column("gap [m]"), &normal = column("normal force [N]"),
                &shear = column("shear force [N]"),
                &slip = vtk.at_first({"accumulated slip [m]", "slip [m]"}, 1, n).values;
+    // of frames since patches tell them
+    const bool tells = vtk.has("joint") && vtk.has("closure [m]") && vtk.has("closing [m]");
     std::vector<int> at(kind.size(), -1);  // in the list of points
     for (size_t i = 0; i < kind.size(); ++i) {
       if (kind[i] != 0 && kind[i] != 1) continue;
@@ -315,14 +317,17 @@ class Reader {
       p.gap = gap[i], p.normal_force = normal[i], p.shear_force = shear[i];
       if (p.patch()) p.normal = normal_of({force[3 * i], force[3 * i + 1]}, p.normal_force, p.shear_force);
       const auto joint = joint_of_pair_.find(std::minmax(p.block_a, p.block_b));
-      p.joint = joint == joint_of_pair_.end() || laws_change_ ? kUnknownJoint : joint->second;
+      p.joint = joint == joint_of_pair_.end() || rules_.changes ? kUnknownJoint : joint->second;
       // the way up to which a joint rises is not in the folder: the frame's slip is
       if (p.joint >= 0) p.rise = dilation_[static_cast<size_t>(p.joint)] * slip[i];
       if (p.joint == kUnknownJoint && lifting_)
         p.rise = *std::max_element(dilation_.begin(), dilation_.end()) * slip[i];
       const bool soft = p.joint == kUnknownJoint ||
                         (p.joint >= 0 && rules_.laws[static_cast<size_t>(p.joint)].normal_stiffness > 0);
-      if (in_situ_ && soft) p.in_situ = std::numeric_limits<double>::infinity();
+      if (rules_.in_situ && soft) p.in_situ = std::numeric_limits<double>::infinity();
+      if (tells && p.patch())
+        tell_patch(vtk, column("joint")[i], column("closure [m]")[i], column("closing [m]")[i],
+                   column("dilation [m]")[i], p);
       at[i] = static_cast<int>(frame.points.size());
       frame.points.push_back(p);
     }
@@ -330,6 +335,17 @@ class Reader {
       if (at[i] < 0 || !(partner[i] >= 0) || partner[i] >= static_cast<double>(kind.size())) continue;
       frame.points[static_cast<size_t>(at[i])].partner = at[static_cast<size_t>(partner[i])];
     }
+  }
+
+  // What the run itself knows of a patch.
+  void tell_patch(const VtkFrame& vtk, double joint, double closure, double closing, double rise,
+                  Point& p) const {
+    p.closing = closing, p.rise = rise;
+    p.in_situ = std::max(0.0, closure + p.gap);
+    if (rules_.changes) return;  // the summary has the laws that the run began with
+    if (!(joint >= kUnknownJoint && joint < static_cast<double>(rules_.laws.size())))
+      throw FileError(fmt::format("{}: {} is no number of a joint", vtk.file, joint));
+    p.joint = static_cast<int>(joint);
   }
 
   static constexpr int kMostParts = -1000000;  // of a block, as the edge of a patch
@@ -360,7 +376,7 @@ class Reader {
   ordered_json summary_;
   Rules rules_;
   std::vector<double> dilation_;  // [joints] tan of the angle
-  bool lifting_ = false, in_situ_ = false, laws_change_ = false;
+  bool lifting_ = false;
   std::map<std::string, int> joint_of_name_, number_of_;
   std::map<std::pair<int, int>, int> joint_of_pair_;
   std::vector<std::pair<double, double>> stage_steps_;  // end, dt [s]

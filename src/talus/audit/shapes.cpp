@@ -9,8 +9,6 @@
 
 namespace talus::audit {
 
-namespace {
-
 bool is_convex(std::span<const Vec2> p) {
   constexpr double kFlat = -1e-12;  // corners of straight sides turn by round-off either way
   const size_t n = p.size();
@@ -20,8 +18,6 @@ bool is_convex(std::span<const Vec2> p) {
   }
   return true;
 }
-
-}  // namespace
 
 Vec2 moves_against(const Block& a, size_t corner, const Block& b, size_t edge, double along,
                    std::vector<Vec2> Block::*velocity) {
@@ -86,6 +82,15 @@ double depth_in(std::span<const Vec2> polygon, Vec2 point) {
   for (size_t k = 0; k < polygon.size(); ++k)
     near = std::min(near, distance_to_segment(point, polygon[k], polygon[(k + 1) % polygon.size()]));
   return contains(polygon, point) ? near : -near;
+}
+
+double distance_between(std::span<const Vec2> a, std::span<const Vec2> b) {
+  double near = std::numeric_limits<double>::infinity();
+  for (const auto& [corners, outline] : {std::pair(a, b), std::pair(b, a)})
+    for (const Vec2 p : corners)
+      for (size_t k = 0; k < outline.size(); ++k)
+        near = std::min(near, distance_to_segment(p, outline[k], outline[(k + 1) % outline.size()]));
+  return near;
 }
 
 double mean_thickness(std::span<const Vec2> polygon, Vec2 tangent) {

@@ -15,6 +15,9 @@ struct Common {
   Vec2 at;          // a point of it
 };
 
+/// Counter-clockwise without a notch; corners of straight sides are none.
+bool is_convex(std::span<const Vec2> polygon);
+
 /// Common part of two simple polygons: clipped where one is convex, by GEOS elsewhere.
 Common common_part(const Polygon& a, const Polygon& b);
 
@@ -32,6 +35,9 @@ Polygon cut_below(std::span<const Vec2> polygon, Vec2 point, Vec2 normal);
 
 /// How deep `point` lies inside the polygon [m]: distance from its boundary; < 0 outside.
 double depth_in(std::span<const Vec2> polygon, Vec2 point);
+
+/// Distance between two simple polygons that do not overlap [m].
+double distance_between(std::span<const Vec2> a, std::span<const Vec2> b);
 
 /// Area over the extent along `tangent`: mean thickness of the polygon across it [m].
 double mean_thickness(std::span<const Vec2> polygon, Vec2 tangent);

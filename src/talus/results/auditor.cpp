@@ -25,7 +25,8 @@ audit::Law law_of(const JointProperty& joint) {
           .tension = larger(joint.tension_scatter) *
                      std::max(joint.tensile_strength, joint.residual_tensile_strength),
           .normal_stiffness = joint.normal_stiffness,
-          .bonded = joint.bonded};
+          .bonded = joint.bonded,
+          .dilates = joint.dilation_angle > 0};
 }
 
 audit::Hold hold_of(const BlockSet& blocks, int i) {
@@ -90,6 +91,7 @@ void Auditor::look_at_stage(const Instant& i) {
     lifting_ = lifting_ || joint.dilation_angle > 0;
   }
   rules_.joints_everywhere = scene_.layout.default_joint >= 0;
+  rules_.in_situ = scene_.model.in_situ.given, rules_.changes = !scene_.model.changes.empty();
   rules_.slop = scene_.model.contact.slop;
   rules_.give = scene_.give.per_force(scene_.model.thickness);
   rules_.tolerance = scene_.model.solver.tolerance * tolerance_size(b);
@@ -134,19 +136,21 @@ Vec2 Auditor::place_of(const State& state, const Patch& c, int end) const {
   return scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[static_cast<size_t>(end)]);
 }
 
-audit::Point Auditor::patch_point(const State& state, const Patch& c, int end) const {
+audit::Point Auditor::patch_point(const Instant& i, size_t patch, int end) const {
+  const Patch& c = i.state.patches[patch];
   const auto e = static_cast<size_t>(end);
   audit::Point p;
   const auto [corner, edge] = patch_numbers(scene_, c, end);
   p.block_a = c.block_a, p.block_b = c.block_b, p.corner = corner, p.edge = edge;
-  p.place = place_of(state, c, end), p.normal = c.normal, p.gap = c.gap[e];
+  p.place = place_of(i.state, c, end), p.normal = c.normal, p.gap = c.gap[e];
   p.normal_force = c.force[e][0], p.shear_force = c.force[e][1];
-  p.joint = c.other_share > 0 ? audit::kUnknownJoint : c.joint < 0 ? audit::kNoJoint : c.joint;
+  p.joint = law_number(c);
   if (c.joint >= 0) {
     const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];  // as law_of
     p.rise = std::tan(joint.dilation_angle) * std::min(c.slip[e], joint.dilation_slip);
   }
   p.in_situ = std::max(0.0, c.closure[e] + c.gap[e]);
+  p.closing = closing_at(i, i.work.rows.range(Family::kContact).begin + 2 * patch + e);
   return p;
 }
 
@@ -183,9 +187,9 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
     p.partner = static_cast<int>(r % 2 == 0 ? r + 1 : r - 1);
     frame.points.push_back(p);
   }
-  for (const Patch& c : i.state.patches)
+  for (size_t k = 0; k < i.state.patches.size(); ++k)
     for (int end = 0; end < 2; ++end) {
-      frame.points.push_back(patch_point(i.state, c, end));
+      frame.points.push_back(patch_point(i, k, end));
       frame.points.back().partner = static_cast<int>(frame.points.size()) - (end == 0 ? 0 : 2);
     }
   for (const ContactPair& pair : i.state.pairs) {

@@ -29,7 +29,7 @@ class Auditor {
   void look_at_stage(const Instant& instant);
   void watch(const Instant& instant);
   Vec2 place_of(const State& state, const Patch& c, int end) const;
-  audit::Point patch_point(const State& state, const Patch& c, int end) const;
+  audit::Point patch_point(const Instant& instant, size_t patch, int end) const;
   audit::Block shape(const Instant& instant, int block) const;
   audit::Frame frame_of(const Instant& instant) const;
 

@@ -43,6 +43,7 @@ nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<aud
   if (!audit) return {};
   ordered_json j = {{"frames", audit->frames},
                     {"steps", audit->steps},
+                    {"patches_by_energy", audit->patches_by_energy},
                     {"unexplained_overlap_share", audit->unexplained_share},
                     {"unexplained_overlap [m2]", audit->unexplained_area},
                     {"closure_share", audit->closure_share},

@@ -268,6 +268,155 @@ TEST_CASE("audit: an elastic joint pushes by its stiffness times the overlap") {
   CHECK(has(face(closure, 6 * kn * closure, kn).look(), Defect::kNormalLaw, true));
 }
 
+namespace {
+
+// A block on a wider one as a patch of an elastic joint, closed by `closure`; forces times `scale`.
+Case patch(double closure, double scale, double kn = 1e9) {
+  Case c({box_polygon(-1, -1, 2, 0), box_polygon(0, -closure, 1, 1 - closure)}, kn);
+  for (const int end : {0, 1}) {
+    Point p;
+    p.block_a = 0, p.block_b = 1, p.corner = end, p.edge = -2, p.joint = 0;
+    p.place = {1.0 - end, 0}, p.normal = {0, -1}, p.gap = -closure, p.closing = 0;
+    p.normal_force = scale * 0.5 * kn * closure * (1 - 0.5 * closure);
+    c.frame.points.push_back(p);
+  }
+  c.pair_last_two();
+  return c;
+}
+
+bool has_any(const FrameResult& r, Defect defect) { return has(r, defect, false) || has(r, defect, true); }
+
+}  // namespace
+
+TEST_CASE("audit: the force of a patch is that of the energy of the overlap") {
+  for (const double closure : {1e-7, 1e-4, 0.02}) {
+    const FrameResult r = patch(closure, 1).look();
+    CHECK(r.findings.empty());
+    CHECK(r.patches_by_energy == 1);
+    CHECK(has(patch(closure, 1.05).look(), Defect::kEnergyLaw, true));
+    CHECK(has(patch(closure, 0.95).look(), Defect::kEnergyLaw, true));
+    CHECK(has(patch(closure, 1.02).look(), Defect::kEnergyLaw, false));
+    CHECK(!has_any(patch(closure, 1.009).look(), Defect::kEnergyLaw));
+  }
+  const double c = 1e-4;
+  // the force belongs to where the two are half as closed
+  Case moving = patch(c, 0.5);
+  for (Point& p : moving.frame.points) p.closing = -0.5 * c * (1 - 0.5 * c);
+  CHECK(moving.look().patches_by_energy == 1);
+  CHECK(!has_any(moving.look(), Defect::kEnergyLaw));
+  for (Point& p : moving.frame.points) p.normal_force *= 2;
+  CHECK(has(moving.look(), Defect::kEnergyLaw, true));
+  // as large, another way
+  Case aside = patch(c, 1);
+  for (Point& p : aside.frame.points) p.normal = {std::sin(0.05), -std::cos(0.05)};
+  CHECK(has(aside.look(), Defect::kEnergyLaw, true));
+}
+
+TEST_CASE("audit: what else may close or hold a patch is not compared with its energy") {
+  const auto not_judged = [](auto change) {
+    Case c = patch(1e-4, 1.05);
+    change(c);
+    const FrameResult r = c.look();
+    CHECK(r.patches_by_energy == 0);
+    CHECK(!has_any(r, Defect::kEnergyLaw));
+  };
+  not_judged([](Case& c) { c.rules.in_situ = true; });
+  not_judged([](Case& c) { c.rules.changes = true; });
+  not_judged([](Case& c) { c.rules.laws[0].dilates = true; });
+  not_judged([](Case& c) { c.frame.points[0].joint = c.frame.points[1].joint = kUnknownJoint; });
+  not_judged([](Case& c) { c.frame.points[0].closing = Point::kNotKnown; });
+  not_judged([](Case& c) { c.frame.points[0].normal_force = 0; });
+  not_judged([](Case& c) { c.rules.tolerance = 1e-6; });  // a hundredth of the closure
+  not_judged([](Case& c) {                                // a notch
+    c.frame.blocks[1].polygon.insert(c.frame.blocks[1].polygon.begin() + 2, {0.9, 0.5});
+  });
+  not_judged([](Case& c) {  // glued to a third one
+    c.frame.blocks.push_back({Hold::kFree, box_polygon(0, 1 - 1e-4, 1, 2), {}});
+    c.rules.names.push_back("b2");
+    for (const double x : {0.0, 1.0}) {
+      Point p;
+      p.block_a = 2, p.block_b = 1, p.place = {x, 1}, p.joint = 0;
+      c.frame.points.push_back(p);
+    }
+    c.pair_last_two();
+  });
+}
+
+TEST_CASE("audit: of many patches each frame compares some, and two frames all") {
+  constexpr int kPairs = 700;
+  Case c({});
+  c.rules.laws[0].normal_stiffness = 1e9;
+  for (int k = 0; k < kPairs; ++k) {
+    Case one = patch(1e-4, 1);
+    for (Block& b : one.frame.blocks) {
+      for (Vec2& x : b.polygon) x.x += 4 * k;
+      c.frame.blocks.push_back(b), c.rules.names.emplace_back("b");
+    }
+    for (Point& p : one.frame.points) {
+      p.block_a += 2 * k, p.block_b += 2 * k, p.place.x += 4 * k;
+      c.frame.points.push_back(p);
+    }
+    c.pair_last_two();
+  }
+  const int first = check_frame(c.rules, c.frame, Workers(), 0).patches_by_energy,
+            second = check_frame(c.rules, c.frame, Workers(2), 1).patches_by_energy;
+  CHECK(first <= 500);
+  CHECK(first + second == kPairs);
+}
+
+TEST_CASE("audit: a patch that presses between outlines apart is not valid, whatever it says of its gap") {
+  const auto apart = [](double gap) {
+    Case c = patch(1e-3, 1, 0);
+    c.frame.blocks[1].polygon = box_polygon(0, gap, 1, 1 + gap);
+    for (Point& p : c.frame.points) p.normal_force = 1e5;
+    return c;
+  };
+  CHECK(has(apart(1e-3).look(), Defect::kForceAcrossGap, true));
+  CHECK(!has_any(apart(5e-6).look(), Defect::kForceAcrossGap));
+  // what closes it before the force acts, by speed where the frame does not say, rise, and stress of the ground
+  Case c = apart(1e-3);
+  for (Point& p : c.frame.points) p.closing = 1e-3;
+  CHECK(!has_any(c.look(), Defect::kForceAcrossGap));
+  c = apart(1e-3);
+  for (Point& p : c.frame.points) p.closing = Point::kNotKnown;
+  CHECK(has(c.look(), Defect::kForceAcrossGap, true));
+  c.frame.blocks[1].velocity.assign(4, {0, -5});
+  CHECK(!has_any(c.look(), Defect::kForceAcrossGap));
+  c = apart(1e-3);
+  for (Point& p : c.frame.points) p.rise = 1e-3;
+  CHECK(!has_any(c.look(), Defect::kForceAcrossGap));
+  c = apart(1e-3);
+  for (Point& p : c.frame.points) p.in_situ = 1e-3;
+  CHECK(!has_any(c.look(), Defect::kForceAcrossGap));
+  c = apart(1e-3);
+  c.rules.in_situ = true;  // moved outlines of sides that did not face each other
+  CHECK(!has_any(c.look(), Defect::kForceAcrossGap));
+}
+
+TEST_CASE("audit: an overlap without a patch counts by what its joint would push with") {
+  // 1e-6 of the block, at 1e9 Pa/m 1 kN where forces are 50 kN
+  const auto bare = [](double depth) {
+    Case c = patch(1e-4, 1);
+    c.frame.blocks.push_back({Hold::kFree, box_polygon(-1, -2, 2, -1 + depth / 3), {}});
+    c.rules.names.push_back("b2");
+    return c;
+  };
+  CHECK(has(bare(1e-6).look(), Defect::kUnexplainedOverlap, false));
+  CHECK(has(bare(1e-5).look(), Defect::kUnexplainedOverlap, true));
+  CHECK(!has_any(bare(1e-7).look(), Defect::kUnexplainedOverlap));
+  Case c = bare(1e-5);
+  c.rules.laws.push_back({});  // a hard joint: no stiffness to ask by
+  CHECK(!has_any(c.look(), Defect::kUnexplainedOverlap));
+  c = bare(1e-5);
+  for (const double x : {-1.0, 2.0}) {  // a bond between them accounts for it
+    Point p;
+    p.block_a = 2, p.block_b = 0, p.place = {x, -1}, p.joint = 0;
+    c.frame.points.push_back(p);
+  }
+  c.pair_last_two();
+  CHECK(!has_any(c.look(), Defect::kUnexplainedOverlap));
+}
+
 TEST_CASE("audit: findings do not depend on threads, nor on where the model lies") {
   Case c = face(0.02, 1e5);
   c.frame.points.clear();

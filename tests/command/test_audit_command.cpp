@@ -146,6 +146,16 @@ TEST_CASE(
   const Outcome audit = shell(f, "$talus audit out");
   CHECK(audit.code == 8);
   has(audit.text, "force off the overlap's energy: \"wall\" and \"stone\"");
+
+  // joints that give more than anything in the ledger
+  replace_in(f / "out/summary.json", "950000000.0", "1000000000.0");
+  CHECK(shell(f, "$talus audit out").code == 0);
+  replace_in(f / "out/summary.json", "\"joint_work\": -", "\"joint_work\": 1000");
+  std::string text = read_text_file(f / "out/summary.json");
+  INFO(text.substr(text.find("joint_work"), 40));
+  const Outcome work = shell(f, "$talus audit out");
+  CHECK(work.code == 8);
+  has(work.text, "work of elastic joints");
 }
 
 TEST_CASE("command audit: polygons at their own interval") {

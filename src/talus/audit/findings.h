@@ -25,6 +25,7 @@ enum class Defect {
   kEnergyLaw,
   kShearLaw,
   kClosingWork,
+  kJointWork,
   kFailedSteps,
   kCount
 };

@@ -90,13 +90,17 @@ class Reader {
     if (!s.contains("energy [J]")) return;
     const auto& e = s["energy [J]"];
     const double largest = e.value("term_largest", 0.0);
-    double closing = e.value("contact_closing_work", 0.0), friction = e.value("friction_work", 0.0),
-           time = end_;
-    for (const auto& [t, c, f] : closing_) {
-      if (c <= closing) continue;
-      closing = c, friction = f, time = t;
-    }
-    add_closing(closing, friction, largest, lifting_, time, out_.report);
+    const Given last{end_, e.value("contact_closing_work", 0.0), e.value("joint_work", 0.0),
+                     e.value("friction_work", 0.0)};
+    const auto most = [&](double Given::*work) {
+      Given out = last;
+      for (const Given& g : given_)
+        if (g.*work > out.*work) out = g;
+      return out;
+    };
+    const Given c = most(&Given::closing), j = most(&Given::joints);
+    add_closing(c.closing, c.friction, largest, lifting_, c.time, out_.report);
+    add_joint_work(rules_, j.joints, j.friction, largest, lifting_, j.time, out_.report);
   }
 
   void read_summary() {
@@ -229,10 +233,11 @@ class Reader {
       }
     };
     const auto &t = column("t [s]"), &failed = column("failed steps"),
-               &closing = column("contact closing work [J]"), &friction = column("friction work [J]");
+               &closing = column("contact closing work [J]"), &joints = column("joint work [J]"),
+               &friction = column("friction work [J]");
     for (size_t i = 0; i < table.rows(); ++i) {
       if (failed[i] > 0 && std::isnan(first_failed_)) first_failed_ = t[i];
-      closing_.push_back({t[i], closing[i], friction[i]});
+      given_.push_back({t[i], closing[i], joints[i], friction[i]});
     }
   }
 
@@ -367,8 +372,9 @@ class Reader {
       throw FileError(fmt::format("{}: a point names a block, corner or edge that there is not", vtk.file));
   }
 
-  struct Closing {
-    double time, closing, friction;
+  // What has been given to the blocks by a time [J].
+  struct Given {
+    double time, closing, joints, friction;
   };
 
   fs::path folder_;
@@ -380,7 +386,7 @@ class Reader {
   std::map<std::string, int> joint_of_name_, number_of_;
   std::map<std::pair<int, int>, int> joint_of_pair_;
   std::vector<std::pair<double, double>> stage_steps_;  // end, dt [s]
-  std::vector<Closing> closing_;
+  std::vector<Given> given_;
   double first_failed_ = std::nan(""), end_ = 0;
 };
 
@@ -399,6 +405,24 @@ void add_closing(double closing, double friction, double largest, bool lifting, 
               fmt::format("closing contacts have given {:.4g} J by t = {:.6g} s, {:.2g} % of the largest "
                           "term of the ledger; they can only take",
                           closing, time, 100 * closing / largest)});
+}
+
+void add_joint_work(const Rules& rules, double work, double friction, double largest, bool lifting,
+                    double time, Report& report) {
+  if (rules.in_situ || rules.changes) return;
+  const double allowed = kClosing * largest + report.slack + (lifting ? std::max(0.0, -friction) : 0);
+  if (!(work > allowed)) return;
+  report.add(
+      {Defect::kJointWork,
+       true,
+       -1,
+       -1,
+       time,
+       {},
+       work / largest,
+       fmt::format("elastic joints have given {:.4g} J by t = {:.6g} s, {:.2g} % of the largest term of "
+                   "the ledger; they can only give back what they have taken",
+                   work, time, 100 * work / largest)});
 }
 
 void add_failed(int64_t failed, double time, const std::string& where, Report& report) {

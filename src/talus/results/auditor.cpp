@@ -65,6 +65,9 @@ void Auditor::at(const Instant& i, bool frame) {
   if (e.work[Cause::kContactClosing] > closing_)
     closing_ = e.work[Cause::kContactClosing], closing_friction_ = e.work[Cause::kFriction],
     closing_time_ = i.state.time;
+  if (e.work[Cause::kJoints] > joints_)
+    joints_ = e.work[Cause::kJoints], joints_friction_ = e.work[Cause::kFriction],
+    joints_time_ = i.state.time;
 
   const double interval = scene_.model.output.audit_interval;
   bool due = frame;
@@ -79,6 +82,7 @@ void Auditor::at(const Instant& i, bool frame) {
 audit::Report Auditor::report() const {
   audit::Report out = report_;
   audit::add_closing(closing_, closing_friction_, largest_energy_, lifting_, closing_time_, out);
+  audit::add_joint_work(rules_, joints_, joints_friction_, largest_energy_, lifting_, joints_time_, out);
   audit::add_failed(failed_, first_failed_, worst_failed_, out);
   return out;
 }
@@ -219,6 +223,8 @@ void Auditor::exchange(X& x, Self& self) {
   x("audit.first_failed", self.first_failed_), x("audit.worst_failed", self.worst_failed_);
   x("audit.lifting", self.lifting_), x("audit.closing", self.closing_);
   x("audit.closing_friction", self.closing_friction_), x("audit.closing_time", self.closing_time_);
+  x("audit.joints", self.joints_), x("audit.joints_friction", self.joints_friction_);
+  x("audit.joints_time", self.joints_time_);
   x("audit.largest_energy", self.largest_energy_);
 }
 

@@ -43,6 +43,7 @@ class Auditor {
   double first_failed_ = 0;  // [s]
   std::string worst_failed_;
   double closing_ = 0, closing_friction_ = 0, closing_time_ = 0;  // at the largest work of closing contacts
+  double joints_ = 0, joints_friction_ = 0, joints_time_ = 0;     // at the largest work of elastic joints
   double largest_energy_ = 0;                                     // [J]
   // of the stage
   std::vector<audit::StepBlock> blocks_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include "support/box_polygon.h"
+#include "talus/audit/read_results.h"
 
 namespace test_check_frame {
 
@@ -415,6 +416,28 @@ TEST_CASE("audit: an overlap without a patch counts by what its joint would push
   }
   c.pair_last_two();
   CHECK(!has_any(c.look(), Defect::kUnexplainedOverlap));
+}
+
+TEST_CASE("audit: elastic joints give back no more than they have taken") {
+  const auto given = [](double work, double friction, bool lifting, const Rules& rules = {},
+                        double slack = 0) {
+    Report report;
+    report.slack = slack;
+    add_joint_work(rules, work, friction, 1000, lifting, 0.5, report);
+    return !report.valid();
+  };
+  CHECK(!given(-500, 0, false));
+  CHECK(!given(0.9, 0, false));
+  CHECK(given(1.1, 0, false));  // 1e-3 of the largest term
+  CHECK(!given(1.1, 0, false, {}, 0.2));
+  // friction pays for what dilation lifts
+  CHECK(!given(50, -60, true));
+  CHECK(given(70, -60, true));
+  CHECK(given(50, -60, false));
+  Rules ground, changing;
+  ground.in_situ = changing.changes = true;
+  CHECK(!given(50, 0, false, ground));
+  CHECK(!given(50, 0, false, changing));
 }
 
 TEST_CASE("audit: findings do not depend on threads, nor on where the model lies") {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "support/block_scene.h"
-#include "talus/contact/contact_rows.h"
-#include "talus/contact/pairs.h"
+#include "talus/corners/corner_rows.h"
+#include "talus/corners/follow.h"
 #include "talus/contact/patch_rows.h"
 
 namespace talus::test {

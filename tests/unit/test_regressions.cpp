@@ -10,7 +10,7 @@
 #include "support/box_polygon.h"
 #include "support/run_case.h"
 #include "talus/base/text.h"
-#include "talus/contact/contact_rows.h"
+#include "talus/corners/corner_rows.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/output/result_folder.h"
 

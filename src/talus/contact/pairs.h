@@ -1,13 +1,11 @@
 #pragma once
-// Which blocks are near each other and where they touch, kept from step to step: a list of close pairs with a
-// skin, and in each pair contact points that are sought anew only when the two have moved against each other.
-// Theory: docs/theory.md 3.1, 13.6.
+// Which blocks are near each other, kept from step to step: a list of close pairs with a skin. Theory: docs/theory.md 3.1.
 
 #include <algorithm>
 
 #include "talus/base/parallel.h"
 #include "talus/contact/bonds.h"
-#include "talus/contact/find.h"
+#include "talus/geometry/polygon.h"
 #include "talus/model/joint_law.h"
 
 namespace talus {
@@ -41,24 +39,26 @@ struct Approach {
 Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& state,
                      const std::vector<BlockRate>& rate, double dt, const Workers& workers);
 
-struct SearchReport {
-  int searched = 0;    // pairs whose contact points were sought anew
-  double seconds = 0;  // that took, all threads together
+/// Contact is sought this far ahead, as share of the smaller block; what is further away than the two come together by
+/// in one step has no force and costs only its row.
+inline constexpr double kMarginShare = 0.02;
+
+/// The smaller block of a pair and the larger one.
+struct BySize {
+  size_t small, large;
 };
+BySize by_size(const BlockSet& blocks, const ContactPair& pair);
 
-/// Brings the contact points of all pairs up to date (ContactSearch::touch): seeks them anew where the blocks
-/// of a pair have moved against each other, or against a third block that covers their sides, by more than
-/// its `reuse`, or look further ahead; follows the known ones elsewhere. How far ahead points are sought is a
-/// matter of the two blocks: 2 % of the smaller one, or what they come together by in two steps. Memory
-/// passes by place: to the same key, to the end of the same interface, to a corner that passed on to another
-/// edge of the same block.
-SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             const std::vector<JointLaw>& joints, const LookAhead& ahead,
-                             const Workers& workers, State& state);
+/// Whether a face between the two is intact: they have no contacts then.
+bool held_by_faces(const BondSet& bonds, const State& state, const ContactPair& pair);
 
-/// All contact points of blocks not tied by bonds, pair by pair, from scratch.
-/// @param margin  gaps up to which they are sought [m]
-std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& bonds, const State& state,
-                                        double margin, double look_ahead = 0);
+/// How fast the outermost places of a block move against its centroid at most [m/s].
+double turning_speed(const BlockSet& blocks, const std::vector<BlockRate>& rate, size_t i);
+
+/// Boxes around the blocks as they lie [count].
+std::vector<Box> boxes_now(const BlockSet& blocks, const State& state);
+
+/// Who is near whom, blocks that have been taken out left aside.
+void list_neighbours(const BlockSet& blocks, const std::vector<std::pair<int, int>>& close, Neighbours& out);
 
 }  // namespace talus

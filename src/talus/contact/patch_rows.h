@@ -3,7 +3,8 @@
 // Theory: docs/theory.md 3.8, 4.6, 4.22.
 
 #include "talus/contact/compliance.h"
-#include "talus/contact/contact_rows.h"
+#include "talus/contact/contact_give.h"
+#include "talus/contact/contact_place.h"
 #include "talus/contact/patches.h"
 
 namespace talus {

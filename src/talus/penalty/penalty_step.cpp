@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
-#include "talus/contact/pairs.h"
+#include "talus/corners/follow.h"
 #include "talus/rows/rows.h"
 #include "talus/supports/loads.h"
 

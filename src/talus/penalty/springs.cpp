@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "talus/blocks/in_situ.h"
-#include "talus/contact/find.h"
+#include "talus/corners/find.h"
 
 namespace talus {
 

@@ -8,7 +8,7 @@
 #include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/bonds.h"
-#include "talus/contact/find.h"
+#include "talus/corners/find.h"
 
 namespace talus {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "talus/base/error.h"
-#include "talus/contact/pairs.h"
+#include "talus/corners/follow.h"
 #include "talus/output/paraview_view.h"
 #include "talus/results/histories.h"
 #include "talus/results/step_table.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "talus/blocks/given_motion.h"
-#include "talus/contact/pairs.h"
+#include "talus/corners/follow.h"
 #include "talus/run/resolution.h"
 
 namespace talus {

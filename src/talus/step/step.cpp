@@ -7,6 +7,7 @@
 
 #include "talus/base/error.h"
 #include "talus/blocks/validate.h"
+#include "talus/corners/corner_rows.h"
 #include "talus/rows/validate_rows.h"
 #include "talus/step/chunks.h"
 #include "talus/step/parts.h"

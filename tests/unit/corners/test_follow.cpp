@@ -1,6 +1,6 @@
 // Pairs kept from step to step: contacts that are followed against contacts that are sought anew.
 
-#include "talus/contact/pairs.h"
+#include "talus/corners/follow.h"
 
 #include <doctest/doctest.h>
 

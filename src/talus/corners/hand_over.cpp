@@ -1,4 +1,4 @@
-#include "talus/contact/hand_over.h"
+#include "talus/corners/hand_over.h"
 
 #include <cmath>
 

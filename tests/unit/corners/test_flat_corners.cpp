@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "support/block_scene.h"
-#include "talus/contact/contact_rows.h"
+#include "talus/corners/corner_rows.h"
 #include "talus/step/scene.h"
 
 namespace test_flat_corners {

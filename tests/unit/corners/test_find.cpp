@@ -1,4 +1,4 @@
-#include "talus/contact/find.h"
+#include "talus/corners/find.h"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "support/block_scene.h"
-#include "talus/contact/contact_rows.h"
+#include "talus/corners/corner_rows.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/step/scene.h"
 

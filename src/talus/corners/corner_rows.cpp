@@ -1,4 +1,4 @@
-#include "talus/contact/contact_rows.h"
+#include "talus/corners/corner_rows.h"
 
 #include <algorithm>
 #include <cmath>

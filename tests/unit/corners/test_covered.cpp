@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "support/block_scene.h"
-#include "talus/contact/pairs.h"
+#include "talus/corners/follow.h"
 
 namespace test_covered {
 

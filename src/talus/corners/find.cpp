@@ -1,4 +1,4 @@
-#include "talus/contact/find.h"
+#include "talus/corners/find.h"
 
 #include <algorithm>
 #include <cmath>

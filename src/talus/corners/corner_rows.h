@@ -5,19 +5,10 @@
 
 #include "talus/contact/compliance.h"
 #include "talus/contact/contact_give.h"
-#include "talus/contact/pairs.h"
+#include "talus/contact/contact_place.h"
+#include "talus/corners/follow.h"
 
 namespace talus {
-
-/// Where a contact is now.
-struct ContactPlace {
-  double gap = 0;   // [m] > 0 apart
-  double slip = 0;  // [m] position of the foot along the tangent, in the material of the edge; of a new
-                    // contact less the elastic slip by the stress of the ground
-  double size = 0;  // of the smaller block [m]
-  double closed =
-      0;  // overlap less the rise as share of the mean thickness, along the normal, of the thinner block
-};
 
 /// Rows of state.contacts, appended: normal row, friction with a stick anchor, compliant where the joint has
 /// stiffness. First guess and anchor come from the memory of each contact.

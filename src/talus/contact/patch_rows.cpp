@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "talus/base/error.h"
+#include "talus/contact/hard_contact.h"
 #include "talus/contact/joint_state.h"
 
 namespace talus {
@@ -20,24 +20,6 @@ constexpr size_t kPatchRowGrain = 256;
 // A hard contact that faces the other block over less than this share of the smaller one is a corner against a
 // corner: it gives the more, the shorter that is (theory 4.22).
 constexpr double kFullFace = 1e-4;
-
-// What an overlap that a hard contact was born with loses in a step: a thousandth of it, at most this share of the
-// smaller block. Pushed out at once it would leave with the speed of overlap over time step.
-constexpr double kPatchPushedOut = 1e-3, kPatchMostPushedOut = 1e-7;
-
-// What is left of it and forgotten, as share of the smaller block.
-constexpr double kPatchLeastAllowed = 1e-12;
-
-double hard_gap_bias(double gap, double slop, double dt) {
-  if (gap >= 0) return gap / dt;
-  return std::min(gap + 0.5 * slop, 0.0) / dt;
-}
-
-// What of a distance lies beyond half the slop (theory 4.10).
-double beyond_slop(double off, double slop) {
-  if (std::abs(off) <= 0.5 * slop) return 0;
-  return off > 0 ? off - 0.5 * slop : off + 0.5 * slop;
-}
 
 class PatchRows {
  public:
@@ -123,7 +105,8 @@ class PatchRows {
     rows_.owner[r] = {Family::kContact, static_cast<int>(2 * i + end)};
   }
 
-  // The two ends share the compliance 2/(k b t) [[2, -1], [-1, 2]] (eq. 3.4); where two joints meet, k is mixed.
+  // The two ends share the compliance 2/(k b t) [[2, -1], [-1, 2]] (eq. 3.4), that of a foundation (eq. 4.1a); where two
+  // joints meet, k is mixed.
   void add_mixed_compliance(const Patch& c, const JointLaw& law, double half_area,
                             const std::array<double, 2>& u, PointRows& p) const {
     if (c.other_share == 0) return add_compliance(law, half_area, true, clock_, u, p);
@@ -163,20 +146,8 @@ class PatchRows {
     if (-c.gap[end] <= kDeepNoticed * thinnest_) return share;
     for (const int block : {c.block_a, c.block_b})
       if (-c.gap[end] > kDeepNoticed * w_.blocks.thinness[static_cast<size_t>(block)])
-        share = std::max(share, -c.gap[end] / thickness_along(block, c.normal));
+        share = std::max(share, -c.gap[end] / thickness_along(w_.blocks, state_, block, c.normal));
     return share;
-  }
-
-  // Mean thickness of a block: its area over its extent across `normal` [m].
-  double thickness_along(int block, Vec2 normal) const {
-    const auto k = static_cast<size_t>(block);
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (int v = 0; v < w_.blocks.vertex_count(block); ++v) {
-      const Vec2 X = w_.blocks.corner({block, v});
-      const double at = cross(normal, X + state_.strain_part[k] * X);
-      least = std::min(least, at), most = std::max(most, at);
-    }
-    return w_.blocks.size[k] * w_.blocks.size[k] / (most - least);
   }
 
   const PatchWorld& w_;
@@ -234,12 +205,7 @@ void remember_patches(const RowSet& rows, RowRange range, const std::vector<Cont
     }
     c.touched = c.touched || held;
     c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
-    double& allowed = c.allowed[end];
-    if (allowed > 0) {
-      allowed = std::min(allowed, c.closure[end]);
-      allowed -= std::min(kPatchPushedOut * allowed, kPatchMostPushedOut * at.size);
-      if (!(allowed > kPatchLeastAllowed * at.size)) allowed = 0;
-    }
+    push_out(c.closure[end], at.size, c.allowed[end]);
   }
 }
 

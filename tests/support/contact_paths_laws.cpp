@@ -87,7 +87,7 @@ class LawForces : public ContactForces {
       PatchSearch().update(world, ahead, Workers(), state_);
       add_patch_rows(world, scene.give, state_, still, kClock, Workers(), rows_, place_);
     } else {
-      update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, Workers(), state_);
+      update_contacts(scene.blocks, scene.bonds, scene.layout, ahead, Workers(), state_);
       add_contact_rows(scene.blocks, scene.model, scene.laws, scene.give, state_, still, kClock, Workers(),
                        rows_, place_);
     }

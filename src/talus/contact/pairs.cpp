@@ -29,8 +29,6 @@ double speed_of(const BlockSet& blocks, const std::vector<BlockRate>& rate, size
 double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
   if (std::none_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })) return 0;
   double rise = 0;
-  for (const Contact& c : state.contacts)
-    if (c.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(c.joint)].rise(c.slip));
   for (const Patch& p : state.patches)
     for (const double slip : p.slip)
       if (p.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(p.joint)].rise(slip));

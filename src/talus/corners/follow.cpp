@@ -168,15 +168,9 @@ struct Changed {
 
 class Updater {
  public:
-  Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-          const std::vector<JointLaw>& joints, const LookAhead& ahead, State& state)
-      : blocks_(blocks),
-        bonds_(bonds),
-        joints_of_(joints_of),
-        joints_(joints),
-        ahead_(ahead),
-        dilates_(std::any_of(joints.begin(), joints.end(), [](const JointLaw& j) { return j.dilates(); })),
-        state_(state) {}
+  Updater(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of, const LookAhead& ahead,
+          State& state)
+      : blocks_(blocks), bonds_(bonds), joints_of_(joints_of), ahead_(ahead), state_(state) {}
 
   SearchReport run(const Workers& workers) {
     turning_.resize(static_cast<size_t>(blocks_.count));
@@ -200,14 +194,9 @@ class Updater {
  private:
   // How far ahead the points of a pair have to be sought in this step [m].
   double needed(const ContactPair& pair) const {
-    double rise = 0;
-    for (int k = 0; dilates_ && k < pair.count; ++k) {
-      const Contact& c = state_.contacts[static_cast<size_t>(pair.begin + k)];
-      if (c.joint >= 0) rise = std::max(rise, joints_[static_cast<size_t>(c.joint)].rise(c.slip));
-    }
     const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
     const std::vector<BlockRate>& rate = ahead_.before;
-    return 2 * ahead_.clock.dt * (norm(rate[a].a - rate[b].a) + turning_[a] + turning_[b]) + 2 * rise;
+    return 2 * ahead_.clock.dt * (norm(rate[a].a - rate[b].a) + turning_[a] + turning_[b]);
   }
 
   void look_at(size_t begin, size_t end) {
@@ -342,9 +331,7 @@ class Updater {
   const BlockSet& blocks_;
   const BondSet& bonds_;
   const Layout& joints_of_;
-  const std::vector<JointLaw>& joints_;
   const LookAhead& ahead_;
-  const bool dilates_;
   State& state_;
   std::vector<double> turning_;  // [count] how fast places move against the centroid [m/s]
   std::vector<Changed> changed_;
@@ -355,10 +342,9 @@ class Updater {
 
 // Theory 13.6.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             const std::vector<JointLaw>& joints, const LookAhead& ahead,
-                             const Workers& workers, State& state) {
+                             const LookAhead& ahead, const Workers& workers, State& state) {
   TALUS_ASSERT(joints_of.blocks.size() == static_cast<size_t>(blocks.count));
-  return Updater(blocks, bonds, joints_of, joints, ahead, state).run(workers);
+  return Updater(blocks, bonds, joints_of, ahead, state).run(workers);
 }
 
 std::vector<ContactPoint> find_contacts(const BlockSet& blocks, const BondSet& bonds, const State& state,

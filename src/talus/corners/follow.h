@@ -19,8 +19,7 @@ struct SearchReport {
 /// passes by place: to the same key, to the end of the same interface, to a corner that passed on to another
 /// edge of the same block.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
-                             const std::vector<JointLaw>& joints, const LookAhead& ahead,
-                             const Workers& workers, State& state);
+                             const LookAhead& ahead, const Workers& workers, State& state);
 
 /// All contact points of blocks not tied by bonds, pair by pair, from scratch.
 /// @param margin  gaps up to which they are sought [m]

@@ -96,7 +96,7 @@ PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bo
 void PenaltySteps::seek_contacts(State& state) {
   const LookAhead ahead{work_.clock, work_.rate_before};
   renew_pairs(scene_.blocks, scene_.bonds, scene_.layout, scene_.laws, ahead, work_.workers, state);
-  update_contacts(scene_.blocks, scene_.bonds, scene_.layout, scene_.laws, ahead, work_.workers, state);
+  update_contacts(scene_.blocks, scene_.bonds, scene_.layout, ahead, work_.workers, state);
 }
 
 void PenaltySteps::stand(const PenaltySettings& settings, double dt, State& state) {

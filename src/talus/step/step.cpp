@@ -50,7 +50,7 @@ void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport&
     return;
   }
   const SearchReport sought =
-      update_contacts(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, work.workers, state);
+      update_contacts(scene.blocks, scene.bonds, scene.layout, ahead, work.workers, state);
   // threads seek side by side
   work.profile.move(Profile::kMargins, Profile::kSearch, sought.seconds / work.workers.threads());
   work.profile.sought += report.searched = sought.searched;

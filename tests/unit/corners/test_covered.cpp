@@ -30,9 +30,7 @@ int update(const Scene& scene, State& state) {
   const LookAhead ahead{clock, state.rate};
   renew_pairs(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead, Workers(),
               state);
-  return update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead,
-                         Workers(), state)
-      .searched;
+  return update_contacts(scene.blocks, scene.bonds, scene.layout, ahead, Workers(), state).searched;
 }
 
 std::vector<Contact> contacts_of(const State& state, int a, int b) {

@@ -68,9 +68,7 @@ int update(const Scene& scene, State& state) {
   const LookAhead ahead{clock, state.rate};
   renew_pairs(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead, Workers(),
               state);
-  return update_contacts(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints), ahead,
-                         Workers(), state)
-      .searched;
+  return update_contacts(scene.blocks, scene.bonds, scene.layout, ahead, Workers(), state).searched;
 }
 
 // The same, every pair sought anew: what was in touch stays on its side.

@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "support/block_scene.h"
-#include "talus/corners/corner_rows.h"
-#include "talus/corners/follow.h"
 #include "talus/contact/patch_rows.h"
 
 namespace talus::test {
@@ -51,22 +49,18 @@ void solve_couple(int k, size_t first, RowSet& rows) {
   }
 }
 
-class LawForces : public ContactForces {
+class PatchForces : public ContactForces {
  public:
-  LawForces(const ContactPath& path, bool by_patches)
-      : by_patches_(by_patches),
-        path_(&path),
-        scene_(std::make_shared<const Scene>(path_scene(path))),
-        state_(start_state(*scene_)) {
+  explicit PatchForces(const ContactPath& path)
+      : path_(&path), scene_(std::make_shared<const Scene>(path_scene(path))), state_(start_state(*scene_)) {
     state_.step = 1;  // no stress of the ground
   }
 
-  std::unique_ptr<ContactForces> copy() const override { return std::make_unique<LawForces>(*this); }
+  std::unique_ptr<ContactForces> copy() const override { return std::make_unique<PatchForces>(*this); }
 
   PathForces at(double s, double ds) override {
     if (!begun_) {  // the overlaps of the start were not born there
       find(s, ds);
-      for (Contact& c : state_.contacts) c.allowed = 0;
       begun_ = true;
     }
     return find(s, ds);
@@ -74,23 +68,16 @@ class LawForces : public ContactForces {
 
  private:
   PathForces find(double s, double ds) {
-    if (by_patches_ && rows_.size() > 0) go_on_to(s);
+    if (rows_.size() > 0) go_on_to(s);
     put_blocks(s, ds);
     const LookAhead ahead{kClock, state_.rate};
     const Scene& scene = *scene_;
     renew_pairs(scene.blocks, scene.bonds, scene.layout, scene.laws, ahead, Workers(), state_);
     const std::vector<BlockRate> still(path_->blocks.size());
     rows_.restart();
-    if (by_patches_) {
-      const PatchWorld world{scene.blocks, scene.outlines, scene.bonds,
-                             scene.layout, scene.model,    scene.laws};
-      PatchSearch().update(world, ahead, Workers(), state_);
-      add_patch_rows(world, scene.give, state_, still, kClock, Workers(), rows_, place_);
-    } else {
-      update_contacts(scene.blocks, scene.bonds, scene.layout, ahead, Workers(), state_);
-      add_contact_rows(scene.blocks, scene.model, scene.laws, scene.give, state_, still, kClock, Workers(),
-                       rows_, place_);
-    }
+    const PatchWorld world{scene.blocks, scene.outlines, scene.bonds, scene.layout, scene.model, scene.laws};
+    PatchSearch().update(world, ahead, Workers(), state_);
+    add_patch_rows(world, scene.give, state_, still, kClock, Workers(), rows_, place_);
     rows_.finish();
     for (size_t i = 0; i < rows_.size(); ++i) {
       const int partner = rows_.points[i].partner;
@@ -99,7 +86,6 @@ class LawForces : public ContactForces {
     }
     const PathForces forces = summed();
     last_ = s;
-    if (!by_patches_) remember_contacts(rows_, rows_.range(Family::kContact), place_, kClock, state_);
     return forces;
   }
 
@@ -151,7 +137,6 @@ class LawForces : public ContactForces {
     sum.force += force, sum.moment += cross(arm, force) / path_->size;
   }
 
-  bool by_patches_;
   const ContactPath* path_;
   std::shared_ptr<const Scene> scene_;
   State state_;
@@ -163,12 +148,8 @@ class LawForces : public ContactForces {
 
 }  // namespace
 
-std::unique_ptr<ContactForces> corner_forces(const ContactPath& path) {
-  return std::make_unique<LawForces>(path, false);
-}
-
 std::unique_ptr<ContactForces> patch_forces(const ContactPath& path) {
-  return std::make_unique<LawForces>(path, true);
+  return std::make_unique<PatchForces>(path);
 }
 
 }  // namespace talus::test

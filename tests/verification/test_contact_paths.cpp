@@ -1,5 +1,5 @@
 // Contact forces along smooth motions of a few blocks: the judge itself on laws that are known to be smooth
-// or to jump, and what it finds of the search for corners over edges.
+// or to jump, and what it finds of patches.
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -201,9 +201,9 @@ TEST_CASE(
   CHECK(walk(path, PlantedForces(law, {nan, 0.7, 0, false})).normal.size == HUGE_VAL);
 }
 
-TEST_CASE("contact paths: corners over edges bear the overlap of a face, and its shear up to the friction") {
+TEST_CASE("contact paths: patches bear the overlap of a face, and its shear up to the friction") {
   const ContactPath path = pressed_box(1e-3, 1e-2);
-  const auto law = corner_forces(path);
+  const auto law = patch_forces(path);
   PathForces now;
   constexpr int kSteps = 100;  // of 0.1 mm
   for (int i = 0; i <= kSteps; ++i) {
@@ -264,14 +264,6 @@ TEST_CASE("contact paths: forces of patches do not jump") { patches_are_continuo
 
 TEST_SUITE("long: paths") {
   TEST_CASE("contact paths: forces of patches do not jump along many paths") { patches_are_continuous(400); }
-
-  // known to jump: only that all was walked is asked for
-  TEST_CASE("contact paths: defects of corners over edges, as a table") {
-    for (const char family : kPathFamilies)
-      CHECK(
-          defects_of(corner_forces, {.normal = 1e-2, .whole = 1e-2}, family, kDeepestClosure, 400).touching >
-          360);
-  }
 }
 
 }  // namespace test_contact_paths

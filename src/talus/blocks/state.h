@@ -73,7 +73,6 @@ struct Contact {
   int16_t partner = -1;  // the other end of its face: its place in the list of the pair, -1: none
   Memory memory = kNone;
   bool touched = false;  // the two have been in touch here
-  int8_t toes = 3;       // ContactPoint::toes
   FaceEnd face;
   double allowed = 0;  // [m] overlap it was born with and may keep for now, as a gap it is counted from
   double length = 0;   // [m] half that face

@@ -18,12 +18,12 @@ concept Is = std::same_as<std::remove_const_t<T>, Of>;
 // fields may only be read.
 
 void each_field(Is<Contact> auto& c, auto&& f) {
-  auto& [key, joint, partner, memory, touched, toes, face, allowed, length, force, stretch, anchor, slip,
+  auto& [key, joint, partner, memory, touched, face, allowed, length, force, stretch, anchor, slip,
          slip_signed] = c;
   auto& [block_a, vertex, block_b, edge] = key;
   auto& [side_lo, side_hi, end] = face;
   f("block_a", block_a), f("vertex", vertex), f("block_b", block_b), f("edge", edge);
-  f("joint", joint), f("partner", partner), f("memory", memory), f("touched", touched), f("toes", toes);
+  f("joint", joint), f("partner", partner), f("memory", memory), f("touched", touched);
   f("side_lo", side_lo), f("side_hi", side_hi), f("face_end", end);
   f("allowed", allowed), f("length", length), f("force", force), f("stretch", stretch), f("anchor", anchor);
   f("slip", slip), f("slip_signed", slip_signed);

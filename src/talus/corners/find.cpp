@@ -618,26 +618,6 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
   }
 }
 
-// Which sides of a corner alone bear on its edge by themselves: not those whose interface has its own two
-// ends (theory 13.6).
-void ContactSearch::find_toes(const Outline& a, const Outline& b) {
-  for (Hit& h : hits_) {
-    if (h.point.partner >= 0) continue;
-    const ContactKey& k = h.point.key;
-    const Outline &on_a = k.block_a == a.block ? a : b, &on_b = k.block_a == a.block ? b : a;
-    const int side_b = on_b.side_of(k.edge);
-    int bit = 1;
-    for (const int f : {k.vertex, on_a.before(k.vertex)}) {
-      const int side_a = on_a.side_of(f);
-      const int lo = k.block_a < k.block_b ? side_a : side_b, hi = k.block_a < k.block_b ? side_b : side_a;
-      for (const Hit& o : hits_)
-        if (o.point.partner >= 0 && o.point.face.side_lo == lo && o.point.face.side_hi == hi)
-          h.point.toes &= ~bit;
-      bit = 2;
-    }
-  }
-}
-
 const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, int a, int b,
                                   const SearchRange& range) {
   TALUS_ASSERT(a != b && range.margin >= 0);
@@ -666,7 +646,6 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
   std::erase_if(hits_, [](const Hit& h) { return h.apart; });
   std::sort(hits_.begin(), hits_.end(), [](const Hit& x, const Hit& y) { return x.point.key < y.point.key; });
   share_faces(first_, second_, shift);
-  find_toes(first_, second_);
   for (const Hit& h : hits_) found_.points.push_back(h.point);
   return found_;
 }

@@ -21,8 +21,6 @@ struct ContactPoint {
   int face_edge_a = -1, face_edge_b = -1;  // edges of a and b beside the middle of that face; -1: none
   int partner = -1;  // the other end of that face: its place in the list; each is the other's; -1: none
   FaceEnd face;      // which end of which interface, where it has a partner
-  int toes = 3;      // where it has none: 1: the side after the corner is no part of an interface with this
-                     // edge's side, 2: nor is the side before it
 };
 
 /// Gap and foot of a corner over an edge; digits are kept however far both are from the origin.
@@ -141,7 +139,6 @@ class ContactSearch {
                      Vec2 direction);
   void merge_corner_pairs(const Outline& a, const Outline& b, Vec2 shift);
   void share_faces(const Outline& a, const Outline& b, Vec2 shift);
-  void find_toes(const Outline& a, const Outline& b);
   void spans_of(const Outline& a, const Outline& b, const Hit& h, std::vector<Span>& list) const;
 
   SearchRange range_;

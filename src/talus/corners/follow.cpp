@@ -133,7 +133,6 @@ Contact contact_of(const BlockSet& blocks, const State& s, const ContactPoint& p
   Contact c;
   c.key = point.key;
   c.partner = static_cast<int16_t>(point.partner), c.length = point.length, c.face = point.face;
-  c.toes = static_cast<int8_t>(point.toes);
   const ContactKey& key = point.key;
   const auto [from, kind] = memory.of(point);
   if (from && plain && kind == Origin::kKey && from->face == point.face)

@@ -90,7 +90,6 @@ void judge_contacts(const State& s, const Scene& scene) {
     promise_loaded(
         is_side(lo, c.face.side_lo) && is_side(hi, c.face.side_hi) && (c.face.end == 0 || c.face.end == 1),
         "a contact lies on a side that its blocks do not have");
-    promise_loaded(c.toes >= 0 && c.toes <= 3, fmt::format("a contact has toes {}", c.toes));
   }
 }
 

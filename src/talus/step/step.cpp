@@ -70,8 +70,7 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   if (scene.by_patches())
     add_patch_rows(patch_world(scene), scene.give, state, before, clock, work.workers, rows, work.places);
   else
-    add_contact_rows(blocks, model, scene.laws, scene.give, state, before, clock, work.workers, rows,
-                     work.places);
+    add_corner_rows(blocks, model, scene.laws, state, clock, work.workers, rows, work.places);
   work.profile.go_on_with(Profile::kHeld);
   add_support_rows(blocks, model, scene.supported, state, clock, rows);
   add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.columns, rows);
@@ -128,7 +127,7 @@ RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
         if (scene.by_patches())
           remember_patches(work.rows, here, work.places, work.rate_before, work.clock, state);
         else
-          remember_contacts(work.rows, here, work.places, work.clock, state);
+          remember_corners(work.rows, here, work.places, work.clock, state);
       });
 }
 

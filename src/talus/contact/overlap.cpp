@@ -114,6 +114,13 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   };
   if (kept && stands(*kept) && kept->then >= best->then - before.by && (!apart || in_line(*kept)))
     best = kept;
+  met_.at_corner = false;
+  for (const Way& w : ways_) {
+    double low = 0;
+    if (!apart && &w != best && w.then >= best->then - before.by &&
+        facing_along(part(w.of_b).along[w.side], low) <= before.by)
+      met_.at_corner = true;
+  }
   met_.tied = part(best->of_b).role_of(best->side) != SideRole::kOut;
   const Vec2 out = turn_right(part(best->of_b).along[best->side]);
   met_.way = best->number();

@@ -169,8 +169,8 @@ class PairSearch {
       patch.area = met.area, patch.way = 0;
       mix_joints(met, p, q, patch);
     } else {
-      if (met.tied || !meeting_.face_ends(margin_)) return;
-      if (met.length() <= kLeastFace * size_) return;
+      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return;
+      if (!patch.overlaps && met.length() <= kLeastFace * size_) return;
     }
     write_place(met, shift, patch);
     for (size_t end = 0; end < 2; ++end) patch.gap[end] = lifted - met.closure[end];
@@ -300,7 +300,10 @@ class PairSearch {
     if (pair_->face >= 0) take_from_faces(t, x0, nearest, field, patch);
     patch.stretch = field.ends();
     if (own) {
-      patch.force = own->force, patch.allowed = own->allowed, patch.root_kept = own->root_kept;
+      patch.force = own->force, patch.root_kept = own->root_kept;
+      // what has come out of an overlap does not go in again, be it by a turn
+      for (size_t end = 0; end < 2; ++end)
+        patch.allowed[end] = std::max(0.0, std::min(own->allowed[end], patch.closure[end]));
     }
     if (state_.step == 0) stretch_by_ground(patch);
   }

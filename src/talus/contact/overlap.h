@@ -58,10 +58,9 @@ struct PartsMet {
   double across[2]{};   // how far b's surface lies from there, against the normal: of face ends [m]
   double closure[2]{};  // at begin and end, linear between, of this force and moment [m]; < 0: a gap
   int way = 0;          // the side whose normal that is: of b 1, 2 and so on, of a -1, -2
-  bool at_corner =
-      false;  // of an overlap: along another way, as good, nothing of the two faces each other: two corners
-  bool tied = false;                       // the nearest way out of an overlap is one that a tie closes
-  bool beyond = false;                     // the force acts beyond an end of the chord, and is put there
+  bool at_corner = false;  // two corners in each other: along another way, as good, nothing of the two faces
+  bool tied = false;       // the nearest way out of an overlap is one that a tie closes
+  bool beyond = false;     // the force acts beyond an end of the chord, and is put there
   int side_a = -1, side_b = -1;            // the sides that have most of it
   std::vector<SideCell> cells_a, cells_b;  // of an overlap
   double length() const { return norm(end - begin); }

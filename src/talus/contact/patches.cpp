@@ -178,7 +178,7 @@ class PairSearch {
     for (size_t end = 0; end < 2; ++end)
       if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
     if (soft)
-      measure(met, before, patch), from_ground(lifted, patch);
+      measure(met, before, patch), count_from_ground(lifted > 0, patch);
     else if (!before || dot(before->normal, patch.normal) < kSameWay)
       for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
     out.push_back(patch);
@@ -369,10 +369,10 @@ class PairSearch {
     for (double& c : patch.closure) c *= share;
   }
 
-  // Gaps of elastic patches count from what the stress of the ground has closed.
-  void from_ground(double lifted, Patch& patch) const {
+  // Gaps of elastic patches count from what the stress of the ground has closed; closures hold the rise of each end.
+  void count_from_ground(bool lifted, Patch& patch) const {
     for (size_t end = 0; end < 2; ++end)
-      patch.gap[end] = lifted + ground_at(patch, end).x - patch.closure[end];
+      patch.gap[end] = (lifted ? rise(patch, end) : 0) + ground_at(patch, end).x - patch.closure[end];
   }
 
   // At the start a patch bears what the stress of the ground asks of the faces there, a crossing nothing.

@@ -64,7 +64,8 @@ void Watch::look(const Step& step, Report& report) {
 // more is looked at.
 void Watch::forces_gone(const Step& step, Report& report) const {
   double mean = 0;
-  for (const StepPoint& p : before_) mean += p.normal_force / static_cast<double>(before_.size());
+  for (const StepPoint& p : before_) mean += p.normal_force;
+  if (!before_.empty()) mean /= static_cast<double>(before_.size());
   size_t now = 0;
   for (const StepPoint& p : before_) {
     while (now < step.points.size() && pair_of(step.points[now]) < pair_of(p)) ++now;

@@ -91,10 +91,11 @@ struct Patch {
   int side_a = -1, side_b = -1;      // edges of the blocks that have most of it; -1: none in particular
   int joint = -1, other_joint = -1;  // -1: hard and frictionless; the other one where two meet
   double other_share = 0;            // of the other one
-  int way = 0;                       // side of the parts along which it keeps them apart: of b > 0, of a < 0
-  bool touched = false;              // the two have been in touch here
-  bool overlaps = false;             // they do
-  Vec2 normal;                       // unit, from b into a; the tangent is the normal turned clockwise
+  int way = 0;            // side of the parts along which it keeps them apart: of b > 0, of a < 0; of what
+                          // elastic joints measure, the face of b of a strip
+  bool touched = false;   // the two have been in touch here
+  bool overlaps = false;  // they do
+  Vec2 normal;            // unit, from b into a; the tangent is the normal turned clockwise
   std::array<Vec2, 2> arm_a, arm_b;  // reference arms of the chord's ends, the first along the tangent first
   std::array<double, 2> closure{};   // at the ends, of what it bears; < 0: a gap [m]
   std::array<double, 2> gap{};       // at the ends, of positions: > 0 apart [m]

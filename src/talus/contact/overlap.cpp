@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/contact/moments.h"
+
 namespace talus {
 
 namespace {
@@ -21,22 +23,8 @@ constexpr double kOneFace = 0.1;
 // Chords this many roundings of coordinates short are none.
 constexpr double kSliver = 100;
 
-struct Moments {
-  double area = 0;
-  Vec2 first;  // integral of the place
-};
-
-Moments moments(const std::vector<Vec2>& p) {
-  Moments m;
-  if (p.size() < 3) return m;
-  for (size_t i = 1; i + 1 < p.size(); ++i) {
-    const Vec2 u = p[i] - p[0], v = p[i + 1] - p[0];
-    const double half = 0.5 * cross(u, v);
-    m.area += half, m.first += (half / 3) * (u + v);
-  }
-  m.first += m.area * p[0];
-  return m;
-}
+// Places along the tangent that are one, as share of a face: what coordinates are rounded to, with room.
+constexpr double kSamePlace = 1e-12;
 
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
@@ -57,10 +45,6 @@ void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
 
 }  // namespace
 
-double PartsMeeting::depth_of(bool of_b, size_t side, Vec2 x) const {
-  return cross(part(of_b).along[side], x - corner(of_b, side));
-}
-
 // Convex parts overlap unless a side of one has all of the other before it.
 void PartsMeeting::find_ways(double margin, double rounding) {
   bool apart = false, blocked = false;
@@ -70,18 +54,13 @@ void PartsMeeting::find_ways(double margin, double rounding) {
     for (size_t j = 0; j < own.size(); ++j) {
       const Vec2 along = own.along[j];
       const Vec2 from = of_b ? own.corner[j] + shift_ : own.corner[j] - shift_;
-      double most = -kAll, least = kAll;
-      size_t nearest = 0;
-      for (size_t i = 0; i < other.size(); ++i) {
-        const double depth = cross(along, other.corner[i] - from);
-        if (depth > most) most = depth, nearest = i;
-        least = std::min(least, depth);
-      }
-      if (of_b) least_[j] = least;
+      double most = -kAll;
+      for (const Vec2 x : other.corner) most = std::max(most, cross(along, x - from));
       met_.kind = PartsMet::kFar;
       if (-most > margin) return;
-      if (own.role_of(j) != SideRole::kCut) ways_.push_back({of_b, j, nearest, -most});
-      if (own.role_of(j) == SideRole::kOut)
+      const SideRole role = own.role_of(j);
+      if (role != SideRole::kCut) ways_.push_back({of_b, j, -most});
+      if (role == SideRole::kOut)
         apart = apart || most <= rounding;
       else
         blocked = blocked || most < 0;
@@ -94,10 +73,14 @@ void PartsMeeting::find_ways(double margin, double rounding) {
 // the step. Where that is one that they are level along now and stay so, as corners of level blocks do that slide past
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
 void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
-  find_moves(false, motion_a, motion_b), find_moves(true, motion_b, motion_a);
+  const double moves = std::max(find_moves(false, motion_a, motion_b), find_moves(true, motion_b, motion_a));
+  double widest = -kAll;
+  for (const Way& w : ways_) widest = std::max(widest, w.gap);
+  // what is behind the best by more than all moves is neither the best nor as good
+  const double least = widest - 2 * moves - before.by;
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
-    w.then = then_before(w);
+    w.then = w.gap < least ? -kAll : then_before(w);
     if (!best || w.then > best->then) best = &w;
     if (w.number() == before.way) kept = &w;
   }
@@ -105,8 +88,11 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   const auto stands = [&](const Way& w) { return !apart || w.gap >= -rounding_; };
   if (!stands(*best) && best->then < -before.by) {
     best = nullptr;
-    for (const Way& w : ways_)
-      if (stands(w) && (!best || w.then > best->then)) best = &w;
+    for (Way& w : ways_) {
+      if (!stands(w)) continue;
+      w.then = then_before(w);
+      if (!best || w.then > best->then) best = &w;
+    }
   }
   if (!stands(*best)) met_.kind = PartsMet::kFar;
   const auto in_line = [&](const Way& w) {
@@ -115,28 +101,31 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   if (kept && stands(*kept) && kept->then >= best->then - before.by && (!apart || in_line(*kept)))
     best = kept;
   met_.at_corner = false;
-  for (const Way& w : ways_) {
-    double low = 0;
+  for (const Way& w : ways_)
     if (!apart && &w != best && w.then >= best->then - before.by &&
-        facing_along(part(w.of_b).along[w.side], low) <= before.by)
+        facing_along(part(w.of_b).along[w.side]) <= before.by)
       met_.at_corner = true;
-  }
   met_.tied = part(best->of_b).role_of(best->side) != SideRole::kOut;
   const Vec2 out = turn_right(part(best->of_b).along[best->side]);
   met_.way = best->number();
   met_.normal = best->of_b ? out : -out;
   (best->of_b ? met_.side_b : met_.side_a) = static_cast<int>(best->side);
-  (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(!best->of_b, best->corner, out));
+  (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(!best->of_b, *best, out));
 }
 
-// Where the corners of a part are going to be at the end of the step, as the other part sees them.
-void PartsMeeting::find_moves(bool of_b, const PartMotion& own, const PartMotion& other) {
+// Where the corners of a part are going to be at the end of the step, as the other part sees them; returns how far
+// they move at most, or more.
+double PartsMeeting::find_moves(bool of_b, const PartMotion& own, const PartMotion& other) {
   std::vector<Vec2>& then = then_[of_b];
   then.resize(part(of_b).size());
+  double most = 0;
   for (size_t k = 0; k < then.size(); ++k) {
     const Vec2 x = part(of_b).corner[k], seen = of_b ? x + shift_ : x - shift_;  // from the other's origin
-    then[k] = seen + ((own.way + own.turn * x) - (other.way + other.turn * seen));
+    const Vec2 move = (own.way + own.turn * x) - (other.way + other.turn * seen);
+    then[k] = seen + move;
+    most = std::max(most, std::abs(move.x) + std::abs(move.y));
   }
+  return most;
 }
 
 // How far the nearest corner of the other part is going to be before a side at the end of the step.
@@ -147,10 +136,9 @@ double PartsMeeting::then_before(const Way& w) const {
   return least;
 }
 
-// Over how much of a line the two parts lie beside each other; `low` is where that begins.
-double PartsMeeting::facing_along(Vec2 tangent, double& low) const {
-  low = -kAll;
-  double high = kAll;
+// Over how much of a line the two parts lie beside each other.
+double PartsMeeting::facing_along(Vec2 tangent) const {
+  double low = -kAll, high = kAll;
   for (const bool of_b : {false, true}) {
     double first = kAll, last = -kAll;
     for (size_t k = 0; k < part(of_b).size(); ++k) {
@@ -162,19 +150,25 @@ double PartsMeeting::facing_along(Vec2 tangent, double& low) const {
   return high - low;
 }
 
-// Of the two sides at a corner the one that faces a direction the most.
-size_t PartsMeeting::facing_side(bool of_b, size_t corner, Vec2 direction) const {
+// Of the two sides at the corner of a part that is nearest to a way of the other, the one that faces it the most.
+size_t PartsMeeting::facing_side(bool of_b, const Way& way, Vec2 direction) const {
   const PartNow& own = part(of_b);
-  const size_t before = corner == 0 ? own.size() - 1 : corner - 1;
-  return dot(turn_right(own.along[before]), direction) < dot(turn_right(own.along[corner]), direction)
+  size_t nearest = 0;
+  double most = -kAll;
+  for (size_t k = 0; k < own.size(); ++k)
+    if (const double depth = depth_of(!of_b, way.side, corner(of_b, k)); depth > most)
+      most = depth, nearest = k;
+  const size_t before = nearest == 0 ? own.size() - 1 : nearest - 1;
+  return dot(turn_right(own.along[before]), direction) < dot(turn_right(own.along[nearest]), direction)
              ? before
-             : corner;
+             : nearest;
 }
 
 void PartsMeeting::clip() {
   region_.assign(a_.corner.begin(), a_.corner.end());
   for (size_t j = 0; j < b_.size() && !region_.empty(); ++j) {
-    if (least_[j] >= 0) continue;
+    const auto below = [&](Vec2 x) { return depth_of(true, j, x) < 0; };
+    if (std::none_of(a_.corner.begin(), a_.corner.end(), below)) continue;
     keep(
         region_, [&](Vec2 x) { return depth_of(true, j, x); }, work_);
     region_.swap(work_);
@@ -327,14 +321,30 @@ bool PartsMeeting::sum_up() {
 }
 
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
-                                   double rounding) {
+                                   double rounding, int face) {
   a_ = a, b_ = b, shift_ = shift, rounding_ = rounding;
-  least_.resize(b.size());
-  find_ways(margin, rounding);
+  is_strip_ =
+      face > 0 && static_cast<size_t>(face) <= b.size() && measure_strip(true, static_cast<size_t>(face) - 1);
+  if (is_strip_)
+    met_.kind = PartsMet::kOverlap;
+  else
+    find_ways(margin, rounding);
   return met_;
 }
 
 bool PartsMeeting::measure_overlap() {
+  if (!is_strip_) {
+    const Way* best = &ways_.front();
+    for (const Way& w : ways_)
+      if (w.gap > best->gap) best = &w;
+    is_strip_ = measure_strip(best->of_b, best->side);
+  }
+  if (!is_strip_ && !measure_cells()) return false;
+  met_.way = is_strip_ ? static_cast<int>(strip_.side[1]) + 1 : 0;
+  return sum_up();
+}
+
+bool PartsMeeting::measure_cells() {
   clip();
   size_t main_a = 0, main_b = 0;
   if (region_.empty() || !take_nearest(false, near_a_, main_a) || !take_nearest(true, near_b_, main_b))
@@ -345,49 +355,77 @@ bool PartsMeeting::measure_overlap() {
     cells_by_rest(false, main_a, met_.cells_a);
     cells_by_rest(true, main_b, met_.cells_b);
   }
-  return sum_up();
+  return true;
 }
 
-// How far the surface of a part that faces the other reaches along the normal, at place s along the tangent.
-double PartsMeeting::surface(bool of_b, double s) const {
-  const std::vector<Seen>& own = seen_[of_b];
-  const double towards = of_b ? 1 : -1;
-  double most = -kAll;
-  for (size_t k = 0; k < own.size(); ++k) {
-    const Seen p = own[k], q = own[k + 1 == own.size() ? 0 : k + 1];
-    if (s < std::min(p.s, q.s) - same_ || s > std::max(p.s, q.s) + same_) continue;
-    // a side along the normal is reached where it comes nearest
-    if (std::abs(q.s - p.s) <= same_) {
-      most = std::max({most, towards * p.n, towards * q.n});
-      continue;
-    }
-    const double share = std::clamp((s - p.s) / (q.s - p.s), 0.0, 1.0);
-    most = std::max(most, towards * (p.n + share * (q.n - p.n)));
+// The corners of a part that face the other, from the first along the tangent to the last.
+void PartsMeeting::see_face(bool of_b) {
+  const PartNow& own = part(of_b);
+  const Vec2 n = met_.normal, t = turn_right(n);
+  const size_t count = own.size();
+  seen_.clear();
+  size_t first = 0, last = 0;
+  // of corners as far along, the one nearer to the other part: along the tangent a's face goes on counter-clockwise,
+  // b's comes back
+  const double towards = of_b ? -1 : 1;
+  const auto before = [&](const Seen& x, const Seen& y) {
+    return x.s < y.s || (x.s == y.s && towards * x.n < towards * y.n);
+  };
+  const auto after = [&](const Seen& x, const Seen& y) {
+    return x.s > y.s || (x.s == y.s && towards * x.n < towards * y.n);
+  };
+  for (size_t k = 0; k < count; ++k) {
+    const Vec2 x = corner(of_b, k);
+    seen_.push_back({dot(t, x), dot(n, x)});
+    if (before(seen_[k], seen_[first])) first = k;
+    if (after(seen_[k], seen_[last])) last = k;
   }
-  return towards * most;
+  std::vector<Seen>& face = face_[of_b];
+  face.clear();
+  for (size_t k = first;; k = of_b ? (k == 0 ? count : k) - 1 : (k + 1 == count ? 0 : k + 1)) {
+    if (face.empty() || seen_[k].s > face.back().s) face.push_back(seen_[k]);
+    if (k == last) break;
+  }
+  // a side along the normal is reached where it comes nearest
+  const double same = kSamePlace * (face.back().s - face.front().s);
+  if (face.size() > 2 && face[1].s - face[0].s <= same) face.erase(face.begin());
+  if (face.size() > 2 && face.back().s - face[face.size() - 2].s <= same) face.pop_back();
+}
+
+// Gaps along the tangent wherever a corner of either face is, in order. False: the faces have no length in common.
+bool PartsMeeting::see_gaps() {
+  see_face(false), see_face(true);
+  const double low = std::max(face_[0].front().s, face_[1].front().s),
+               high = std::min(face_[0].back().s, face_[1].back().s);
+  if (!(low < high)) return false;
+  const double same = kSamePlace * (high - low);
+  size_t next[2]{};  // the first corner of each face beyond the last gap
+  gaps_.clear();
+  const auto put = [&](double s) {
+    double at[2];
+    for (const size_t of_b : {0U, 1U}) {
+      const std::vector<Seen>& face = face_[of_b];
+      while (next[of_b] + 1 < face.size() && face[next[of_b]].s <= s) ++next[of_b];
+      const Seen q = face[next[of_b]], p = next[of_b] == 0 ? q : face[next[of_b] - 1];
+      at[of_b] = q.s > p.s ? p.n + std::clamp((s - p.s) / (q.s - p.s), 0.0, 1.0) * (q.n - p.n) : p.n;
+    }
+    gaps_.push_back({s, at[0] - at[1], at[0]});
+  };
+  put(low);
+  while (true) {
+    double s = high;
+    for (const size_t of_b : {0U, 1U})
+      for (size_t k = next[of_b]; k < face_[of_b].size() && face_[of_b][k].s < s; ++k)
+        if (face_[of_b][k].s > gaps_.back().s + same) s = face_[of_b][k].s;
+    if (s >= high - same) break;
+    put(s);
+  }
+  put(high);
+  return true;
 }
 
 bool PartsMeeting::face_ends(double reach) {
-  const Vec2 n = met_.normal, t = turn_right(n);
-  double low = 0;
-  const double facing = facing_along(t, low), high = low + facing;
-  if (!(low < high)) return false;
-  same_ = 1e-12 * (high - low);
-  for (const bool of_b : {false, true}) {
-    seen_[of_b].clear();
-    for (size_t k = 0; k < part(of_b).size(); ++k)
-      seen_[of_b].push_back({dot(t, corner(of_b, k)), dot(n, corner(of_b, k))});
-  }
-  gaps_.clear();
-  const auto put = [&](double s) { gaps_.push_back({s, surface(false, s) - surface(true, s)}); };
-  put(low), put(high);
-  for (const bool of_b : {false, true})
-    for (const Seen& x : seen_[of_b])
-      if (x.s > low && x.s < high) put(x.s);
-  std::sort(gaps_.begin(), gaps_.end(), [](const Gap& x, const Gap& y) { return x.s < y.s; });
-  gaps_.erase(
-      std::unique(gaps_.begin(), gaps_.end(), [&](const Gap& x, const Gap& y) { return y.s - x.s <= same_; }),
-      gaps_.end());
+  if (!see_gaps()) return false;
   // the gap is convex along the tangent: on from the smallest along the flatter side
   size_t at = 0;
   for (size_t k = 1; k < gaps_.size(); ++k)
@@ -414,11 +452,12 @@ bool PartsMeeting::face_ends(double reach) {
   if (one.g > two.g) std::swap(one, two);
   if (two.g - one.g > reach) {
     const double share = reach / (two.g - one.g);
-    two = {one.s + share * (two.s - one.s), one.g + reach};
+    two = {one.s + share * (two.s - one.s), one.g + reach, one.a + share * (two.a - one.a)};
   }
   if (one.s > two.s) std::swap(one, two);
   if (!(one.s < two.s)) return false;
-  const auto place = [&](const Gap& x) { return x.s * t + surface(false, x.s) * n; };
+  const Vec2 n = met_.normal, t = turn_right(n);
+  const auto place = [&](const Gap& x) { return x.s * t + x.a * n; };
   met_.begin = place(one), met_.end = place(two);
   met_.closure[0] = -one.g, met_.closure[1] = -two.g;
   met_.across[0] = one.g, met_.across[1] = two.g;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/base/vec2.h"
+#include "talus/contact/moments.h"
 
 namespace talus {
 
@@ -57,7 +58,9 @@ struct PartsMet {
   Vec2 begin, end;      // of the chord, along the tangent: the normal turned clockwise; of face ends on a [m]
   double across[2]{};   // how far b's surface lies from there, against the normal: of face ends [m]
   double closure[2]{};  // at begin and end, linear between, of this force and moment [m]; < 0: a gap
-  int way = 0;          // the side whose normal that is: of b 1, 2 and so on, of a -1, -2
+  int way =
+      0;  // the side whose normal that is: of b 1, 2 and so on, of a -1, -2; of a measured overlap that is a
+          // strip its face on b, else 0
   bool at_corner = false;  // two corners in each other: along another way, as good, nothing of the two faces
   bool tied = false;       // the nearest way out of an overlap is one that a tie closes
   bool beyond = false;     // the force acts beyond an end of the chord, and is put there
@@ -74,7 +77,10 @@ class PartsMeeting {
   /// @param shift     of b's origin, seen from a's [m]
   /// @param margin    gaps up to this are told [m]
   /// @param rounding  overlaps up to this have no shape: the parts are apart, by less than nothing [m]
-  const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding);
+  /// @param face      where to look first for an overlap that is a strip: PartsMet::way of such a one; makes no difference
+  ///                  to what is found. choose_way() wants 0.
+  const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding,
+                       int face = 0);
 
   /// Normal and sides by the way along which the two are furthest apart, or least in each other, at the end of the
   /// step. What is apart and not along that way is kFar from now on.
@@ -101,9 +107,9 @@ class PartsMeeting {
   // How much of the other part a side has before it.
   struct Way {
     bool of_b;
-    size_t side, corner;  // the corner of the other part that is nearest to it
-    double gap;           // of its nearest corner, < 0: behind it
-    double then = 0;      // the same at the end of the step
+    size_t side;
+    double gap;       // of its nearest corner, < 0: behind it
+    double then = 0;  // the same at the end of the step
 
     int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
   };
@@ -111,42 +117,62 @@ class PartsMeeting {
   void find_ways(double margin, double rounding);
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
-  double depth_of(bool of_b, size_t side, Vec2 x) const;
+  double depth_of(bool of_b, size_t side, Vec2 x) const {
+    return cross(part(of_b).along[side], x - corner(of_b, side));
+  }
   void keep_nearest(bool of_b, const std::vector<int>& sides, size_t which, const Polygon& from,
                     Polygon& out) const;
   SideCell cell(bool of_b, int side, double area, Vec2 first) const;
   void cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& out);
   bool any_tied() const;
   void nested_cells();
+  bool measure_cells();
+  size_t facing(bool of_b, size_t side) const;
+  bool measure_strip(bool of_b, size_t side);
+  bool take_end(bool high);
+  bool strip_is_all(bool of_b) const;
+  double take_triangle(bool of_b, bool high, Moments& triangle) const;
+  bool strip_cells(bool of_b, const Moments& all, std::vector<SideCell>& out) const;
   bool sum_up();
-  void find_moves(bool of_b, const PartMotion& own, const PartMotion& other);
+  double find_moves(bool of_b, const PartMotion& own, const PartMotion& other);
   double then_before(const Way& w) const;
-  double facing_along(Vec2 tangent, double& low) const;
-  size_t facing_side(bool of_b, size_t corner, Vec2 direction) const;
-  double surface(bool of_b, double s) const;
+  double facing_along(Vec2 tangent) const;
+  size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
+  void see_face(bool of_b);
+  bool see_gaps();
   const PartNow& part(bool of_b) const { return of_b ? b_ : a_; }
   Vec2 corner(bool of_b, size_t k) const { return of_b ? b_.corner[k] + shift_ : a_.corner[k]; }
 
   PartNow a_, b_;
   Vec2 shift_;
   std::vector<Way> ways_;
-  std::vector<double> least_;  // [sides of b] least depth of a's corners below it
-  Polygon region_, bearing_;   // the overlap; the corners of what of it bears
+  Polygon region_, bearing_;  // the overlap; the corners of what of it bears
   mutable Polygon work_;
   Polygon cell_, cell_of_cell_;
   std::vector<int> near_a_, near_b_;  // sides that are the nearest somewhere in the overlap
   mutable std::vector<double> low_, high_, middle_;
   struct Gap {
-    double s, g;
+    double s, g, a;  // along the tangent, how wide, where a's face is along the normal [m]
   };
   std::vector<Gap> gaps_;
   struct Seen {
     double s, n;  // along the tangent and the normal [m]
   };
-  std::vector<Seen> seen_[2];  // corners of a and b
-  std::vector<Vec2> then_[2];  // the same at the end of the step, seen from the other's origin
+  std::vector<Seen> seen_, face_[2];  // all corners of a part; those of a and b that face the other
+  std::vector<Vec2> then_[2];         // the same at the end of the step, seen from the other's origin
+  // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those
+  // and the faces, which part it is that ends, and where its end meets the two faces.
+  struct StripEnd {
+    bool of_b = false;
+    size_t side[2]{};
+    Vec2 corner[2], on[2];  // of a and b
+  };
+  struct {
+    size_t side[2]{};  // of a and b: the faces
+    StripEnd end[2];
+  } strip_;
+  bool is_strip_ = false;
   double rounding_ = 0;
-  double same_ = 0;  // places along the tangent this near are one [m]
   PartsMet met_;
 };
 

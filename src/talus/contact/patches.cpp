@@ -152,25 +152,32 @@ class PairSearch {
     double lifted = 0;  // both ends alike
     if (before && highest_ > 0)
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
-    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_);
+    const bool measured = elastic_ && before && before->overlaps;
+    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, measured ? before->way : 0);
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
     if (met.kind == PartsMet::kApart || !elastic_)
-      meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kSticks * size_});
+      meeting_.choose_way(motion(pair_->a), motion(pair_->b),
+                          {before && !measured ? before->way : 0, kSticks * size_});
     if (met.kind == PartsMet::kFar) return;
-    Patch patch;
+    Patch& patch = out.emplace_back();
+    if (!fill(met, p, q, before, shift, lifted, patch)) out.pop_back();
+  }
+
+  // Writes the patch of two parts that meet; false: there is none.
+  bool fill(const PartsMet& met, int p, int q, const Patch* before, Vec2 shift, double lifted, Patch& patch) {
     patch.block_a = pair_->a, patch.block_b = pair_->b, patch.part_a = p, patch.part_b = q;
     patch.way = met.way;
     patch.overlaps = met.kind == PartsMet::kOverlap;
     bool soft = elastic_;
     if (!elastic_ || !patch.overlaps) take_joint(met, p, q, patch), soft = is_elastic(patch.joint);
     if (soft && patch.overlaps) {
-      if (!meeting_.measure_overlap()) return;
-      patch.area = met.area, patch.way = 0;
+      if (!meeting_.measure_overlap()) return false;
+      patch.area = met.area, patch.way = elastic_ ? met.way : 0;
       mix_joints(met, p, q, patch);
     } else {
-      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return;
-      if (!patch.overlaps && met.length() <= kLeastFace * size_) return;
+      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return false;
+      if (!patch.overlaps && met.length() <= kLeastFace * size_) return false;
     }
     write_place(met, shift, patch);
     for (size_t end = 0; end < 2; ++end) patch.gap[end] = lifted - met.closure[end];
@@ -181,7 +188,7 @@ class PairSearch {
       measure(met, before, patch), count_from_ground(lifted > 0, patch);
     else if (!before || dot(before->normal, patch.normal) < kSameWay)
       for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
-    out.push_back(patch);
+    return true;
   }
 
   int edge_of(int part, int side) const {

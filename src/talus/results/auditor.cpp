@@ -113,10 +113,11 @@ void Auditor::watch(const Instant& i) {
   const State& state = i.state;
   points_.clear();
   points_.reserve(state.contacts.size() + 2 * state.patches.size());
-  for (const Patch& c : state.patches) {
+  for (size_t k = 0; k < state.patches.size(); ++k) {
+    const Patch& c = state.patches[k];
     const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
     for (int end = 0; end < 2; ++end) {
-      const auto [corner, edge] = patch_numbers(scene_, c, end);
+      const auto [corner, edge] = patch_numbers(scene_, state.patches, k, end);
       points_.push_back({c.block_a, corner, c.block_b, edge, c.force[static_cast<size_t>(end)][0],
                          c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal});
     }
@@ -144,7 +145,7 @@ audit::Point Auditor::patch_point(const Instant& i, size_t patch, int end) const
   const Patch& c = i.state.patches[patch];
   const auto e = static_cast<size_t>(end);
   audit::Point p;
-  const auto [corner, edge] = patch_numbers(scene_, c, end);
+  const auto [corner, edge] = patch_numbers(scene_, i.state.patches, patch, end);
   p.block_a = c.block_a, p.block_b = c.block_b, p.corner = corner, p.edge = edge;
   p.place = place_of(i.state, c, end), p.normal = c.normal, p.gap = c.gap[e];
   p.normal_force = c.force[e][0], p.shear_force = c.force[e][1];

@@ -184,9 +184,14 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
 
 }  // namespace
 
-std::pair<int, int> patch_numbers(const Scene& scene, const Patch& c, int end) {
+std::pair<int, int> patch_numbers(const Scene& scene, const std::vector<Patch>& patches, size_t k, int end) {
+  const Patch& c = patches[k];
+  const auto same_parts = [&](const Patch& o) { return o.part_a == c.part_a && o.part_b == c.part_b; };
+  int piece = 0;
+  for (size_t i = k; i > 0 && same_parts(patches[i - 1]); --i) ++piece;
   const std::vector<int>& first = scene.outlines.part_begin;
-  return {2 * (c.part_a - first[static_cast<size_t>(c.block_a)]) + end,
+  const int part = c.part_a - first[static_cast<size_t>(c.block_a)];
+  return {2 * (part + piece * scene.outlines.parts_of(c.block_a)) + end,
           -2 - (c.part_b - first[static_cast<size_t>(c.block_b)])};
 }
 
@@ -238,7 +243,8 @@ void take_row(const Scene& scene, const Instant& i, size_t r, FramePoint& out) {
   } else if (owner.family == Family::kContact) {
     if (scene.by_patches()) {
       const Patch& c = i.state.patches[owner.at() / 2];
-      std::tie(out.corner, out.edge) = patch_numbers(scene, c, static_cast<int>(owner.at() % 2));
+      std::tie(out.corner, out.edge) =
+          patch_numbers(scene, i.state.patches, owner.at() / 2, static_cast<int>(owner.at() % 2));
       out.law = law_number(c), out.closure = c.closure[owner.at() % 2], out.closing = closing_at(i, r);
     } else {
       const ContactKey& key = i.state.contacts[owner.at()].key;

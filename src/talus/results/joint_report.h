@@ -30,8 +30,9 @@ struct JointPoint : FramePoint {
 std::optional<JointPoint> joint_point(const Scene& scene, const Instant& instant, size_t row);
 
 /// Numbers by which an end of a patch is known from frame to frame: of its part of block a, with its end, and of
-/// its part of block b, < -1.
-std::pair<int, int> patch_numbers(const Scene& scene, const Patch& patch, int end);
+/// its part of block b, < -1. Of several patches of two parts each further one counts on by the parts of block a.
+/// @param k  which patch
+std::pair<int, int> patch_numbers(const Scene& scene, const std::vector<Patch>& patches, size_t k, int end);
 
 /// Joint of a patch in frames: -2 where two share it.
 int law_number(const Patch& patch);

@@ -84,7 +84,8 @@ struct Contact {
 };
 
 /// Where two convex parts of two blocks touch or nearly do, and what that place carries to the next step. It is
-/// known by the two parts; what it remembers lies along its chord, whose ends are material points of both.
+/// known by the two parts, where ties leave several pieces by its place too; what it remembers lies along its chord, whose
+/// ends are material points of both.
 struct Patch {
   int block_a = -1, block_b = -1;    // a < b
   int part_a = -1, part_b = -1;      // of Outlines

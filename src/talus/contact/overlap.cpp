@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/contact/moments.h"
+#include "talus/geometry/polygon.h"
 
 namespace talus {
 
@@ -264,7 +265,7 @@ bool PartsMeeting::any_tied() const {
 
 // Cells of both, each cut by those of the other: what is nearest to a tie of the two bears nothing.
 void PartsMeeting::nested_cells() {
-  met_.cells_a.clear(), met_.cells_b.clear(), bearing_.clear(), met_.area = 0;
+  corners_.clear();
   for (size_t i = 0; i < near_a_.size(); ++i) {
     if (a_.role_of(static_cast<size_t>(near_a_[i])) == SideRole::kTiedHere) continue;
     keep_nearest(false, near_a_, i, region_, cell_);
@@ -273,12 +274,39 @@ void PartsMeeting::nested_cells() {
       keep_nearest(true, near_b_, j, cell_, cell_of_cell_);
       const Moments m = moments(cell_of_cell_);
       if (!(m.area > 0)) continue;
-      met_.cells_a.push_back(cell(false, near_a_[i], m.area, m.first));
-      met_.cells_b.push_back(cell(true, near_b_[j], m.area, m.first));
-      bearing_.insert(bearing_.end(), cell_of_cell_.begin(), cell_of_cell_.end());
-      met_.area += m.area;
+      const size_t begin = corners_.size(), which = nested_.size();
+      corners_.insert(corners_.end(), cell_of_cell_.begin(), cell_of_cell_.end());
+      nested_.push_back({cell(false, near_a_[i], m.area, m.first), cell(true, near_b_[j], m.area, m.first),
+                         begin, corners_.size(), which});
+      put_with_neighbours(which);
     }
   }
+}
+
+// A piece is what hangs together, cells that have a place in common, and is called by the first of them. Force, moment and
+// energy are sums over cells, whatever pieces these make: they go on without a jump where two pieces come to touch. What
+// jumps there is bounded: the stiffness by as much as the two chords are not in line (in line k b and k b^3/12 of the whole
+// are those of its pieces), friction by as much as the two forces are not.
+void PartsMeeting::put_with_neighbours(size_t cell) {
+  for (size_t other = 0; other < cell; ++other) {
+    const auto [first, second] = std::minmax(nested_[cell].piece, nested_[other].piece);
+    if (first == second || !share_a_place(cell, other)) continue;
+    for (NestedCell& c : nested_)
+      if (c.piece == second) c.piece = first;
+  }
+}
+
+// Two convex cells beside each other do so where a corner of one lies on the other, within what would be no chord.
+bool PartsMeeting::share_a_place(size_t cell, size_t other) const {
+  const auto on = [this](const NestedCell& c, const NestedCell& o) {
+    for (size_t i = c.begin; i < c.end; ++i)
+      for (size_t k = o.begin; k < o.end; ++k)
+        if (distance_to_segment(corners_[i], corners_[k], corners_[k + 1 == o.end ? o.begin : k + 1]) <=
+            kSliver * rounding_)
+          return true;
+    return false;
+  };
+  return on(nested_[cell], nested_[other]) || on(nested_[other], nested_[cell]);
 }
 
 // Resultant, moment and energy of the cells; chord and closures (eqs. 3.2 to 3.4).
@@ -333,15 +361,15 @@ const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shif
 }
 
 bool PartsMeeting::measure_overlap() {
+  nested_.clear(), next_piece_ = 0;
   if (!is_strip_) {
     const Way* best = &ways_.front();
     for (const Way& w : ways_)
       if (w.gap > best->gap) best = &w;
     is_strip_ = measure_strip(best->of_b, best->side);
   }
-  if (!is_strip_ && !measure_cells()) return false;
   met_.way = is_strip_ ? static_cast<int>(strip_.side[1]) + 1 : 0;
-  return sum_up();
+  return is_strip_ ? sum_up() : measure_cells();
 }
 
 bool PartsMeeting::measure_cells() {
@@ -351,11 +379,24 @@ bool PartsMeeting::measure_cells() {
     return false;
   if (any_tied()) {
     nested_cells();
-  } else {
-    cells_by_rest(false, main_a, met_.cells_a);
-    cells_by_rest(true, main_b, met_.cells_b);
+    return measure_next_piece();
   }
-  return true;
+  cells_by_rest(false, main_a, met_.cells_a);
+  cells_by_rest(true, main_b, met_.cells_b);
+  return sum_up();
+}
+
+bool PartsMeeting::measure_next_piece() {
+  for (; next_piece_ < nested_.size(); ++next_piece_) {
+    met_.cells_a.clear(), met_.cells_b.clear(), bearing_.clear(), met_.area = 0;
+    for (const NestedCell& c : nested_) {
+      if (c.piece != next_piece_) continue;
+      met_.cells_a.push_back(c.a), met_.cells_b.push_back(c.b), met_.area += c.a.area;
+      for (size_t k = c.begin; k < c.end; ++k) bearing_.push_back(corners_[k]);
+    }
+    if (sum_up()) return ++next_piece_, true;
+  }
+  return false;
 }
 
 // The corners of a part that face the other, from the first along the tangent to the last.

@@ -89,10 +89,15 @@ class PartsMeeting {
   /// @pre  look() found them apart or in overlap
   void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
 
-  /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these. False: it
-  /// has no way out but those that ties close, or pushes both ways alike.
+  /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these: of all of it,
+  /// or of the first connected piece where ties leave several. False: it has no way out but those that ties close, or
+  /// pushes both ways alike.
   /// @pre  look() found one
   bool measure_overlap();
+
+  /// The same of the next piece that ties leave. False: there is none.
+  /// @pre  measure_overlap()
+  bool measure_next_piece();
 
   /// Chord and closures by the gaps along the normal: from where it is smallest to the end of the flatter side
   /// there, or to where it is larger by `reach`. Of a face its two ends, of a corner alone the corner and a
@@ -133,6 +138,8 @@ class PartsMeeting {
   bool strip_is_all(bool of_b) const;
   double take_triangle(bool of_b, bool high, Moments& triangle) const;
   bool strip_cells(bool of_b, const Moments& all, std::vector<SideCell>& out) const;
+  void put_with_neighbours(size_t cell);
+  bool share_a_place(size_t cell, size_t other) const;
   bool sum_up();
   double find_moves(bool of_b, const PartMotion& own, const PartMotion& other);
   double then_before(const Way& w) const;
@@ -150,6 +157,15 @@ class PartsMeeting {
   mutable Polygon work_;
   Polygon cell_, cell_of_cell_;
   std::vector<int> near_a_, near_b_;  // sides that are the nearest somewhere in the overlap
+  // Beside ties: what is nearest to one side of either part, and the piece that it is of.
+  struct NestedCell {
+    SideCell a, b;
+    size_t begin, end;  // its corners in corners_
+    size_t piece;
+  };
+  std::vector<NestedCell> nested_;
+  Polygon corners_;
+  size_t next_piece_ = 0;
   mutable std::vector<double> low_, high_, middle_;
   struct Gap {
     double s, g, a;  // along the tangent, how wide, where a's face is along the normal [m]

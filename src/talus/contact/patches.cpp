@@ -145,9 +145,13 @@ class PairSearch {
     const PartNow a = part_now(p, pair_->a, pair_->b, roles_a_),
                   b = part_now(q, pair_->b, pair_->a, roles_b_);
     if (tied_along_side(p, a, q, b)) return;
-    const Patch* before = nullptr;
-    for (const Patch& known : known_)
-      if (known.part_a == p && known.part_b == q) before = &known;
+    const Patch* before = nullptr;  // of several, which ties leave, the largest
+    bool several = false;
+    for (const Patch& known : known_) {
+      if (known.part_a != p || known.part_b != q) continue;
+      several = before;
+      if (!before || known.area > before->area) before = &known;
+    }
     Vec2 shift = shift_;
     double lifted = 0;  // both ends alike
     if (before && highest_ > 0)
@@ -160,25 +164,36 @@ class PairSearch {
       meeting_.choose_way(motion(pair_->a), motion(pair_->b),
                           {before && !measured ? before->way : 0, kSticks * size_});
     if (met.kind == PartsMet::kFar) return;
-    Patch& patch = out.emplace_back();
-    if (!fill(met, p, q, before, shift, lifted, patch)) out.pop_back();
+    const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
+    Patch* patch = &begin_patch(met, p, q, out);
+    bool soft = elastic_;
+    if (!elastic_ || !patch->overlaps) take_joint(met, p, q, *patch), soft = is_elastic(patch->joint);
+    if (!soft || !patch->overlaps) {
+      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return out.pop_back();
+      if (!patch->overlaps && met.length() <= kLeastFace * size_) return out.pop_back();
+      patch->way = met.way;
+      return finish(met, own(), shift, lifted, soft, *patch);
+    }
+    if (!meeting_.measure_overlap()) return out.pop_back();
+    while (true) {
+      patch->area = met.area, patch->way = elastic_ ? met.way : 0;
+      mix_joints(met, p, q, *patch);
+      finish(met, own(), shift, lifted, soft, *patch);
+      if (!meeting_.measure_next_piece()) return;
+      patch = &begin_patch(met, p, q, out);
+    }
   }
 
-  // Writes the patch of two parts that meet; false: there is none.
-  bool fill(const PartsMet& met, int p, int q, const Patch* before, Vec2 shift, double lifted, Patch& patch) {
+  Patch& begin_patch(const PartsMet& met, int p, int q, std::vector<Patch>& out) const {
+    Patch& patch = out.emplace_back();
     patch.block_a = pair_->a, patch.block_b = pair_->b, patch.part_a = p, patch.part_b = q;
-    patch.way = met.way;
     patch.overlaps = met.kind == PartsMet::kOverlap;
-    bool soft = elastic_;
-    if (!elastic_ || !patch.overlaps) take_joint(met, p, q, patch), soft = is_elastic(patch.joint);
-    if (soft && patch.overlaps) {
-      if (!meeting_.measure_overlap()) return false;
-      patch.area = met.area, patch.way = elastic_ ? met.way : 0;
-      mix_joints(met, p, q, patch);
-    } else {
-      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return false;
-      if (!patch.overlaps && met.length() <= kLeastFace * size_) return false;
-    }
+    return patch;
+  }
+
+  // Place, memory and closures of what has been found.
+  void finish(const PartsMet& met, const Patch* before, Vec2 shift, double lifted, bool soft,
+              Patch& patch) const {
     write_place(met, shift, patch);
     for (size_t end = 0; end < 2; ++end) patch.gap[end] = lifted - met.closure[end];
     remember(before, patch);
@@ -188,7 +203,15 @@ class PairSearch {
       measure(met, before, patch), count_from_ground(lifted > 0, patch);
     else if (!before || dot(before->normal, patch.normal) < kSameWay)
       for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
-    return true;
+  }
+
+  // Of the patches that two parts had the one nearest to a place, seen from block a.
+  const Patch* known_near(int p, int q, Vec2 place) const {
+    const auto off = [&](const Patch& c) { return norm(0.5 * (place_of(c, 0) + place_of(c, 1)) - place); };
+    const Patch* nearest = nullptr;
+    for (const Patch& c : known_)
+      if (c.part_a == p && c.part_b == q && (!nearest || off(c) < off(*nearest))) nearest = &c;
+    return nearest;
   }
 
   int edge_of(int part, int side) const {
@@ -284,8 +307,8 @@ class PairSearch {
     std::array<double, 2> ends() const { return {4 * m0 - 6 * m1, 6 * m1 - 2 * m0}; }
   };
 
-  // What the patches before remember at the place of this one: its own parts' first, then what others on the same
-  // sides say of places that these have not (theory 3.7).
+  // What the patches before remember at the place of this one: its own first, then what others of its parts and on the
+  // same sides say of places that this one has not (theory 3.7).
   void remember(const Patch* own, Patch& patch) const {
     const auto a = static_cast<size_t>(patch.block_a);
     const Vec2 t = turn_right(patch.normal);
@@ -303,7 +326,9 @@ class PairSearch {
     };
     if (own) take(*own);
     for (const Patch& old : known_)
-      if (&old != own && old.side_a == patch.side_a && old.side_b == patch.side_b) take(old);
+      if (&old != own && ((old.part_a == patch.part_a && old.part_b == patch.part_b) ||
+                          (old.side_a == patch.side_a && old.side_b == patch.side_b)))
+        take(old);
     if (pair_->face >= 0) take_from_faces(t, x0, nearest, field, patch);
     patch.stretch = field.ends();
     if (own) {

@@ -79,6 +79,18 @@ PartsMet meet(const Body& a, const Body& b, const PartMotion& motion_b = {}) {
   return met;
 }
 
+// All pieces of an overlap that ties leave.
+std::vector<PartsMet> pieces_of(const Body& a, const Body& b) {
+  PartsMeeting meeting;
+  const Seen one(a), two(b);
+  std::vector<PartsMet> out;
+  if (meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding).kind != PartsMet::kOverlap)
+    return out;
+  for (bool any = meeting.measure_overlap(); any; any = meeting.measure_next_piece())
+    out.push_back(meeting.met());
+  return out;
+}
+
 // Random convex polygon: corners on an ellipse of half axes up to 1 m.
 Body random_body(Random& random) {
   const auto n = static_cast<size_t>(3 + 6 * random.uniform());
@@ -224,23 +236,60 @@ struct Summed {
   double area = 0, energy = 0;
 };
 
-// Lines lie close where the overlap ends: sides that are nearly level lie between two of them.
-Summed by_lines(const Body& a, const Body& b, int lines) {
+// What bears, piece by piece: stretches of one line and the next that lie beside each other are of one. Lines lie close
+// where the overlap ends: sides that are nearly level lie between two of them.
+std::vector<Summed> pieces_by_lines(const Body& a, const Body& b, int lines) {
+  struct Stretch {
+    double from, to;
+    size_t piece;
+  };
   const auto y = heights(a, b);
-  Summed sum;
-  for (int i = 0; i < lines; ++i) {
+  std::vector<Summed> sums;
+  std::vector<size_t> piece;  // of what was begun as one
+  const auto first_of = [&](size_t k) {
+    while (piece[k] != k) k = piece[k];
+    return k;
+  };
+  std::vector<Stretch> before, now;
+  for (int i = 0; i < lines; ++i, before.swap(now), now.clear()) {
     const double u = (i + 0.5) / lines, here = y[0] + (y[1] - y[0]) * u * u * (3 - 2 * u);
     const double dy = (y[1] - y[0]) * 6 * u * (1 - u) / lines;
     const auto x = across(a, b, here);
     if (!(x[1] > x[0])) continue;
     const double dx = (x[1] - x[0]) / lines;
+    bool bears = false;
     for (int j = 0; j < lines; ++j) {
       const Vec2 place{x[0] + (j + 0.5) * dx, here};
       const Nearest in_a = nearest(a, place), in_b = nearest(b, place);
-      if (in_a.role == SideRole::kTiedHere || in_b.role == SideRole::kTiedHere) continue;
-      sum.area += dx * dy, sum.energy += 0.5 * (in_a.depth + in_b.depth) * dx * dy;
+      const bool bore = bears;
+      bears = in_a.role != SideRole::kTiedHere && in_b.role != SideRole::kTiedHere;
+      if (!bears) continue;
+      if (!bore) {
+        piece.push_back(piece.size()), sums.emplace_back();
+        now.push_back({place.x - 0.5 * dx, place.x, piece.back()});
+      }
+      now.back().to = place.x + 0.5 * dx;
+      sums[now.back().piece].area += dx * dy;
+      sums[now.back().piece].energy += 0.5 * (in_a.depth + in_b.depth) * dx * dy;
     }
+    for (const Stretch& s : now)
+      for (const Stretch& t : before)
+        if (s.from <= t.to && t.from <= s.to) piece[first_of(s.piece)] = first_of(t.piece);
   }
+  std::vector<Summed> out;
+  for (size_t k = 0; k < sums.size(); ++k) {
+    if (piece[k] != k) continue;
+    Summed sum;
+    for (size_t n = 0; n < sums.size(); ++n)
+      if (first_of(n) == k) sum.area += sums[n].area, sum.energy += sums[n].energy;
+    out.push_back(sum);
+  }
+  return out;
+}
+
+Summed by_lines(const Body& a, const Body& b, int lines) {
+  Summed sum;
+  for (const Summed& one : pieces_by_lines(a, b, lines)) sum.area += one.area, sum.energy += one.energy;
   return sum;
 }
 
@@ -577,24 +626,28 @@ TEST_CASE("overlap: cuts and sides tied to third blocks are no ways out") {
     // one of the sides that have a cell, which need not be that of most of it
     const std::vector<SideCell>& cells = i % 2 == 0 ? free.cells_a : free.cells_b;
     own.role[static_cast<size_t>(cells[static_cast<size_t>(i) / 6 % cells.size()].side)] = role;
-    const PartsMet met = meet(two.a, two.b);
-    if (met.kind != PartsMet::kOverlap) continue;
+    const std::vector<PartsMet> pieces = pieces_of(two.a, two.b);
+    if (pieces.empty()) continue;
     ++met_with[static_cast<size_t>(role)];
+    Summed all;
+    for (const PartsMet& met : pieces) all.area += met.area, all.energy += met.energy;
     constexpr int kLines = 400;
     const Summed sum = by_lines(two.a, two.b, kLines);
     // midpoints miss 1/n^2 at kinks; what bears nothing has an edge of its own, which each line misses by half a
     // piece of up to all of its length either way: next to the whole overlap, not to what of it bears
     const bool edge = role == SideRole::kTiedHere;
     const double missed = edge ? 2.0 / kLines : 10.0 / (kLines * kLines);
-    const double area = std::abs(met.area - sum.area) / free.area,
-                 energy = std::abs(met.energy - sum.energy) / std::max(free.energy, sum.energy);
+    const double area = std::abs(all.area - sum.area) / free.area,
+                 energy = std::abs(all.energy - sum.energy) / std::max(free.energy, sum.energy);
     CHECK(area < missed);
     CHECK(energy < missed);
     worst = std::max({worst, area, energy});
-    for (const SideCell& c : i % 2 == 0 ? met.cells_a : met.cells_b)
-      CHECK(own.role[static_cast<size_t>(c.side)] == SideRole::kOut);
-    const Pull by_cell = by_cells(two.a, two.b, met), by_chord = by_closures(met);
-    CHECK(norm(by_cell.force - by_chord.force) < 1e-13 * met.area);  // sums of areas, as without ties
+    for (const PartsMet& met : pieces) {
+      for (const SideCell& c : i % 2 == 0 ? met.cells_a : met.cells_b)
+        CHECK(own.role[static_cast<size_t>(c.side)] == SideRole::kOut);
+      const Pull by_cell = by_cells(two.a, two.b, met), by_chord = by_closures(met);
+      CHECK(norm(by_cell.force - by_chord.force) < 1e-13 * met.area);  // sums of areas, as without ties
+    }
   }
   CHECK(met_with[1] > 50);
   CHECK(met_with[2] > 20);
@@ -622,15 +675,174 @@ TEST_CASE("overlap: parts that a cut or a tie separates do not meet") {
 }
 
 TEST_CASE("overlap: of a strip along a side that ties the two, the corners nearest to the walls are left") {
-  const double c = 0.01;
+  constexpr double c = 0.01, kRounded = 1e-12;  // 1e-16 m of c, and some
+  const double diagonal = std::sqrt(0.5);
   Body block = block_over(1, c);
   block.role = {SideRole::kTiedHere, SideRole::kOut, SideRole::kOut, SideRole::kOut};
-  const PartsMet met = meet(block, floor_body());
-  REQUIRE(met.kind == PartsMet::kOverlap);
-  constexpr double kRounded = 1e-12;  // 1e-16 m of c, and some
-  CHECK(off(met.area, c * c) < kRounded);
-  CHECK(off(met.force, 0.5 * c * c) < kRounded);  // the walls push both ways
-  CHECK(norm(met.normal - Vec2{0, 1}) < kRounded);
+  const std::vector<PartsMet> pieces = pieces_of(block, floor_body());
+  REQUIRE(pieces.size() == 2);
+  int walls = 0;
+  for (const PartsMet& met : pieces) {
+    // a triangle of c by c, above 45 deg from the corner; both sides press at its centroid, where either is c/3 away
+    const bool left = met.begin.x < 0;
+    const double out = left ? -1 : 1;
+    walls += left ? 1 : 2;
+    CHECK(off(met.area, 0.5 * c * c) < kRounded);
+    CHECK(off(met.energy, c * c * c / 6) < kRounded);
+    CHECK(off(met.force, 0.25 * c * c / diagonal) < kRounded);
+    CHECK(norm(met.normal - Vec2{-out * diagonal, diagonal}) < kRounded);
+    CHECK(met.side_a == (left ? 3 : 1));
+    CHECK(met.side_b == 2);
+    // from the top of the wall to the middle of the slanted side; at two thirds of it, where a triangle of closures acts
+    const Vec2 top{0.5 * out, c}, slant{0.5 * out - 0.5 * out * c, 0.5 * c};
+    CHECK(norm((left ? met.begin : met.end) - top) < kRounded * c);
+    CHECK(norm((left ? met.end : met.begin) - slant) < kRounded * c);
+    CHECK(std::abs(met.closure[left ? 0 : 1]) < kRounded * c);
+    CHECK(off(met.closure[left ? 1 : 0], c) < kRounded);
+    CHECK_FALSE(met.beyond);
+  }
+  CHECK(walls == 3);
+}
+
+namespace {
+
+// A block of 1 m whose bottom is divided at `at`, `depth` below the top of the floor.
+Body divided_block(const std::vector<double>& at, const std::vector<SideRole>& bottom, double depth) {
+  Body out{{{-0.5, 0}}, {0.1, -depth}, bottom};
+  for (const double x : at) out.corner.push_back({x, 0});
+  for (const Vec2 x : {Vec2{0.5, 0}, Vec2{0.5, 1}, Vec2{-0.5, 1}}) out.corner.push_back(x);
+  out.role.resize(out.corner.size(), SideRole::kOut);
+  return out;
+}
+
+// The strip of `length` between a wall and a tie, on a wider face.
+void check_strip(const PartsMet& met, double length, double c, bool left) {
+  constexpr double kRounded = 1e-11;  // 1e-16 m of c, and some
+  const Vec2 force{(left ? 1 : -1) * 0.25 * c * c,
+                   c * (length - 0.25 * c)};  // one corner less, which pushes along
+  const Vec2 normal = force / norm(force);
+  CHECK(off(met.area, length * c) < kRounded);
+  CHECK(off(met.energy, c * c * (0.5 * length - c / 12)) < kRounded);
+  CHECK(off(met.force * met.normal, force) < kRounded);
+  CHECK(off(met.length(), length * normal.y + c * std::abs(normal.x)) < kRounded);
+  CHECK(std::abs(0.5 * (met.begin.x + met.end.x) - (left ? -0.5 + 0.5 * length : 0.5 - 0.5 * length)) < c);
+  for (const double closure : met.closure) CHECK(off(closure, c) < 2 * c / length);
+}
+
+}  // namespace
+
+TEST_CASE("overlap: a side that is tied in its middle bears at both ends, each by a chord of its own") {
+  constexpr auto kOut = SideRole::kOut, kTied = SideRole::kTiedHere;
+  for (const double c : {1e-5, 1e-3}) {
+    const std::vector<PartsMet> both =
+        pieces_of(divided_block({-0.2, 0.3}, {kOut, kTied, kOut}, c), floor_body());
+    REQUIRE(both.size() == 2);
+    const size_t left = both[0].begin.x < both[1].begin.x ? 0 : 1;
+    check_strip(both[left], 0.3, c, true), check_strip(both[1 - left], 0.2, c, false);
+    // the other end's corner is behind a cut, and nothing is left there
+    Body block = divided_block({-0.2}, {kOut, kTied}, c);
+    block.role[2] = SideRole::kCut;
+    const std::vector<PartsMet> one = pieces_of(block, floor_body());
+    REQUIRE(one.size() == 1);
+    check_strip(one[0], 0.3, c, true);
+  }
+}
+
+TEST_CASE("overlap: two pieces come to bear as one without a jump where what ties them shrinks to nothing") {
+  constexpr auto kOut = SideRole::kOut, kTied = SideRole::kTiedHere;
+  constexpr double c = 1e-3;
+  const PartsMet whole = meet(block_over(1, c), floor_body());
+  for (const double tied : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    CAPTURE(tied);
+    const std::vector<PartsMet> two =
+        pieces_of(divided_block({-0.2, -0.2 + tied}, {kOut, kTied, kOut}, c), floor_body());
+    REQUIRE(two.size() == 2);
+    Pull sum;
+    double energy = 0, length = 0;
+    for (const PartsMet& met : two) {
+      const Pull one = by_closures(met);
+      sum.force += one.force, sum.moment += one.moment, energy += met.energy, length += met.length();
+    }
+    const Pull all = by_closures(whole);
+    constexpr double kRounded = 1e-12;
+    CHECK(norm(sum.force - all.force) < c * (tied + kRounded));
+    CHECK(std::abs(sum.moment - all.moment) < c * (tied + kRounded));
+    CHECK(std::abs(energy - whole.energy) < c * c * (tied + kRounded));
+    CHECK(std::abs(length - whole.length()) < tied + 4 * c * c);  // of the three lean by what a corner pushes
+  }
+}
+
+namespace {
+
+// A body with one bent side up or down, of several pieces nearly in line.
+Body random_bow(Random& random, bool up) {
+  std::vector<double> at{-1, 1};
+  const auto more = static_cast<size_t>(3 + 5 * random.uniform());
+  while (at.size() < more + 2) {
+    const double x = -0.95 + 1.9 * random.uniform();
+    if (std::all_of(at.begin(), at.end(), [&](double y) { return std::abs(x - y) > 0.05; })) at.push_back(x);
+  }
+  std::sort(at.begin(), at.end());
+  const double sag = 0.01 * random.uniform(), lean = 0.01 * random.uniform();
+  Body out;
+  for (const double x : at) out.corner.push_back({x, sag * x * x + lean * x});
+  out.corner.push_back({1.1, 1}), out.corner.push_back({-1.1, 1.1});
+  for (size_t k = 0; k < out.corner.size(); ++k)
+    out.role.push_back(k + 3 < out.corner.size() && random.uniform() < 0.5 ? SideRole::kTiedHere
+                                                                           : SideRole::kOut);
+  return up ? moved(out, {}, std::numbers::pi) : out;
+}
+
+}  // namespace
+
+TEST_CASE("overlap: pieces of random tied pairs are those of a fine quadrature, and add up to it") {
+  Random random(17);
+  double worst = 0;
+  std::array<int, 5> met_with{};
+  int other = 0;
+  constexpr int kPairs = 200, kLines = 400;
+  for (int i = 0; i < kPairs; ++i) {
+    CAPTURE(i);
+    Body a = random_bow(random, false), b = random_bow(random, true);
+    b.origin = {-0.3 + 0.6 * random.uniform(), 0.01 + 0.02 * random.uniform()};
+    Body free_a = a, free_b = b;
+    free_a.role.clear(), free_b.role.clear();
+    const PartsMet free = meet(free_a, free_b);
+    REQUIRE(free.kind == PartsMet::kOverlap);
+    std::vector<PartsMet> pieces = pieces_of(a, b);
+    std::vector<Summed> sums = pieces_by_lines(a, b, kLines);
+    // what bears has some edges at ties, which each line misses by half a piece of its length either way
+    constexpr double kMissed = 2.0 / kLines;
+    Summed all, exact;
+    for (const PartsMet& met : pieces) all.area += met.area, all.energy += met.energy;
+    for (const Summed& sum : sums) exact.area += sum.area, exact.energy += sum.energy;
+    const double error = std::max(std::abs(all.area - exact.area) / free.area,
+                                  std::abs(all.energy - exact.energy) / free.energy);
+    CHECK(error < kMissed);
+    worst = std::max(worst, error);
+    // one by one, but for what is too small for the lines
+    const auto by_area = [](const auto& x, const auto& y) { return x.area > y.area; };
+    const auto small = [&](const auto& x) { return x.area < kMissed * free.area; };
+    pieces.erase(std::remove_if(pieces.begin(), pieces.end(), small), pieces.end());
+    sums.erase(std::remove_if(sums.begin(), sums.end(), small), sums.end());
+    std::sort(pieces.begin(), pieces.end(), by_area), std::sort(sums.begin(), sums.end(), by_area);
+    ++met_with[std::min(pieces.size(), met_with.size() - 1)];
+    bool same = pieces.size() == sums.size();
+    for (size_t k = 0; same && k < pieces.size(); ++k)
+      same = std::abs(pieces[k].area - sums[k].area) < kMissed * free.area &&
+             std::abs(pieces[k].energy - sums[k].energy) < kMissed * free.energy;
+    other += !same;
+    for (const PartsMet& met : pieces) {
+      const Pull cells = by_cells(a, b, met), closures = by_closures(met);
+      CHECK(norm(closures.force - cells.force) < 1e-12 * met.area);
+      if (!met.beyond) CHECK(std::abs(closures.moment - cells.moment) < 1e-12 * met.area);
+    }
+  }
+  CHECK(met_with[2] > 30);
+  CHECK(met_with[3] > 10);
+  CHECK(other <= kPairs / 50);  // a neck or a gap that is narrower than the lines lie apart
+  MESSAGE("largest error ", worst, "; pairs of other pieces ", other, ", with two and three pieces ",
+          met_with[2], " ", met_with[3]);
 }
 
 TEST_CASE("overlap: a side cut in two, with a cut between, bears as the whole one") {

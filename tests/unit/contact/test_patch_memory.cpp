@@ -43,8 +43,9 @@ struct Borne {
 // Rigid blocks that are put where they are to be, one step after the other.
 class PutBlocks {
  public:
-  explicit PutBlocks(const std::vector<Polygon>& polygons, double friction = kFriction)
-      : scene_(scene_of(polygons, friction)),
+  /// @param cohesion  faces that touch as they are drawn are tied, if there is any [Pa]
+  explicit PutBlocks(const std::vector<Polygon>& polygons, double friction = kFriction, double cohesion = 0)
+      : scene_(scene_of(polygons, friction, cohesion)),
         state_(start_state(scene_)),
         laws_(scene_.laws),
         pose_(polygons.size()) {
@@ -90,6 +91,7 @@ class PutBlocks {
     return out;
   }
   std::vector<Patch>& patches() { return state_.patches; }
+  std::vector<FaceState>& faces() { return state_.face; }
   // Patches in overlap.
   int count() const {
     return static_cast<int>(std::count_if(state_.patches.begin(), state_.patches.end(),
@@ -106,9 +108,10 @@ class PutBlocks {
   RowSet rows_;
   std::vector<ContactPlace> place_;
 
-  static Scene scene_of(const std::vector<Polygon>& polygons, double friction) {
+  static Scene scene_of(const std::vector<Polygon>& polygons, double friction, double cohesion) {
     Model model = jointed_rock();
     model.joints[0] = joint_of(1, friction);
+    model.joints[0].cohesion = cohesion;
     std::vector<ScenePart> parts;
     for (const Polygon& p : polygons) parts.push_back({p, BlockKind::kRigid});
     return block_scene(std::move(model), parts);
@@ -414,6 +417,65 @@ TEST_CASE("patch memory: shear on one block is not passed to the next") {
   CHECK(blocks.between(0, 2).normal.y > 0.4 * c * kStiffness);
   CHECK(norm(blocks.between(0, 2).shear) < 1e-9 * norm(before));  // rounding of places
   CHECK(off(blocks.between(0, 1).shear, before) < kShare);
+}
+
+TEST_CASE("patch memory: each of two patches beside an intact face remembers its own") {
+  // half over each other; the upper one lies c deep and, beyond the two ends of the face, half of that aside
+  constexpr double c = 1e-4;
+  PutBlocks blocks({box_polygon(0, 0, 1, 0.4), box_polygon(0.5, 0.4, 1.5, 0.8)}, 1e6, 1e6);
+  REQUIRE(blocks.faces().size() == 1);
+  blocks.put({{}, {{-0.5 * c, -c}}});
+  REQUIRE(blocks.count() == 2);
+  const auto is_left = [](const Patch& p) { return p.arm_a[0].x < 0.25; };
+  REQUIRE(is_left(blocks.patches()[0]) != is_left(blocks.patches()[1]));
+  const auto kept = [&](const Patch& p) { return is_left(p) ? 0.3 * c : -0.1 * c; };
+  for (Patch& p : blocks.patches()) {
+    p.stretch = {kept(p), kept(p)}, p.slip = {2 * kept(p) + c, 2 * kept(p) + c}, p.slip_signed = p.stretch;
+    p.root_kept = 1e-3 * kept(p);  // little next to its own
+  }
+  // on as one body, turned
+  constexpr int kSteps = 20;
+  const Vec2 apart = blocks.centroid(1) - blocks.centroid(0);
+  const auto turned_by = [&](double angle, Vec2 aside) {
+    const Mat2 turn = rotation_minus_identity(angle);
+    return std::vector<Pose>{{{}, angle}, {aside + turn * (apart + aside), angle}};
+  };
+  for (int k = 1; k <= kSteps; ++k) {
+    blocks.put(turned_by(0.02 * k, {-0.5 * c, -c}));
+    REQUIRE(blocks.count() == 2);
+    for (const Patch& p : blocks.patches())
+      for (const size_t end : {0U, 1U}) {
+        CHECK(off(p.stretch[end], kept(p)) < 1e-8);  // over an extent of c, in place of 1 m
+        CHECK(off(p.slip[end], 2 * kept(p) + c) < 1e-8);
+        CHECK(off(p.slip_signed[end], kept(p)) < 1e-8);
+        CHECK(p.root_kept == 1e-3 * kept(p));
+      }
+  }
+  // up by so much at the right end that nothing lies in each other there
+  const double up = 4 * c;
+  const auto left_alone = [&](double angle) {
+    const Mat2 by = rotation_minus_identity(up);
+    std::vector<Pose> out = turned_by(angle + up, {});
+    out[0].turn = angle;
+    const Vec2 corner{0.5, 0.4};  // of both blocks' drawing: the left end of the face stays c deep
+    const Vec2 aside = Vec2{-0.5 * c, -c} + by * (blocks.centroid(1) - corner);
+    out[1].way = aside + rotation_minus_identity(angle) * (apart + aside);
+    return out;
+  };
+  blocks.put(left_alone(0.02 * kSteps));
+  REQUIRE(blocks.count() == 1);
+  CHECK(is_left(blocks.patches()[0]));
+  CHECK(off(blocks.patches()[0].slip_signed[0], kept(blocks.patches()[0])) < 1e-8);
+  blocks.put(turned_by(0.02 * kSteps, {-0.5 * c, -c}));
+  REQUIRE(blocks.count() == 2);
+  for (const Patch& p :
+       blocks.patches())  // what came back has slipped as the one that is left tells, and bears no shear
+    if (!is_left(p)) CHECK(std::abs(p.stretch[0]) + std::abs(p.stretch[1]) < 1e-8 * c);
+  // the face breaks: one patch along all of it
+  for (FaceState& face : blocks.faces()) face.broken = true;
+  blocks.put(turned_by(0.02 * kSteps, {-0.5 * c, -c}));
+  REQUIRE(blocks.count() == 1);
+  CHECK(blocks.patches()[0].length == doctest::Approx(0.5).epsilon(1e-3));
 }
 
 }  // namespace test_patch_memory

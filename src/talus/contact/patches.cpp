@@ -14,9 +14,6 @@ namespace {
 // Pairs to a chunk.
 constexpr size_t kPatchGrain = 256;
 
-// Gaps up to this share of the smaller block are looked at: what is further apart has no force, and costs its row.
-constexpr double kMargin = 0.02;
-
 // What a contact without stiffness stands on is no corner against a corner: the two face each other over more
 // than what contacts give (theory 4.22), ten times.
 constexpr double kLeastFace = 10 * kGiveClosure;
@@ -61,7 +58,7 @@ class PairSearch {
     highest_ = 0;
     for (const Patch& p : known_) highest_ = std::max({highest_, rise(p, 0), rise(p, 1)});
     rounding_ = kRounding * (norm(shift_) + w_.blocks.radius[a] + w_.blocks.radius[b]);
-    margin_ = std::max(kMargin * size_, 2 * approach_ + 2 * highest_);
+    margin_ = std::max(kMarginShare * size_, 2 * approach_ + 2 * highest_);
     const Outlines& o = w_.outlines;
     for (int p = o.part_begin[a]; p < o.part_begin[a + 1]; ++p)
       for (int q = o.part_begin[b]; q < o.part_begin[b + 1]; ++q) look_at_parts(p, q, out);

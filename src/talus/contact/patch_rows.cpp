@@ -17,10 +17,6 @@ constexpr double kDeepNoticed = 0.01;
 // Pairs to a chunk.
 constexpr size_t kPatchRowGrain = 256;
 
-// A hard contact that faces the other block over less than this share of the smaller one is a corner against a
-// corner: it gives the more, the shorter that is (theory 4.22).
-constexpr double kFullFace = 1e-4;
-
 class PatchRows {
  public:
   PatchRows(const PatchWorld& world, const ContactGive& give, const State& state,
@@ -93,7 +89,8 @@ class PatchRows {
     }
     if (gives) {
       p.gives = {!soft && !rebounds, !law.is_soft(1)};
-      const double corner = std::max(1.0, kFullFace * size / c.length);
+      // a corner against a corner gives the more, the shorter what they face each other over (theory 4.22)
+      const double corner = std::max(1.0, kLevel * size / c.length);
       for (size_t row = 0; row < 2; ++row)
         if (p.gives[row]) p.row[row].compliance = corner * std::min(give_, least_give_ * yield(pair));
     }

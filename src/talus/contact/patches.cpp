@@ -14,19 +14,11 @@ namespace {
 // Pairs to a chunk.
 constexpr size_t kPatchGrain = 256;
 
-// What a contact without stiffness stands on is no corner against a corner: the two face each other over more
-// than what contacts give (theory 4.22), ten times.
-constexpr double kLeastFace = 10 * kGiveClosure;
-
 // What coordinates are rounded to, a hundred times.
 constexpr double kRounding = 1e-14;
 
 // Of a side: less of it is no shared face, as where blocks that meet at a crossing are moved out.
 constexpr double kHair = 1e-9;
-
-// Of the smaller block: a contact keeps the way along which it keeps two blocks apart unless another one is better by
-// more, ten times what contacts give.
-constexpr double kSticks = 10 * kGiveClosure;
 
 // Sine of the angle between a side and one that is no part of it.
 constexpr double kTurns = 1e-4;
@@ -159,7 +151,7 @@ class PairSearch {
     // an overlap of elastic joints has its normal and sides from its cells
     if (met.kind == PartsMet::kApart || !elastic_)
       meeting_.choose_way(motion(pair_->a), motion(pair_->b),
-                          {before && !measured ? before->way : 0, kSticks * size_});
+                          {before && !measured ? before->way : 0, kLevel * size_});
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     Patch* patch = &begin_patch(met, p, q, out);
@@ -167,7 +159,7 @@ class PairSearch {
     if (!elastic_ || !patch->overlaps) take_joint(met, p, q, *patch), soft = is_elastic(patch->joint);
     if (!soft || !patch->overlaps) {
       if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return out.pop_back();
-      if (!patch->overlaps && met.length() <= kLeastFace * size_) return out.pop_back();
+      if (!patch->overlaps && met.length() <= kLevel * size_) return out.pop_back();
       patch->way = met.way;
       return finish(met, own(), shift, lifted, soft, *patch);
     }

@@ -11,8 +11,8 @@ namespace talus::audit {
 
 namespace {
 
-constexpr double kStep = 1e-3;     // of the width of the overlap: errors of 1e-6, and 1e3 of round-off
-constexpr double kInLine = 1e-12;  // sine of the angle between two sides that are one
+constexpr double kStep = 1e-3;       // of the width of the overlap: errors of 1e-6, and 1e3 of round-off
+constexpr double kSameLine = 1e-12;  // sine of the angle between two sides that are one
 
 // A line with the outline on its left.
 struct Line {
@@ -27,7 +27,7 @@ std::vector<Line> lines_of(const Polygon& p) {
     if (norm(side) == 0) continue;
     const Line line{p[k], turn_right(side) / norm(side)};
     const auto same = [&line](const Line& o) {
-      return dot(o.outward, line.outward) > 0 && std::abs(cross(o.outward, line.outward)) <= kInLine;
+      return dot(o.outward, line.outward) > 0 && std::abs(cross(o.outward, line.outward)) <= kSameLine;
     };
     if ((out.empty() || !same(out.back())) && (out.empty() || !same(out.front()))) out.push_back(line);
   }

@@ -226,7 +226,7 @@ Marked marked_outline(const BlockSet& blocks, const Stretches& stretches, int bl
 // (theory 3.4).
 void move_outwards(const Marked& marked, ConvexPart& outline) {
   // beyond this the two lines would meet further off than ten times what they are moved by
-  constexpr double kInLine = 0.1;
+  constexpr double kTooFlat = 0.1;
   const std::vector<Vec2>& p = marked.outline.corner;
   const size_t n = p.size();
   ConvexPart out;
@@ -235,7 +235,7 @@ void move_outwards(const Marked& marked, ConvexPart& outline) {
     const Vec2 at = p[k], u = turn_right(at - p[before]) / norm(at - p[before]),
                v = turn_right(p[(k + 1) % n] - at) / norm(p[(k + 1) % n] - at);
     const double one = marked.moved[before][1], two = marked.moved[k][0], d = cross(u, v);
-    if (std::abs(d) >= kInLine) {
+    if (std::abs(d) >= kTooFlat) {
       out.corner.push_back(at + Vec2{(one * v.y - two * u.y) / d, (two * u.x - one * v.x) / d});
     } else {
       const Vec2 end = at + one * u, begin = at + two * v;

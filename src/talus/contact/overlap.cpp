@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
-// Corners of a part in line within this angle [rad] are one side for what hard contacts stand on: of sides that
-// turn by more, the next one is reached by a turn that shows.
-constexpr double kInLine = 1e-4;
-
 // Sine of the angle within which a side of one part and one of the other lie on each other: which of the two is the way
 // makes no difference then, and the one of the step before is kept.
 constexpr double kOneFace = 0.1;
@@ -481,7 +477,7 @@ bool PartsMeeting::face_ends(double reach) {
   const auto go_on = [&](size_t from, bool forward, double slope_of_all) {
     while (forward ? from < last : from > 0) {
       const size_t next = forward ? from + 1 : from - 1;
-      if (slope(from, next) > slope_of_all + kInLine) break;
+      if (slope(from, next) > slope_of_all + kOneSide) break;
       from = next;
     }
     return from;
@@ -489,7 +485,7 @@ bool PartsMeeting::face_ends(double reach) {
   const double flat = std::max(0.0, std::min(on, back));
   const size_t far = go_on(at, up, flat);
   // where the side is level the corner of the smallest gap may be any on it
-  Gap one = gaps_[flat <= kInLine ? go_on(at, !up, 0) : at], two = gaps_[far];
+  Gap one = gaps_[flat <= kOneSide ? go_on(at, !up, 0) : at], two = gaps_[far];
   if (one.g > two.g) std::swap(one, two);
   if (two.g - one.g > reach) {
     const double share = reach / (two.g - one.g);

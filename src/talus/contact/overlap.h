@@ -10,6 +10,10 @@
 
 namespace talus {
 
+/// Neighbouring sides of a part that turn by less than this are one [rad]: of what turns by more, the next side is
+/// reached by a turn that shows.
+inline constexpr double kOneSide = 1e-4;
+
 /// What a side of a part is to the other one.
 enum class SideRole : char {
   kOut,      // a way out

@@ -20,9 +20,6 @@ constexpr double kRounding = 1e-14;
 // Of a side: less of it is no shared face, as where blocks that meet at a crossing are moved out.
 constexpr double kHair = 1e-9;
 
-// Sine of the angle between a side and one that is no part of it.
-constexpr double kTurns = 1e-4;
-
 // The fields of two normals are one field while these turn by less than 60 deg.
 constexpr double kSameWay = 0.5;
 
@@ -111,7 +108,7 @@ class PairSearch {
     const auto begin = static_cast<size_t>(w_.outlines.corner_begin[static_cast<size_t>(part)]);
     const auto in_line = [&](size_t other) {
       return w_.outlines.side[begin + other].edge >= 0 &&
-             std::abs(cross(now.along[k], now.along[other])) <= kTurns;
+             std::abs(cross(now.along[k], now.along[other])) <= kOneSide;
     };
     return in_line((k + 1) % now.size()) || in_line((k + now.size() - 1) % now.size());
   }

@@ -11,9 +11,6 @@ namespace talus {
 
 namespace {
 
-// Faces of the reference shape further apart than this share of the smaller block are not in touch.
-constexpr double kTouching = 1e-6;
-
 // A face breaks when the running mean of its forces reaches this share of the limit: the mean of forces that
 // are cut off at the limit comes to the limit only in infinite time.
 constexpr double kAtLimit = 0.99999;

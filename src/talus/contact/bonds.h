@@ -13,6 +13,10 @@
 
 namespace talus {
 
+/// Of the smaller block: faces of the reference shape further apart are not in touch, and one that ends this near a
+/// corner ends there.
+inline constexpr double kTouching = 1e-6;
+
 struct BondFace {
   int block_a = -1, block_b = -1;
   int edge_a = -1;

@@ -11,8 +11,12 @@ namespace talus {
 
 namespace {
 
-// Sine of the least turn at a corner that is a notch: less is round-off of corners in line.
-constexpr double kNotch = 1e-9;
+// Sines, shares and lengths that differ by less, of what they are shares of, are the same: coordinates are rounded to
+// 1e-16 of a block.
+constexpr double kSame = 1e-9;
+
+// Beyond this sine the lines of two moved sides would meet further off than ten times what they are moved by.
+constexpr double kTooFlat = 0.1;
 
 struct NotchCut {
   size_t corner = 0, side = 0;  // from which corner, to which side
@@ -23,7 +27,7 @@ struct NotchCut {
 bool is_notch(const std::vector<Vec2>& p, size_t i) {
   const size_t n = p.size();
   const Vec2 e = p[i] - p[(i + n - 1) % n], f = p[(i + 1) % n] - p[i];
-  return cross(e, f) < -kNotch * norm(e) * norm(f);
+  return cross(e, f) < -kSame * norm(e) * norm(f);
 }
 
 // The way from a notch along the bisector into the block, to the side it meets first.
@@ -39,7 +43,7 @@ NotchCut cut_from(const std::vector<Vec2>& p, size_t i) {
     const double d = cross(u, side);
     if (d == 0) continue;
     const double t = cross(q - at, side) / d, s = cross(q - at, u) / d;
-    if (t <= 0 || s < -1e-12 || s > 1 + 1e-12 || t >= cut.length) continue;
+    if (t <= 0 || s < -kSame || s > 1 + kSame || t >= cut.length) continue;
     cut = {i, j, q + std::clamp(s, 0.0, 1.0) * side, t};
   }
   return cut;
@@ -50,7 +54,7 @@ void leave_out_double_corners(ConvexPart& part) {
   for (const Vec2 c : part.corner) size = std::max(size, norm(c - part.corner[0]));
   ConvexPart out;
   for (size_t k = 0; k < part.corner.size(); ++k) {
-    if (norm(part.corner[(k + 1) % part.corner.size()] - part.corner[k]) <= 1e-9 * size) continue;
+    if (norm(part.corner[(k + 1) % part.corner.size()] - part.corner[k]) <= kSame * size) continue;
     out.corner.push_back(part.corner[k]), out.side.push_back(part.side[k]);
   }
   part = std::move(out);
@@ -64,7 +68,6 @@ struct Crossing {
 };
 
 Crossing crossing_of(const std::vector<Vec2>& p, const NotchCut& cut) {
-  constexpr double kSame = 1e-9;  // lengths that differ by round-off alone
   Crossing out;
   for (size_t i = 0; i < p.size(); ++i) {
     if (i == cut.corner || !is_notch(p, i)) continue;
@@ -196,7 +199,7 @@ std::array<double, 2> moved_between(const std::vector<Stretch>& list, double fro
 
 Marked marked_outline(const BlockSet& blocks, const Stretches& stretches, int block) {
   Marked out;
-  const double least = 1e-6 * blocks.size[static_cast<size_t>(block)];
+  const double least = kTouching * blocks.size[static_cast<size_t>(block)];
   for (int e = 0; e < blocks.vertex_count(block); ++e) {
     const auto& list = stretches[static_cast<size_t>(blocks.vertex_begin[static_cast<size_t>(block)] + e)];
     const Vec2 from = blocks.corner({block, e}), side = blocks.corner(blocks.end_of({block, e})) - from;
@@ -225,8 +228,6 @@ Marked marked_outline(const BlockSet& blocks, const Stretches& stretches, int bl
 // Where two moved sides meet. Of sides in line each keeps its own end: where those differ, a cut joins them
 // (theory 3.4).
 void move_outwards(const Marked& marked, ConvexPart& outline) {
-  // beyond this the two lines would meet further off than ten times what they are moved by
-  constexpr double kTooFlat = 0.1;
   const std::vector<Vec2>& p = marked.outline.corner;
   const size_t n = p.size();
   ConvexPart out;
@@ -239,7 +240,7 @@ void move_outwards(const Marked& marked, ConvexPart& outline) {
       out.corner.push_back(at + Vec2{(one * v.y - two * u.y) / d, (two * u.x - one * v.x) / d});
     } else {
       const Vec2 end = at + one * u, begin = at + two * v;
-      if (norm(begin - end) > 1e-9 * std::max(std::abs(one), std::abs(two)))
+      if (norm(begin - end) > kSame * std::max(std::abs(one), std::abs(two)))
         out.corner.push_back(end), out.side.push_back({});
       out.corner.push_back(begin);
     }

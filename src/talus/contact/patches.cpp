@@ -17,9 +17,6 @@ constexpr size_t kPatchGrain = 256;
 // What coordinates are rounded to, a hundred times.
 constexpr double kRounding = 1e-14;
 
-// Of a side: less of it is no shared face, as where blocks that meet at a crossing are moved out.
-constexpr double kHair = 1e-9;
-
 // The fields of two normals are one field while these turn by less than 60 deg.
 constexpr double kSameWay = 0.5;
 
@@ -437,8 +434,7 @@ class PairSearch {
                  s1 = dot(along, w_.blocks.corner(w_.blocks.end_of(other)) + apart - from);
     const double low = std::max({0.0, of_a.from, of_b.from, std::min(s0, s1)}),
                  high = std::min({length, of_a.to, of_b.to, std::max(s0, s1)});
-    // what the two sides share of a hair is none
-    if (!(high - low > kHair * length)) return 0;
+    if (!(high > low)) return 0;
     const double height = w_.blocks.centroid[b].y + from.y + 0.5 * (low + high) * along.y;
     const Mat2 stress = in_situ_stress(w_.model.in_situ, w_.model.gravity, height);
     const JointLaw& law = w_.laws[static_cast<size_t>(patch.joint)];

@@ -327,7 +327,7 @@ bool PartsMeeting::sum_up() {
   add(true, met_.cells_b, met_.side_b), add(false, met_.cells_a, met_.side_a);
   met_.force = norm(force);
   // an overlap that its sides push both ways alike has no direction
-  if (!(met_.force > 1e-14 * met_.area)) return false;
+  if (!(met_.force > 0)) return false;
   met_.normal = force / met_.force;
   const Vec2 t = turn_right(met_.normal);
   double low = kAll, high = -kAll;

@@ -20,9 +20,6 @@ constexpr double kOneFace = 0.1;
 // Chords this many roundings of coordinates short are none.
 constexpr double kSliver = 100;
 
-// Places along the tangent that are one, as share of a face: what coordinates are rounded to, with room.
-constexpr double kSamePlace = 1e-12;
-
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
 void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
@@ -424,9 +421,8 @@ void PartsMeeting::see_face(bool of_b) {
     if (k == last) break;
   }
   // a side along the normal is reached where it comes nearest
-  const double same = kSamePlace * (face.back().s - face.front().s);
-  if (face.size() > 2 && face[1].s - face[0].s <= same) face.erase(face.begin());
-  if (face.size() > 2 && face.back().s - face[face.size() - 2].s <= same) face.pop_back();
+  if (face.size() > 2 && face[1].s - face[0].s <= rounding_) face.erase(face.begin());
+  if (face.size() > 2 && face.back().s - face[face.size() - 2].s <= rounding_) face.pop_back();
 }
 
 // Gaps along the tangent wherever a corner of either face is, in order. False: the faces have no length in common.
@@ -435,7 +431,6 @@ bool PartsMeeting::see_gaps() {
   const double low = std::max(face_[0].front().s, face_[1].front().s),
                high = std::min(face_[0].back().s, face_[1].back().s);
   if (!(low < high)) return false;
-  const double same = kSamePlace * (high - low);
   size_t next[2]{};  // the first corner of each face beyond the last gap
   gaps_.clear();
   const auto put = [&](double s) {
@@ -453,8 +448,8 @@ bool PartsMeeting::see_gaps() {
     double s = high;
     for (const size_t of_b : {0U, 1U})
       for (size_t k = next[of_b]; k < face_[of_b].size() && face_[of_b][k].s < s; ++k)
-        if (face_[of_b][k].s > gaps_.back().s + same) s = face_[of_b][k].s;
-    if (s >= high - same) break;
+        if (face_[of_b][k].s > gaps_.back().s + rounding_) s = face_[of_b][k].s;
+    if (s >= high - rounding_) break;
     put(s);
   }
   put(high);

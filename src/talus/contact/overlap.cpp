@@ -17,9 +17,6 @@ constexpr double kAll = std::numeric_limits<double>::infinity();
 // makes no difference then, and the one of the step before is kept.
 constexpr double kOneFace = 0.1;
 
-// Chords this many roundings of coordinates short are none.
-constexpr double kSliver = 100;
-
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
 void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
@@ -295,7 +292,7 @@ bool PartsMeeting::share_a_place(size_t cell, size_t other) const {
     for (size_t i = c.begin; i < c.end; ++i)
       for (size_t k = o.begin; k < o.end; ++k)
         if (distance_to_segment(corners_[i], corners_[k], corners_[k + 1 == o.end ? o.begin : k + 1]) <=
-            kSliver * rounding_)
+            rounding_)
           return true;
     return false;
   };
@@ -332,7 +329,7 @@ bool PartsMeeting::sum_up() {
     low = std::min(low, dot(t, x - centre)), high = std::max(high, dot(t, x - centre));
   const double b = high - low, at = moment / met_.force - low, m = std::clamp(at, 0.0, b);
   // what is left beside ties may be a sliver of rounding, which would be stiffer than all else
-  if (!(b > kSliver * rounding_)) return false;
+  if (!(b > rounding_)) return false;
   met_.beyond = at != m;
   met_.across[0] = met_.across[1] = 0;
   met_.begin = centre + low * t, met_.end = centre + high * t;

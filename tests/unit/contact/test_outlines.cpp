@@ -373,6 +373,20 @@ TEST_CASE("a face that covers half a side moves that half alone") {
   }
 }
 
+TEST_CASE("two moved sides end where their lines meet, at a notch too") {
+  const Scene scene =
+      block_scene(pressed_rock(), {{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}},  // an L
+                                   {box_polygon(1, 1, 2, 2)}});
+  // at (1, 1) the level face closes by the vertical stress, the upright one by half of it
+  const double half = 0.5 * pressure_at(1) / kStiffness;
+  const std::vector<SideSeen> of_notch = sides_of(scene, 0, 2), of_corner = sides_of(scene, 1, 0);
+  REQUIRE(of_notch.size() == 1);
+  REQUIRE(of_corner.size() == 1);
+  // places of 1 m are rounded to 1e-16 m
+  CHECK(norm(placed(scene, 0, of_notch[0].to) - Vec2{1 + 0.5 * half, 1 + half}) < 1e-15);
+  CHECK(norm(placed(scene, 1, of_corner[0].from) - Vec2{1 - 0.5 * half, 1 - half}) < 1e-15);
+}
+
 TEST_CASE("joints without stiffness, and models without stress of the ground, move nothing") {
   for (const bool hard : {true, false}) {
     Model model = pressed_rock();

@@ -845,6 +845,19 @@ TEST_CASE("overlap: pieces of random tied pairs are those of a fine quadrature, 
           met_with[2], " ", met_with[3]);
 }
 
+TEST_CASE("overlap: what rounding leaves beside a tie is no patch") {
+  // tied left of the origin, where the floor ends; the block's left wall is tied to a third one: nothing is left to bear
+  const double c = 1e-3;
+  Body block{{{-1, -c}, {0, -c}, {1, -c}, {1, 1}, {-1, 1}}, {}};
+  block.role = {SideRole::kTiedHere, SideRole::kOut, SideRole::kOut, SideRole::kOut, SideRole::kTied};
+  const Body under{box_polygon(-2, -1, 0, 0), {}};
+  for (int k = 0; k < 1000; ++k) {
+    CAPTURE(k);
+    const PartsMet met = meet(moved(block, {}, 0.0063 * k), moved(under, {}, 0.0063 * k));
+    CHECK((met.kind != PartsMet::kOverlap || met.length() > kRounding));
+  }
+}
+
 TEST_CASE("overlap: a side cut in two, with a cut between, bears as the whole one") {
   const double c = 0.01;
   const Body under = floor_body();

@@ -44,8 +44,9 @@ struct Borne {
 class PutBlocks {
  public:
   /// @param cohesion  faces that touch as they are drawn are tied, if there is any [Pa]
-  explicit PutBlocks(const std::vector<Polygon>& polygons, double friction = kFriction, double cohesion = 0)
-      : scene_(scene_of(polygons, friction, cohesion)),
+  explicit PutBlocks(const std::vector<Polygon>& polygons, double friction = kFriction, double factor = 1,
+                     double cohesion = 0)
+      : scene_(scene_of(polygons, friction, factor, cohesion)),
         state_(start_state(scene_)),
         laws_(scene_.laws),
         pose_(polygons.size()) {
@@ -92,6 +93,8 @@ class PutBlocks {
   }
   std::vector<Patch>& patches() { return state_.patches; }
   std::vector<FaceState>& faces() { return state_.face; }
+  // Speed at which the blocks are asked to part at an end of a patch [m/s].
+  double asked(size_t row) const { return -rows_.points[row].row[0].bias; }
   // Patches in overlap.
   int count() const {
     return static_cast<int>(std::count_if(state_.patches.begin(), state_.patches.end(),
@@ -108,9 +111,10 @@ class PutBlocks {
   RowSet rows_;
   std::vector<ContactPlace> place_;
 
-  static Scene scene_of(const std::vector<Polygon>& polygons, double friction, double cohesion) {
+  static Scene scene_of(const std::vector<Polygon>& polygons, double friction, double factor,
+                        double cohesion) {
     Model model = jointed_rock();
-    model.joints[0] = joint_of(1, friction);
+    model.joints[0] = joint_of(factor, friction);
     model.joints[0].cohesion = cohesion;
     std::vector<ScenePart> parts;
     for (const Polygon& p : polygons) parts.push_back({p, BlockKind::kRigid});
@@ -382,6 +386,30 @@ TEST_CASE("patch memory: elastic shear is kept through vibrations that no place 
   CHECK(off(blocks.between(0, 1).shear, before) < c);
 }
 
+TEST_CASE("patch memory: an overlap that a hard patch is born with is pushed out, and slowly") {
+  // a speed of 1e-4 m/s out of an overlap of 1e-2 m, of 1e-2 m/s were it a thousandth of that in a step of 1 ms
+  constexpr double kFastest = 1e-3;
+  for (const double c : {1e-6, 1e-2}) {
+    CAPTURE(c);
+    PutBlocks blocks(block_on_floor(), kFriction, 0);
+    blocks.put({{{0, -c}}, {}});
+    REQUIRE(blocks.count() == 1);
+    CHECK(blocks.asked(0) == 0);
+    double kept = blocks.patches()[0].allowed[0], fastest = 0;
+    CHECK(off(kept, c) < 1e-9);
+    constexpr int kSteps = 5000;
+    for (int k = 0; k < kSteps; ++k) {
+      blocks.put({{{0, -c}}, {}});
+      const double left = blocks.patches()[0].allowed[0];
+      CHECK(left < kept);
+      fastest = std::max(fastest, (kept - left) / kClock.dt), kept = left;
+    }
+    CHECK(fastest < kFastest);
+    CHECK(kept < (c > 1e-3 ? c : 0.01 * c));
+    CHECK(blocks.asked(0) > 0);
+  }
+}
+
 TEST_CASE("patch memory: a block that slides on to a second one is held by friction all the way") {
   constexpr double c = 1e-3, kStep = 0.1 * c;
   PutBlocks blocks({box_polygon(0, 0, 1, 1), box_polygon(-3, -1, 1.5, 0), box_polygon(1.5, -1, 4, 0)});
@@ -422,7 +450,7 @@ TEST_CASE("patch memory: shear on one block is not passed to the next") {
 TEST_CASE("patch memory: each of two patches beside an intact face remembers its own") {
   // half over each other; the upper one lies c deep and, beyond the two ends of the face, half of that aside
   constexpr double c = 1e-4;
-  PutBlocks blocks({box_polygon(0, 0, 1, 0.4), box_polygon(0.5, 0.4, 1.5, 0.8)}, 1e6, 1e6);
+  PutBlocks blocks({box_polygon(0, 0, 1, 0.4), box_polygon(0.5, 0.4, 1.5, 0.8)}, 1e6, 1, 1e6);
   REQUIRE(blocks.faces().size() == 1);
   blocks.put({{}, {{-0.5 * c, -c}}});
   REQUIRE(blocks.count() == 2);

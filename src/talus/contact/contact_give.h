@@ -12,7 +12,7 @@ namespace talus {
 inline constexpr double kGiveClosure = 1e-5;
 
 /// Of the smaller block, ten times that: two blocks that are level within it are not in each other's way, and what
-/// faces the other over less is a corner against a corner (theory 3.3, 4.22).
+/// faces the other over less is a corner against a corner (theory 3.3).
 inline constexpr double kLevel = 10 * kGiveClosure;
 
 /// Blocks yield at least so many times more to a force than contacts give within the shortest step: with less

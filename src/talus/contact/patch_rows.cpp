@@ -89,10 +89,8 @@ class PatchRows {
     }
     if (gives) {
       p.gives = {!soft && !rebounds, !law.is_soft(1)};
-      // a corner against a corner gives the more, the shorter what they face each other over (theory 4.22)
-      const double corner = std::max(1.0, kLevel * size / c.length);
       for (size_t row = 0; row < 2; ++row)
-        if (p.gives[row]) p.row[row].compliance = corner * std::min(give_, least_give_ * yield(pair));
+        if (p.gives[row]) p.row[row].compliance = std::min(give_, least_give_ * yield(pair));
     }
     if (springs) {
       p.partner = static_cast<int>(end == 0 ? r + 1 : r - 1);

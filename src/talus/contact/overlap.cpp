@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
-// Sine of the angle within which a side of one part and one of the other lie on each other: which of the two is the way
-// makes no difference then, and the one of the step before is kept.
-constexpr double kOneFace = 0.1;
-
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
 void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
@@ -86,11 +82,8 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
     }
   }
   if (!stands(*best)) met_.kind = PartsMet::kFar;
-  const auto in_line = [&](const Way& w) {
-    return std::abs(cross(part(w.of_b).along[w.side], part(best->of_b).along[best->side])) <= kOneFace;
-  };
-  if (kept && stands(*kept) && kept->then >= best->then - before.by && (!apart || in_line(*kept)))
-    best = kept;
+  // what is apart would be struck by a way that it has passed
+  if (!apart && kept && kept->then >= best->then - before.by) best = kept;
   met_.at_corner = false;
   for (const Way& w : ways_)
     if (!apart && &w != best && w.then >= best->then - before.by &&

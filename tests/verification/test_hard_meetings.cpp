@@ -94,4 +94,23 @@ TEST_CASE("hard faces that close on each other in one step are met in that step"
   check_below("faces that close in one step: overlap [m]", worst, bent, 1e-6);
 }
 
+// Further off than 2 % of the block, and nearer than it goes in a step: it is seen coming, and met.
+TEST_CASE("a fast block does not end its step in what it hits") {
+  constexpr double kStep = 1e-3, kSpeed = 20, kSize = 0.3;
+  for (const double share : {0.4, 0.6, 0.9}) {  // of the step's way, 20 mm: more than 6 mm
+    CAPTURE(share);
+    const double gap = share * kSpeed * kStep;
+    double deepest = 0;
+    audited(head(kHard, 0, 0) + block_text("a", box_polygon(-1, -1, 1, 0), "fixed") +
+                block_text("b", box_polygon(0, gap, kSize, gap + kSize), "rigid",
+                           fmt::format("velocity = [0, {}]", -kSpeed)) +
+                stage("fall", true, 4 * kStep, kStep),
+            [&](const Instant& i) {
+              deepest = std::max(deepest,
+                                 depth(corners_now(i.scene, i.state, 0), corners_now(i.scene, i.state, 1)));
+            });
+    check_below("a fast block: overlap [m]", deepest, 1e-9, 1e-13);  // of 20 mm
+  }
+}
+
 }  // namespace test_hard_meetings

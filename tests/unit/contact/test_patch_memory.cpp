@@ -43,10 +43,11 @@ struct Borne {
 // Rigid blocks that are put where they are to be, one step after the other.
 class PutBlocks {
  public:
-  /// @param cohesion  faces that touch as they are drawn are tied, if there is any [Pa]
-  explicit PutBlocks(const std::vector<Polygon>& polygons, double friction = kFriction, double factor = 1,
-                     double cohesion = 0)
-      : scene_(scene_of(polygons, friction, factor, cohesion)),
+  /// Faces that touch as they are drawn are tied where the joint has cohesion.
+  explicit PutBlocks(const std::vector<Polygon>& polygons, double friction = kFriction)
+      : PutBlocks(polygons, joint_of(1, friction)) {}
+  PutBlocks(const std::vector<Polygon>& polygons, const JointProperty& joint)
+      : scene_(scene_of(polygons, joint)),
         state_(start_state(scene_)),
         laws_(scene_.laws),
         pose_(polygons.size()) {
@@ -111,11 +112,9 @@ class PutBlocks {
   RowSet rows_;
   std::vector<ContactPlace> place_;
 
-  static Scene scene_of(const std::vector<Polygon>& polygons, double friction, double factor,
-                        double cohesion) {
+  static Scene scene_of(const std::vector<Polygon>& polygons, const JointProperty& joint) {
     Model model = jointed_rock();
-    model.joints[0] = joint_of(factor, friction);
-    model.joints[0].cohesion = cohesion;
+    model.joints[0] = joint;
     std::vector<ScenePart> parts;
     for (const Polygon& p : polygons) parts.push_back({p, BlockKind::kRigid});
     return block_scene(std::move(model), parts);
@@ -391,7 +390,7 @@ TEST_CASE("patch memory: an overlap that a hard patch is born with is pushed out
   constexpr double kFastest = 1e-3;
   for (const double c : {1e-6, 1e-2}) {
     CAPTURE(c);
-    PutBlocks blocks(block_on_floor(), kFriction, 0);
+    PutBlocks blocks(block_on_floor(), joint_of(0, kFriction));
     blocks.put({{{0, -c}}, {}});
     REQUIRE(blocks.count() == 1);
     CHECK(blocks.asked(0) == 0);
@@ -408,6 +407,33 @@ TEST_CASE("patch memory: an overlap that a hard patch is born with is pushed out
     CHECK(kept < (c > 1e-3 ? c : 0.01 * c));
     CHECK(blocks.asked(0) > 0);
   }
+}
+
+TEST_CASE("patch memory: what lay on one side tells nothing to what lies on the next one round the corner") {
+  PutBlocks blocks(block_on_floor());
+  blocks.put({{{2, -kClosure}}, {}}),
+      blocks.put({{{2 - 0.3 * kClosure, -kClosure}}, {}});  // up to the floor's end
+  CHECK(norm(blocks.between(0, 1).shear) > 0.2 * kClosure * kStiffness);
+  blocks.put({{{3 - kClosure, -1}}, {}});  // and beside it
+  CHECK(off(blocks.between(0, 1).normal.x, kStiffness * kClosure) < 2 * kClosure);
+  CHECK(norm(blocks.between(0, 1).shear) < 1e-9 * kStiffness * kClosure);  // rounding of places
+}
+
+TEST_CASE("patch memory: a block that has ridden up is met by the next part of the block below") {
+  constexpr double c = 1e-3, kStep = 0.25 * c, kSlip = 0.1;
+  JointProperty joint = joint_of(1, kFriction);
+  joint.dilation_angle = 0.5, joint.dilation_slip = kSlip;
+  const double rise =
+      std::tan(joint.dilation_angle) * kSlip;  // 0.05 m, more than what is looked at of a block of 1 m
+  PutBlocks blocks({box_polygon(0, 0, 1, 1), notched_floor()}, joint);
+  const double elastic = kFriction * c, end = -1.9;  // the cut ends at x = -0.5 at the top
+  double least = 1;
+  for (double x = 0; x > end; x -= kStep) {
+    const double slip = std::clamp(-x - elastic, 0.0, kSlip);
+    blocks.put({{{x, rise * slip / kSlip - c}}, {}});
+    if (x < -2 * kSlip) least = std::min(least, blocks.between(0, 1).normal.y / (kStiffness * c));
+  }
+  CHECK(least > 0.5);
 }
 
 TEST_CASE("patch memory: a block that slides on to a second one is held by friction all the way") {
@@ -450,7 +476,9 @@ TEST_CASE("patch memory: shear on one block is not passed to the next") {
 TEST_CASE("patch memory: each of two patches beside an intact face remembers its own") {
   // half over each other; the upper one lies c deep and, beyond the two ends of the face, half of that aside
   constexpr double c = 1e-4;
-  PutBlocks blocks({box_polygon(0, 0, 1, 0.4), box_polygon(0.5, 0.4, 1.5, 0.8)}, 1e6, 1, 1e6);
+  JointProperty joint = joint_of(1, 1e6);
+  joint.cohesion = 1e6;
+  PutBlocks blocks({box_polygon(0, 0, 1, 0.4), box_polygon(0.5, 0.4, 1.5, 0.8)}, joint);
   REQUIRE(blocks.faces().size() == 1);
   blocks.put({{}, {{-0.5 * c, -c}}});
   REQUIRE(blocks.count() == 2);

@@ -81,6 +81,24 @@ TEST_CASE("audit watch: a force that goes while the two overlap") {
   }
 }
 
+TEST_CASE(
+    "audit watch: how deep the two are in each other, and how large the force was, says whether it counts") {
+  struct Gone {
+    double depth, force;  // of a block of 1 m, with another force of 1e5 N
+    bool invalid;
+  };
+  for (const auto& [depth, force, invalid] :
+       {Gone{3e-5, 1e5, false}, Gone{5e-4, 1e5, true}, Gone{5e-4, 4e3, false}, Gone{2e-3, 4e3, true}}) {
+    CAPTURE(depth);
+    CAPTURE(force);
+    Two t;
+    t.step({0, -depth}, {point(0, force, -depth), point(1, 1e5, -depth)});
+    t.step({0, -depth}, {point(1, 1e5, -depth)}, 2);
+    CHECK(t.count(Defect::kForceVanished) == 1);
+    CHECK(t.report.of(Defect::kForceVanished).worst.invalid == invalid);
+  }
+}
+
 TEST_CASE("audit watch: a block that goes through another within a step") {
   Two t;
   t.step({0, 0.2}, {});

@@ -205,6 +205,23 @@ TEST_CASE("parts of a symmetric outline are symmetric where two cuts of one leng
   }
 }
 
+TEST_CASE("parts of a turned outline are the turned parts, corners in line and cuts of one length and all") {
+  const Polygon box{{0, 0}, {0.3, 0}, {1, 0}, {2, 0}, {2, 0.7}, {2, 1}, {0, 1}};
+  const Polygon tee{{-1, 0}, {-0.4, 0}, {-0.4, -1}, {0.4, -1}, {0.4, 0}, {1, 0}, {1, 1}, {-1, 1}};
+  const auto turned = [](const Polygon& p, double angle) {
+    Polygon out;
+    for (const Vec2 x : p) out.push_back(x + rotation_minus_identity(angle) * x);
+    return out;
+  };
+  for (int k = 1; k < 200; ++k) {
+    CAPTURE(k);
+    CHECK(parts_of(turned(box, 0.03 * k)).size() == 1);
+    std::vector<ConvexPart> back = parts_of(turned(tee, 0.03 * k));
+    for (ConvexPart& part : back) part.corner = turned(part.corner, -0.03 * k);
+    CHECK(are_same(back, parts_of(tee), kSamePlace));
+  }
+}
+
 TEST_CASE("an outline without notches is one part, corners in line and all") {
   const Polygon box{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {0, 1}};
   const std::vector<ConvexPart> parts = parts_of(box);

@@ -289,6 +289,19 @@ bool has_any(const FrameResult& r, Defect defect) { return has(r, defect, false)
 
 }  // namespace
 
+TEST_CASE("audit: stiffness times overlap is asked of one interface that hardly moves") {
+  const double c = 1e-3;
+  CHECK(has_any(patch(c, 6).look(), Defect::kNormalLaw));
+  Case moves = patch(c, 6), slow = patch(c, 6);  // in three steps by 0.15 and 0.03 of the closure
+  for (Point& p : moves.frame.points) p.closing = 0.05 * c;
+  for (Point& p : slow.frame.points) p.closing = 0.01 * c;
+  CHECK(!has_any(moves.look(), Defect::kNormalLaw));
+  CHECK(has_any(slow.look(), Defect::kNormalLaw));
+  Case two = patch(c, 6);  // ends on two sides at 0.2 rad
+  two.frame.points[1].normal = {std::sin(0.2), -std::cos(0.2)};
+  CHECK(!has_any(two.look(), Defect::kNormalLaw));
+}
+
 TEST_CASE("audit: the force of a patch is that of the energy of the overlap") {
   for (const double closure : {1e-7, 1e-4, 0.02}) {
     const FrameResult r = patch(closure, 1).look();

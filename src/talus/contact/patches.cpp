@@ -144,8 +144,7 @@ class PairSearch {
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
     if (met.kind == PartsMet::kApart || !elastic_)
-      meeting_.choose_way(motion(pair_->a), motion(pair_->b),
-                          {before && !measured ? before->way : 0, kLevel * size_});
+      meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kLevel * size_});
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     Patch* patch = &begin_patch(met, p, q, out);

@@ -431,16 +431,20 @@ bool PartsMeeting::see_gaps() {
       const Seen q = face[next[of_b]], p = next[of_b] == 0 ? q : face[next[of_b] - 1];
       at[of_b] = q.s > p.s ? p.n + std::clamp((s - p.s) / (q.s - p.s), 0.0, 1.0) * (q.n - p.n) : p.n;
     }
-    gaps_.push_back({s, at[0] - at[1], at[0]});
+    const Gap gap{s, at[0] - at[1], at[0]};
+    // of places that are one it is where the two are nearest that counts: a side along the normal leads away from it
+    if (gaps_.empty() || s - gaps_.back().s > rounding_)
+      gaps_.push_back(gap);
+    else if (gap.g < gaps_.back().g)
+      gaps_.back() = gap;
   };
-  put(low);
-  while (true) {
-    double s = high;
+  for (double s = low; s < high;) {
+    put(s);
+    const double from = s;
+    s = high;
     for (const size_t of_b : {0U, 1U})
       for (size_t k = next[of_b]; k < face_[of_b].size() && face_[of_b][k].s < s; ++k)
-        if (face_[of_b][k].s > gaps_.back().s + rounding_) s = face_[of_b][k].s;
-    if (s >= high - rounding_) break;
-    put(s);
+        if (face_[of_b][k].s > from) s = face_[of_b][k].s;
   }
   put(high);
   return true;
@@ -453,8 +457,8 @@ bool PartsMeeting::face_ends(double reach) {
   for (size_t k = 1; k < gaps_.size(); ++k)
     if (gaps_[k].g < gaps_[at].g) at = k;
   const auto slope = [&](size_t from, size_t to) {
-    const double way = std::abs(gaps_[to].s - gaps_[from].s);
-    return way > 0 ? (gaps_[to].g - gaps_[from].g) / way : -kAll;
+    const double more = gaps_[to].g - gaps_[from].g;
+    return more > rounding_ ? more / std::abs(gaps_[to].s - gaps_[from].s) : 0;
   };
   const auto last = gaps_.size() - 1;
   const double back = at > 0 ? slope(at, at - 1) : kAll, on = at < last ? slope(at, at + 1) : kAll;

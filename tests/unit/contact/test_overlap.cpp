@@ -1023,4 +1023,24 @@ TEST_CASE("parts apart: the way that is left last at the end of the step is the 
   CHECK(norm(meet(a, middle, {{}, spin_matrix(-0.02)}).normal - Vec2{0, -1}) < kPlace);
 }
 
+TEST_CASE("overlap: a chord ends at the corner where a side along the normal begins a rounding beyond it") {
+  // bricks of one course: their upper sides lean by a hair, so that they go on to face the other a rounding further
+  for (const double lean : {1e-9, 3e-9, 1e-6})
+    for (const double further : {-5e-15, 1e-17, 5e-15, 1e-13}) {
+      const Body a{{{0, -0.25 - lean}, {1, -0.25}, {1, 0.25}, {0, 0.25 + lean}}, {0, 0}},
+          b{{{0, -0.25}, {1, -0.25 - lean}, {1, 0.25 + lean}, {0, 0.25}}, {1, further}};
+      PartsMeeting meeting;
+      const Seen one(a), two(b);
+      REQUIRE(meeting.look(one.now(), two.now(), b.origin, kMargin, kRounding).kind == PartsMet::kApart);
+      meeting.choose_way({}, {}, {});
+      REQUIRE(meeting.face_ends(kMargin));
+      const PartsMet& met = meeting.met();
+      CAPTURE(lean);
+      CAPTURE(further);
+      CHECK(std::abs(met.closure[0]) <= 1e-15);
+      CHECK(std::abs(met.closure[1]) <= 1e-15);
+      CHECK(met.length() == doctest::Approx(0.5).epsilon(1e-12));
+    }
+}
+
 }  // namespace test_overlap

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
+// Cells this many roundings of coordinates apart are of two pieces.
+constexpr double kApartCells = 100;
+
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
 void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
@@ -206,6 +209,9 @@ void PartsMeeting::keep_nearest(bool of_b, const std::vector<int>& sides, size_t
       keep(
           out, [&](Vec2 x) { return sign * dot(way, x - at); }, work_);
     } else {
+      // of sides in line those between them tell which is nearer
+      if (dot(own.along[j], own.along[k]) > 0 && std::abs(cross(own.along[j], own.along[k])) <= kOneSide)
+        continue;
       keep(
           out, [&](Vec2 x) { return depth_of(of_b, k, x) - depth_of(of_b, j, x); }, work_);
     }
@@ -279,13 +285,14 @@ void PartsMeeting::put_with_neighbours(size_t cell) {
   }
 }
 
-// Two convex cells beside each other do so where a corner of one lies on the other, within what would be no chord.
+// Two convex cells beside each other do so where a corner of one lies on the other. Where cuts cross at a small angle
+// corners are off by more than the rounding, and by far less than any tie is long.
 bool PartsMeeting::share_a_place(size_t cell, size_t other) const {
   const auto on = [this](const NestedCell& c, const NestedCell& o) {
     for (size_t i = c.begin; i < c.end; ++i)
       for (size_t k = o.begin; k < o.end; ++k)
         if (distance_to_segment(corners_[i], corners_[k], corners_[k + 1 == o.end ? o.begin : k + 1]) <=
-            rounding_)
+            kApartCells * rounding_)
           return true;
     return false;
   };
@@ -345,6 +352,7 @@ const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shif
 
 bool PartsMeeting::measure_overlap() {
   nested_.clear(), next_piece_ = 0;
+  met_.beside_tie = false;
   if (!is_strip_) {
     const Way* best = &ways_.front();
     for (const Way& w : ways_)
@@ -362,6 +370,7 @@ bool PartsMeeting::measure_cells() {
     return false;
   if (any_tied()) {
     nested_cells();
+    met_.beside_tie = true;
     return measure_next_piece();
   }
   cells_by_rest(false, main_a, met_.cells_a);

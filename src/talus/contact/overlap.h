@@ -65,9 +65,10 @@ struct PartsMet {
   int way =
       0;  // the side whose normal that is: of b 1, 2 and so on, of a -1, -2; of a measured overlap that is a
           // strip its face on b, else 0
-  bool at_corner = false;  // two corners in each other: along another way, as good, nothing of the two faces
-  bool tied = false;       // the nearest way out of an overlap is one that a tie closes
-  bool beyond = false;     // the force acts beyond an end of the chord, and is put there
+  bool at_corner = false;   // two corners in each other: along another way, as good, nothing of the two faces
+  bool beside_tie = false;  // a piece of an overlap that ties leave
+  bool tied = false;        // the nearest way out of an overlap is one that a tie closes
+  bool beyond = false;      // the force acts beyond an end of the chord, and is put there
   int side_a = -1, side_b = -1;            // the sides that have most of it
   std::vector<SideCell> cells_a, cells_b;  // of an overlap
   double length() const { return norm(end - begin); }

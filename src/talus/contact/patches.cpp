@@ -156,14 +156,17 @@ class PairSearch {
       patch->way = met.way;
       return finish(met, own(), shift, lifted, soft, *patch);
     }
-    if (!meeting_.measure_overlap()) return out.pop_back();
-    while (true) {
+    for (bool any = meeting_.measure_overlap(); any; any = meeting_.measure_next_piece()) {
       patch->area = met.area, patch->way = elastic_ ? met.way : 0;
       mix_joints(met, p, q, *patch);
-      finish(met, own(), shift, lifted, soft, *patch);
-      if (!meeting_.measure_next_piece()) return;
+      // a hair at the end of a tie whose nearest sides have no stiffness: left to the tie
+      if (met.beside_tie && !is_elastic(patch->joint))
+        out.pop_back();
+      else
+        finish(met, own(), shift, lifted, soft, *patch);
       patch = &begin_patch(met, p, q, out);
     }
+    out.pop_back();
   }
 
   Patch& begin_patch(const PartsMet& met, int p, int q, std::vector<Patch>& out) const {

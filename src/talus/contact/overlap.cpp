@@ -62,6 +62,7 @@ void PartsMeeting::find_ways(double margin, double rounding) {
 // Parts that are apart meet along the way along which they are furthest apart, or least in each other, at the end of
 // the step. Where that is one that they are level along now and stay so, as corners of level blocks do that slide past
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
+// What overlaps by no more than `before.by` touches, and keeps in the same way to the ways that it touches along.
 void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
   const double moves = std::max(find_moves(false, motion_a, motion_b), find_moves(true, motion_b, motion_a));
   double widest = -kAll;
@@ -75,8 +76,9 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
     if (w.number() == before.way) kept = &w;
   }
   const bool apart = met_.kind == PartsMet::kApart;
-  const auto stands = [&](const Way& w) { return !apart || w.gap >= -rounding_; };
-  if (!stands(*best) && best->then < -before.by) {
+  const double in = apart ? rounding_ : before.by;
+  const auto stands = [&](const Way& w) { return w.gap >= -in; };
+  if (widest >= -in && !stands(*best) && best->then < -before.by) {
     best = nullptr;
     for (Way& w : ways_) {
       if (!stands(w)) continue;
@@ -84,7 +86,7 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
       if (!best || w.then > best->then) best = &w;
     }
   }
-  if (!stands(*best)) met_.kind = PartsMet::kFar;
+  if (apart && !stands(*best)) met_.kind = PartsMet::kFar;
   // what is apart would be struck by a way that it has passed
   if (!apart && kept && kept->then >= best->then - before.by) best = kept;
   met_.at_corner = false;

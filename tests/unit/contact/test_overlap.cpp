@@ -1023,6 +1023,28 @@ TEST_CASE("parts apart: the way that is left last at the end of the step is the 
   CHECK(norm(meet(a, middle, {{}, spin_matrix(-0.02)}).normal - Vec2{0, -1}) < kPlace);
 }
 
+TEST_CASE("overlap: what touches along one way keeps to it when two corners are driven into each other") {
+  // b's corner bears on a's upright side 4 mm below a's corner, and is driven into it; by the end of the step a's corner
+  // would be in less below b's slanted side, which it has long been behind: pushed along that it slides on into b
+  const Body b{{{0, 0}, {-0.12, 1}, {-1, 1}, {-1, -0.95}}, {0, 0}};
+  const PartMotion motion_b{{5e-3, 3.27e-3}, {}};
+  const auto normal = [&](double in) {
+    const Body a{{{-in, -1}, {1, -1}, {1, 0.004}, {-in, 0.004}}, {0, 0}};
+    PartsMeeting meeting;
+    const Seen one(a), two(b);
+    REQUIRE(meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding).kind ==
+            PartsMet::kOverlap);
+    meeting.choose_way({}, motion_b, {0, kLevel});
+    return meeting.met().normal;
+  };
+  for (const double in : {1e-12, 3e-6, 0.6 * kLevel}) {
+    CAPTURE(in);
+    CHECK(norm(normal(in) - Vec2{1, 0}) < 1e-12);
+  }
+  // what is deep in another touches along no way: it is pushed out where it is in least
+  CHECK(norm(normal(2 * kLevel) - Vec2{0.95, -1} / norm(Vec2{0.95, -1})) < 1e-12);
+}
+
 TEST_CASE("overlap: a chord ends at the corner where a side along the normal begins a rounding beyond it") {
   // bricks of one course: their upper sides lean by a hair, so that they go on to face the other a rounding further
   for (const double lean : {1e-9, 3e-9, 1e-6})

@@ -71,7 +71,8 @@ struct PartsMet {
   bool beyond = false;      // the force acts beyond an end of the chord, and is put there
   int side_a = -1, side_b = -1;            // the sides that have most of it
   std::vector<SideCell> cells_a, cells_b;  // of an overlap
-  double length() const { return norm(end - begin); }
+  /// Along the tangent: the surface of either part may be slanted to it.
+  double length() const { return dot(turn_right(normal), end - begin); }
 };
 
 /// Sees how two convex parts lie to each other; keeps its memory from pair to pair.

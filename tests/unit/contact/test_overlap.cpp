@@ -1065,4 +1065,18 @@ TEST_CASE("overlap: a chord ends at the corner where a side along the normal beg
     }
 }
 
+TEST_CASE("parts apart: a tilted face has the same length from either side") {
+  // a's lower side leans by 2 %: along it the face is longer than along b's, which is the way
+  const Body a{{{0, 0.01}, {1, 0.03}, {1, 1}, {0, 1}}, {0, 0}},
+      b{{{-1, -1}, {2, -1}, {2, 0}, {-1, 0}}, {0, 0}};
+  for (const bool exchanged : {false, true}) {
+    PartsMeeting meeting;
+    const Seen one(exchanged ? b : a), two(exchanged ? a : b);
+    REQUIRE(meeting.look(one.now(), two.now(), {}, kMargin, kRounding).kind == PartsMet::kApart);
+    meeting.choose_way({}, {}, {});
+    REQUIRE(meeting.face_ends(kMargin));
+    CHECK(meeting.met().length() == doctest::Approx(1).epsilon(1e-12));
+  }
+}
+
 }  // namespace test_overlap

@@ -951,7 +951,10 @@ TEST_CASE("parts apart: a corner over a face has the corner and a place that bea
     const bool begins = std::abs(e.met.closure[0] + gap) < kPlace;
     CHECK(norm((begins ? e.met.begin : e.met.end) - Vec2{0, -0.5 * gap}) < kPlace);
     CHECK(e.met.closure[begins ? 1 : 0] == doctest::Approx(-gap - reach));
-    CHECK(e.met.length() == doctest::Approx(std::hypot(reach, 0.5 * reach)));
+    CHECK(e.met.length() == doctest::Approx(reach));
+    const Ends turned = ends_of(floor_body(), square, reach);
+    REQUIRE(turned.any);
+    CHECK(turned.met.length() == doctest::Approx(reach));
   }
 }
 

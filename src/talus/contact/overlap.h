@@ -62,9 +62,9 @@ struct PartsMet {
   Vec2 begin, end;      // of the chord, along the tangent: the normal turned clockwise; of face ends on a [m]
   double across[2]{};   // how far b's surface lies from there, against the normal: of face ends [m]
   double closure[2]{};  // at begin and end, linear between, of this force and moment [m]; < 0: a gap
-  int way =
-      0;  // the side whose normal that is: of b 1, 2 and so on, of a -1, -2; of a measured overlap that is a
-          // strip its face on b, else 0
+  // the side whose normal that is: of b 1, 2 and so on, of a -1, -2; of a strip that was measured its face on b, of another
+  // measured overlap 0
+  int way = 0;
   bool at_corner = false;   // two corners in each other: along another way, as good, nothing of the two faces
   bool beside_tie = false;  // a piece of an overlap that ties leave
   bool tied = false;        // the nearest way out of an overlap is one that a tie closes

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/contact/overlap.h"
 
@@ -11,7 +12,7 @@ namespace talus {
 namespace {
 
 // Share of a face that no triangle may have.
-constexpr double kNoStrip = 2;
+constexpr double kNoStrip = std::numeric_limits<double>::infinity();
 
 size_t after(size_t k, size_t n) { return k + 1 == n ? 0 : k + 1; }
 size_t ahead_of(size_t k, size_t n) { return k == 0 ? n - 1 : k - 1; }
@@ -76,7 +77,7 @@ double PartsMeeting::take_triangle(bool of_b, bool high, Moments& triangle) cons
   if (own.role_of(end.side[of_b]) == SideRole::kCut) return 0;
   if (own.role_of(end.side[of_b]) != SideRole::kOut) return kNoStrip;
   const Vec2 way = own.along[strip_.side[of_b]] + own.along[end.side[of_b]];
-  // the bisector is along the mean of two outlines' ways, and the face is on its left or right by the order of the two
+  // the bisector is square to the sum of two sides' ways; on which side of it the face lies goes by their order
   const double sign = of_b == high ? -1 : 1;
   const auto beside = [&](Vec2 x) { return sign * dot(way, x - end.corner[of_b]); };
   const double here = end.of_b == of_b ? 0 : beside(end.on[of_b]), beyond = beside(end.on[!of_b]);

@@ -147,31 +147,35 @@ class PairSearch {
       meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kLevel * size_});
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
-    Patch* patch = &begin_patch(met, p, q, out);
+    const bool overlaps = met.kind == PartsMet::kOverlap;
+    int joint = -1;
     bool soft = elastic_;
-    if (!elastic_ || !patch->overlaps) take_joint(met, p, q, *patch), soft = is_elastic(patch->joint);
-    if (!soft || !patch->overlaps) {
-      if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return out.pop_back();
-      if (!patch->overlaps && met.length() <= kLevel * size_) return out.pop_back();
-      patch->way = met.way;
-      return finish(met, own(), shift, lifted, soft, *patch);
+    if (!elastic_ || !overlaps)
+      joint = joint_between(edge_of(p, met.side_a), edge_of(q, met.side_b)), soft = is_elastic(joint);
+    if (soft && overlaps) {
+      for (bool any = meeting_.measure_overlap(); any; any = meeting_.measure_next_piece()) {
+        Patch& patch = begin_patch(met, p, q, out);
+        patch.area = met.area, patch.way = elastic_ ? met.way : 0;
+        mix_joints(met, p, q, patch);
+        // a hair at the end of a tie whose nearest sides have no stiffness: left to the tie
+        if (met.beside_tie && !is_elastic(patch.joint))
+          out.pop_back();
+        else
+          finish(met, own(), shift, lifted, soft, patch);
+      }
+      return;
     }
-    for (bool any = meeting_.measure_overlap(); any; any = meeting_.measure_next_piece()) {
-      patch->area = met.area, patch->way = elastic_ ? met.way : 0;
-      mix_joints(met, p, q, *patch);
-      // a hair at the end of a tie whose nearest sides have no stiffness: left to the tie
-      if (met.beside_tie && !is_elastic(patch->joint))
-        out.pop_back();
-      else
-        finish(met, own(), shift, lifted, soft, *patch);
-      patch = &begin_patch(met, p, q, out);
-    }
-    out.pop_back();
+    if (met.tied || met.at_corner || !meeting_.face_ends(margin_)) return;
+    if (!overlaps && met.length() <= kLevel * size_) return;
+    Patch& patch = begin_patch(met, p, q, out);
+    patch.joint = joint, patch.way = met.way;
+    finish(met, own(), shift, lifted, soft, patch);
   }
 
   Patch& begin_patch(const PartsMet& met, int p, int q, std::vector<Patch>& out) const {
     Patch& patch = out.emplace_back();
     patch.block_a = pair_->a, patch.block_b = pair_->b, patch.part_a = p, patch.part_b = q;
+    patch.side_a = edge_of(p, met.side_a), patch.side_b = edge_of(q, met.side_b);
     patch.overlaps = met.kind == PartsMet::kOverlap;
     return patch;
   }
@@ -215,14 +219,9 @@ class PairSearch {
     return glued(joint) && l.default_joint >= 0 ? l.default_joint : joint;
   }
 
-  void take_joint(const PartsMet& met, int p, int q, Patch& patch) const {
-    patch.side_a = edge_of(p, met.side_a), patch.side_b = edge_of(q, met.side_b);
-    patch.joint = joint_between(patch.side_a, patch.side_b);
-  }
-
   // The joint of most of an overlap, and the next one with its share (theory 3.8).
   void mix_joints(const PartsMet& met, int p, int q, Patch& patch) {
-    take_joint(met, p, q, patch);
+    patch.joint = joint_between(patch.side_a, patch.side_b);
     if (pair_->joint != ContactPair::kByEdges || (met.cells_a.size() == 1 && met.cells_b.size() == 1)) return;
     shares_.clear();
     double all = 0;

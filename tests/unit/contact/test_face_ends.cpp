@@ -1,0 +1,226 @@
+// Two convex parts that are apart, and hard contacts: the way along which they meet, normal, gap and ends by hand.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "support/convex_parts.h"
+
+namespace test_face_ends {
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+struct Ends {
+  bool any = false;
+  PartsMet met;
+};
+
+Ends ends_of(const Body& a, const Body& b, double reach, const PartMotion& motion_b = {}) {
+  const Seen one(a), two(b);
+  PartsMeeting meeting;
+  const PartsMet& met = meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding);
+  REQUIRE(met.kind != PartsMet::kFar);
+  meeting.choose_way({}, motion_b, {0, kLevel});
+  REQUIRE(met.kind != PartsMet::kFar);
+  const bool any = meeting.face_ends(reach);
+  PartsMet out = met;  // with its ends half way across the gap
+  out.begin += -0.5 * out.across[0] * out.normal, out.end += -0.5 * out.across[1] * out.normal;
+  return {any, out};
+}
+
+// Places of about 1 m, some operations on.
+constexpr double kPlace = 1e-14;
+
+}  // namespace
+
+TEST_CASE("parts apart: face against face has the common stretch, half way across the gap") {
+  const double gap = 0.01;
+  const Ends e = ends_of(block_over(1, -gap), floor_body(), kMargin);
+  CHECK(e.met.kind == PartsMet::kApart);
+  CHECK(norm(e.met.normal - Vec2{0, 1}) < kPlace);
+  REQUIRE(e.any);
+  // seen from the block's origin, which lies at (0.1, gap)
+  CHECK(norm(e.met.begin - Vec2{-0.5, -0.5 * gap}) < kPlace);
+  CHECK(norm(e.met.end - Vec2{0.5, -0.5 * gap}) < kPlace);
+  for (const double closure : e.met.closure) CHECK(closure == doctest::Approx(-gap));
+  const Ends exchanged = ends_of(floor_body(), block_over(1, -gap), kMargin);
+  CHECK(norm(exchanged.met.normal - Vec2{0, -1}) < kPlace);
+  CHECK(norm(exchanged.met.begin - Vec2{0.6, 0.5 * gap}) < kPlace);
+  CHECK(norm(exchanged.met.end - Vec2{-0.4, 0.5 * gap}) < kPlace);
+  CHECK(meet(block_over(1, -1.01 * kMargin), floor_body()).kind == PartsMet::kFar);
+}
+
+TEST_CASE(
+    "parts apart: a face tilted either way has its near corner and its far one, or where it is too far") {
+  const double gap = 0.003, tilt = 0.02, rise = std::sin(tilt), run = std::cos(tilt);
+  for (const bool right : {true, false}) {  // up to the right: the left corner is near
+    CAPTURE(right);
+    const Body block = right ? moved({box_polygon(0, 0, 1, 1), {}}, {0, gap}, tilt)
+                             : moved({box_polygon(-1, 0, 0, 1), {}}, {0, gap}, -tilt);
+    const double sign = right ? 1 : -1;
+    for (const double reach : {0.05, 0.01}) {
+      CAPTURE(reach);
+      const Ends e = ends_of(block, floor_body(), reach);
+      CHECK(e.met.kind == PartsMet::kApart);
+      CHECK(norm(e.met.normal - Vec2{0, 1}) <
+            kPlace);  // the floor's: the tilted side is nearer to the floor's corner
+      REQUIRE(e.any);
+      const double most = std::min(reach, rise);
+      const size_t near = right ? 0 : 1;
+      const Vec2 from = right ? e.met.begin : e.met.end, to = right ? e.met.end : e.met.begin;
+      // the slope along the floor is the tangent of the tilt; a place is half way between floor and block
+      CHECK(norm(from - Vec2{0, -0.5 * gap}) < kPlace);
+      CHECK(norm(to - Vec2{sign * most * run / rise, 0.5 * (most - gap)}) < 100 * kPlace);
+      CHECK(e.met.closure[near] == doctest::Approx(-gap));
+      CHECK(e.met.closure[1 - near] == doctest::Approx(-gap - most));
+    }
+  }
+}
+
+TEST_CASE("parts apart: a corner over a face has the corner and a place that bears nothing") {
+  const double gap = 0.004, half = std::sqrt(0.5);
+  const Body square{{{0, 0}, {half, half}, {0, 2 * half}, {-half, half}}, {0.3, gap}};
+  for (const double reach : {0.01, 0.05}) {
+    const Ends e = ends_of(square, floor_body(), reach);
+    CHECK(norm(e.met.normal - Vec2{0, 1}) < kPlace);
+    REQUIRE(e.any);
+    // sides rise by as much as they run: reach along the tangent, to the one side or the other
+    const bool begins = std::abs(e.met.closure[0] + gap) < kPlace;
+    CHECK(norm((begins ? e.met.begin : e.met.end) - Vec2{0, -0.5 * gap}) < kPlace);
+    CHECK(e.met.closure[begins ? 1 : 0] == doctest::Approx(-gap - reach));
+    CHECK(e.met.length() == doctest::Approx(reach));
+    const Ends turned = ends_of(floor_body(), square, reach);
+    REQUIRE(turned.any);
+    CHECK(turned.met.length() == doctest::Approx(reach));
+  }
+}
+
+TEST_CASE("parts apart: a corner in line on a face changes nothing, on either side of the gap") {
+  const double gap = 0.003, tilt = 0.01;
+  const Polygon plain = box_polygon(0, 0, 1, 1), extra{{0, 0}, {0.3, 0}, {1, 0}, {1, 1}, {0, 1}};
+  const Body floor_extra{{{-2, -1}, {2, -1}, {2, 0}, {0.55, 0}, {-2, 0}}, {}};
+  for (const double angle : {0.0, tilt, -tilt}) {
+    CAPTURE(angle);
+    const Vec2 up{0, gap + (angle < 0 ? std::sin(tilt) : 0)};
+    const Ends one = ends_of(moved({plain, {}}, up, angle), floor_body(), kMargin);
+    for (const bool on_floor : {false, true}) {
+      const Ends two = ends_of(moved({on_floor ? plain : extra, {}}, up, angle),
+                               on_floor ? floor_extra : floor_body(), kMargin);
+      REQUIRE(one.any);
+      REQUIRE(two.any);
+      CHECK(norm(one.met.normal - two.met.normal) < kPlace);
+      CHECK(norm(one.met.begin - two.met.begin) < kPlace);
+      CHECK(norm(one.met.end - two.met.end) < kPlace);
+      for (const size_t end : {0U, 1U}) CHECK(std::abs(one.met.closure[end] - two.met.closure[end]) < kPlace);
+    }
+  }
+}
+
+TEST_CASE("parts apart: hard contacts in overlap stand on the ends of their face") {
+  const double c = 1e-6;
+  const Ends e = ends_of(block_over(1, c), floor_body(), kMargin);
+  CHECK(e.met.kind == PartsMet::kOverlap);
+  REQUIRE(e.any);
+  CHECK(e.met.begin.x == doctest::Approx(-0.5));
+  CHECK(e.met.end.x == doctest::Approx(0.5));
+  for (const double closure : e.met.closure)
+    CHECK(closure == doctest::Approx(c).epsilon(1e-9));  // 1e-16 m of c
+}
+
+TEST_CASE("parts apart: corners of level blocks that slide past each other over a slanted joint are far") {
+  // b slides to the left, in touch with what lies left of a: 1e-5 m below the top of a, whose joint leans either way
+  constexpr double kClosure = 1e-5, kFar = 1e-4;
+  for (const double lean : {0.5, 0.0, -0.5}) {
+    CAPTURE(lean);
+    const Body a{{{lean, -1}, {2, -1}, {2, 0}, {0, 0}}, {}};
+    const Body b{box_polygon(-1, 0, 0, 1), {-kFar, -kClosure}};  // moves to the right over a's corner
+    // past it by far more than the closure: it is going to lie on top, which it does now
+    CHECK(meet(a, b, {{3 * kFar, 0}, {}}).kind == PartsMet::kFar);
+    // towards it, but not as far as that: the joint's side is what is left last
+    const PartsMet comes = meet(a, b, {{0.5 * kFar, 0}, {}});
+    CHECK(comes.kind == PartsMet::kApart);
+    CHECK(comes.normal.x > 0.8);
+    // at rest
+    CHECK(meet(a, b).kind == PartsMet::kApart);
+    // further below the top than what is level: it is stopped by what is before it
+    const Body deep{box_polygon(-1, 0, 0, 1), {-kFar, -2 * kLevel}};
+    const PartsMet stopped = meet(a, deep, {{5 * kLevel, 0}, {}});
+    CHECK(stopped.kind == PartsMet::kApart);
+    CHECK(stopped.normal.x > 0.8);
+  }
+}
+
+TEST_CASE("parts apart: the way that is left last at the end of the step is the one they meet along") {
+  // b to the upper right of a's corner, nearer from the right
+  const Body a{box_polygon(-1, -1, 0, 0), {}}, b{box_polygon(0, 0, 1, 1), {0.01, 0.002}};
+  CHECK(norm(meet(a, b).normal - Vec2{-1, 0}) < kPlace);
+  // right of way as it comes from the right: above at the end of the step
+  CHECK(norm(meet(a, b, {{-0.02, 0}, {}}).normal - Vec2{0, -1}) < kPlace);
+  CHECK(norm(meet(a, b, {{0, -0.02}, {}}).normal - Vec2{-1, 0}) < kPlace);
+  // seen from its middle it turns: its near corner goes to the left by 0.01 m and up by as much
+  const Body middle{box_polygon(-0.5, -0.5, 0.5, 0.5), {0.51, 0.502}};
+  CHECK(norm(meet(a, middle).normal - Vec2{-1, 0}) < kPlace);
+  CHECK(norm(meet(a, middle, {{}, spin_matrix(-0.02)}).normal - Vec2{0, -1}) < kPlace);
+}
+
+TEST_CASE("overlap: what touches along one way keeps to it when two corners are driven into each other") {
+  // b's corner bears on a's upright side 4 mm below a's corner, and is driven into it; by the end of the step a's corner
+  // would be in less below b's slanted side, which it has long been behind: pushed along that it slides on into b
+  const Body b{{{0, 0}, {-0.12, 1}, {-1, 1}, {-1, -0.95}}, {0, 0}};
+  const PartMotion motion_b{{5e-3, 3.27e-3}, {}};
+  const auto normal = [&](double in) {
+    const Body a{{{-in, -1}, {1, -1}, {1, 0.004}, {-in, 0.004}}, {0, 0}};
+    PartsMeeting meeting;
+    const Seen one(a), two(b);
+    REQUIRE(meeting.look(one.now(), two.now(), b.origin - a.origin, kMargin, kRounding).kind ==
+            PartsMet::kOverlap);
+    meeting.choose_way({}, motion_b, {0, kLevel});
+    return meeting.met().normal;
+  };
+  for (const double in : {1e-12, 3e-6, 0.6 * kLevel}) {
+    CAPTURE(in);
+    CHECK(norm(normal(in) - Vec2{1, 0}) < 1e-12);
+  }
+  // what is deep in another touches along no way: it is pushed out where it is in least
+  CHECK(norm(normal(2 * kLevel) - Vec2{0.95, -1} / norm(Vec2{0.95, -1})) < 1e-12);
+}
+
+TEST_CASE("overlap: a chord ends at the corner where a side along the normal begins a rounding beyond it") {
+  // bricks of one course: their upper sides lean by a hair, so that they go on to face the other a rounding further
+  for (const double lean : {1e-9, 3e-9, 1e-6})
+    for (const double further : {-5e-15, 1e-17, 5e-15, 1e-13}) {
+      const Body a{{{0, -0.25 - lean}, {1, -0.25}, {1, 0.25}, {0, 0.25 + lean}}, {0, 0}},
+          b{{{0, -0.25}, {1, -0.25 - lean}, {1, 0.25 + lean}, {0, 0.25}}, {1, further}};
+      PartsMeeting meeting;
+      const Seen one(a), two(b);
+      REQUIRE(meeting.look(one.now(), two.now(), b.origin, kMargin, kRounding).kind == PartsMet::kApart);
+      meeting.choose_way({}, {}, {});
+      REQUIRE(meeting.face_ends(kMargin));
+      const PartsMet& met = meeting.met();
+      CAPTURE(lean);
+      CAPTURE(further);
+      CHECK(std::abs(met.closure[0]) <= 1e-15);
+      CHECK(std::abs(met.closure[1]) <= 1e-15);
+      CHECK(met.length() == doctest::Approx(0.5).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("parts apart: a tilted face has the same length from either side") {
+  // a's lower side leans by 2 %: along it the face is longer than along b's, which is the way
+  const Body a{{{0, 0.01}, {1, 0.03}, {1, 1}, {0, 1}}, {0, 0}},
+      b{{{-1, -1}, {2, -1}, {2, 0}, {-1, 0}}, {0, 0}};
+  for (const bool exchanged : {false, true}) {
+    PartsMeeting meeting;
+    const Seen one(exchanged ? b : a), two(exchanged ? a : b);
+    REQUIRE(meeting.look(one.now(), two.now(), {}, kMargin, kRounding).kind == PartsMet::kApart);
+    meeting.choose_way({}, {}, {});
+    REQUIRE(meeting.face_ends(kMargin));
+    CHECK(meeting.met().length() == doctest::Approx(1).epsilon(1e-12));
+  }
+}
+
+}  // namespace test_face_ends

@@ -13,9 +13,6 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
-// Cells this many roundings of coordinates apart are of two pieces.
-constexpr double kApartCells = 100;
-
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
 void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
@@ -287,14 +284,13 @@ void PartsMeeting::put_with_neighbours(size_t cell) {
   }
 }
 
-// Two convex cells beside each other do so where a corner of one lies on the other. Where cuts cross at a small angle
-// corners are off by more than the rounding, and by far less than any tie is long.
+// Two convex cells beside each other do so where a corner of one lies on the other.
 bool PartsMeeting::share_a_place(size_t cell, size_t other) const {
   const auto on = [this](const NestedCell& c, const NestedCell& o) {
     for (size_t i = c.begin; i < c.end; ++i)
       for (size_t k = o.begin; k < o.end; ++k)
         if (distance_to_segment(corners_[i], corners_[k], corners_[k + 1 == o.end ? o.begin : k + 1]) <=
-            kApartCells * rounding_)
+            rounding_)
           return true;
     return false;
   };

@@ -685,6 +685,24 @@ TEST_CASE("overlap: a side that is tied in its middle bears at both ends, each b
   }
 }
 
+TEST_CASE(
+    "overlap: what hangs together beside a tie is one piece, however thin it is and whichever way it lies") {
+  constexpr auto kOut = SideRole::kOut, kTied = SideRole::kTiedHere;
+  Random random(73);
+  for (int i = 0; i < 3000; ++i) {
+    CAPTURE(i);
+    const double c = 1e-9 * std::exp(random.uniform() * std::log(1e7)),
+                 tilt = 0.5 * c * (2 * random.uniform() - 1), angle = 6.3 * random.uniform(),
+                 from = -0.4 + 0.5 * random.uniform();
+    const Body block =
+        moved(divided_block({from, from + 0.01 + 0.2 * random.uniform()}, {kOut, kTied, kOut}, c), {}, tilt);
+    CHECK(pieces_of(moved(block, {}, angle), moved(floor_body(), {}, angle)).size() == 2);
+    // of one width, their corners in each other at either end
+    const Body same{box_polygon(-0.4, -1, 0.6, 0), {}};
+    CHECK(pieces_of(moved(block, {}, angle), moved(same, {}, angle)).size() == 2);
+  }
+}
+
 TEST_CASE("overlap: two pieces come to bear as one without a jump where what ties them shrinks to nothing") {
   constexpr auto kOut = SideRole::kOut, kTied = SideRole::kTiedHere;
   constexpr double c = 1e-3;

@@ -251,11 +251,11 @@ class PairSearch {
       patch.arm_b[end] = back_b * (x[end] - met.across[end] * met.normal - shift);
   }
 
-  // How far the two blocks have slid past each other at a known chord since then: its ends are somewhere between.
-  Vec2 slid(const Patch& p) const {
+  // How far the two blocks have slid past each other at an end of a known chord since then: it is somewhere between.
+  Vec2 slid(const Patch& p, size_t end) const {
     const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
-    const Vec2 in_a = p.arm_a[0] + state_.strain_part[a] * p.arm_a[0],
-               in_b = p.arm_b[0] + state_.strain_part[b] * p.arm_b[0] + shift_;
+    const Vec2 in_a = p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
+               in_b = p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_;
     return in_a - in_b;
   }
 
@@ -281,8 +281,8 @@ class PairSearch {
       m0 += (v - u) * 0.5 * (eu + ev), m1 += (v - u) * (u * (2 * eu + ev) + v * (eu + 2 * ev)) / 6;
     }
     // All of it within the chord that no field before it has.
-    void take(double s0, double s1, double reach, const std::array<double, 2>& e) {
-      const double u = std::max(s0 - reach, 0.0), v = std::min(s1 + reach, 1.0);
+    void take(double s0, double s1, const std::array<double, 2>& reach, const std::array<double, 2>& e) {
+      const double u = std::max(s0 - reach[0], 0.0), v = std::min(s1 + reach[1], 1.0);
       if (!(v > u)) return;
       if (!(to > from)) return from = u, to = v, add(u, v, s0, s1, e);
       add(u, std::min(v, from), s0, s1, e), add(std::max(u, to), v, s0, s1, e);
@@ -306,7 +306,9 @@ class PairSearch {
       patch.touched = patch.touched || old.touched;
       if (const double common = std::min(s1, 1.0) - std::max(s0, 0.0); &old == own || common > nearest)
         nearest = &old == own ? 1 : common, take_slip(old, s0, s1, patch);
-      field.take(s0, s1, std::abs(dot(t, slid(old))) / (2 * patch.length), old.stretch);
+      std::array<double, 2> reach;
+      for (size_t end = 0; end < 2; ++end) reach[end] = std::abs(dot(t, slid(old, end))) / (2 * patch.length);
+      field.take(s0, s1, reach, old.stretch);
     };
     if (own) take(*own);
     for (const Patch& old : known_)
@@ -355,7 +357,7 @@ class PairSearch {
       const double s0 = dot(t, place_on(face, forward ? 0 : 1) - x0) / patch.length,
                    s1 = dot(t, place_on(face, forward ? 1 : 0) - x0) / patch.length;
       if (nearest <= 0) take_slip(as_patch, s0, s1, patch);
-      if (face.elastic_shear) field.take(s0, s1, 0, as_patch.stretch);
+      if (face.elastic_shear) field.take(s0, s1, {0, 0}, as_patch.stretch);
     }
   }
   Vec2 place_on(const BondFace& face, int end) const {

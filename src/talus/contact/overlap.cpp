@@ -60,16 +60,21 @@ void PartsMeeting::find_ways(double margin, double rounding) {
 // the step. Where that is one that they are level along now and stay so, as corners of level blocks do that slide past
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
 // What overlaps by no more than `before.by` touches, and keeps in the same way to the ways that it touches along.
+// Of two sides that lie on each other the longer one has the way: it is the better one as soon as they turn at all.
 void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
   const double moves = std::max(find_moves(false, motion_a, motion_b), find_moves(true, motion_b, motion_a));
   double widest = -kAll;
   for (const Way& w : ways_) widest = std::max(widest, w.gap);
   // what is behind the best by more than all moves is neither the best nor as good
   const double least = widest - 2 * moves - before.by;
+  const auto better = [this](const Way& w, const Way& than) {
+    if (std::abs(w.then - than.then) > rounding_) return w.then > than.then;
+    return side_length(w.of_b, w.side) > side_length(than.of_b, than.side);
+  };
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
     w.then = w.gap < least ? -kAll : then_before(w);
-    if (!best || w.then > best->then) best = &w;
+    if (!best || better(w, *best)) best = &w;
     if (w.number() == before.way) kept = &w;
   }
   const bool apart = met_.kind == PartsMet::kApart;
@@ -80,7 +85,7 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
     for (Way& w : ways_) {
       if (!stands(w)) continue;
       w.then = then_before(w);
-      if (!best || w.then > best->then) best = &w;
+      if (!best || better(w, *best)) best = &w;
     }
   }
   if (apart && !stands(*best)) met_.kind = PartsMet::kFar;
@@ -97,6 +102,11 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   met_.normal = best->of_b ? out : -out;
   (best->of_b ? met_.side_b : met_.side_a) = static_cast<int>(best->side);
   (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(!best->of_b, *best, out));
+}
+
+double PartsMeeting::side_length(bool of_b, size_t side) const {
+  const PartNow& own = part(of_b);
+  return norm(own.corner[side + 1 == own.size() ? 0 : side + 1] - own.corner[side]);
 }
 
 // Where the corners of a part are going to be at the end of the step, as the other part sees them; returns how far

@@ -149,6 +149,7 @@ class PartsMeeting {
   bool sum_up();
   double find_moves(bool of_b, const PartMotion& own, const PartMotion& other);
   double then_before(const Way& w) const;
+  double side_length(bool of_b, size_t side) const;
   double facing_along(Vec2 tangent) const;
   size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
   void see_face(bool of_b);

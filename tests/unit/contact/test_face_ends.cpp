@@ -167,6 +167,16 @@ TEST_CASE("parts apart: the way that is left last at the end of the step is the 
   CHECK(norm(meet(a, middle, {{}, spin_matrix(-0.02)}).normal - Vec2{0, -1}) < kPlace);
 }
 
+TEST_CASE("parts apart: of two sides that lie on each other the longer one is the way, whichever block is first") {
+  // a way that is kept stays with its side: the longer one is the better one as soon as they turn at all
+  const Body wall{box_polygon(-1, -4, 0, 5), {}}, stone{box_polygon(-0.5, -0.5, 0.5, 0.5), {0.5, 0.1}};
+  for (const bool wall_first : {true, false}) {
+    const PartsMet met = ends_of(wall_first ? wall : stone, wall_first ? stone : wall, kMargin).met;
+    CHECK((met.way > 0) == !wall_first);  // sides of b count from one, those of a below zero
+    CHECK(norm(met.normal - Vec2{wall_first ? -1.0 : 1.0, 0}) < kPlace);
+  }
+}
+
 TEST_CASE("overlap: what touches along one way keeps to it when two corners are driven into each other") {
   // b's corner bears on a's upright side 4 mm below a's corner, and is driven into it; by the end of the step a's corner
   // would be in less below b's slanted side, which it has long been behind: pushed along that it slides on into b

@@ -103,7 +103,7 @@ struct Patch {
   std::array<double, 2> allowed{};   // of hard contacts: overlap it was born with and may keep for now [m]
   double length = 0;                 // of the chord [m]
   double area = 0;                   // of the overlap [m2]
-  double root = 0, root_kept = 0;    // sqrt(U/(k t)) now, and of what it keeps for good (theory 3.5)
+  double root_kept = 0;              // sqrt(U/(k t)) of what it keeps for good (theory 3.5)
   std::array<std::array<double, 2>, 2> force{};  // at the ends: normal, tangential [N]
   std::array<double, 2> stretch{};               // elastic slip at the ends [m]
   std::array<double, 2> slip{};                  // [m] beyond the elastic one, both ways added up
@@ -119,23 +119,27 @@ struct Cover {
   friend bool operator==(const Cover&, const Cover&) = default;
 };
 
-/// Two blocks near each other. Their contact points are sought anew when they have moved against each other
-/// by more than `reuse` since; until then the same points are followed.
-struct alignas(64) ContactPair {  // every step reads them all: what covers sides only where there is any
-  int a = -1, b = -1;             // a < b
-  int begin = 0, count = 0;       // contact points, in State::contacts
-  int face = -1;                  // first of their faces in the bond set, -1: none
-  int joint = -1;                 // of any two sides of theirs; kByEdges: each has its own
+/// Two blocks near each other.
+struct ContactPair {
+  int a = -1, b = -1;        // a < b
+  int begin = 0, count = 0;  // of State::patches, or of State::contacts
+  int face = -1;             // first of their faces in the bond set, -1: none
+  int joint = -1;            // of any two sides of theirs; kByEdges: each has its own
   static constexpr int kByEdges = -3;
   // Joints carry the stress of the ground between blocks that share a face since the first step, and where
   // blocks that were near each other then come to share one.
   bool from_start = false, shares_face = false;
-  int8_t covers = 0;           // how many of `cover`
-  double reuse = -1;           // [m]; < 0: not sought yet
-  double margin = 0;           // [m] gaps up to which they were sought
+  double margin = 0;  // [m] gaps up to which they were sought
+};
+
+/// Contact points of a pair are sought anew when its blocks have moved against each other by more than `reuse`
+/// since; until then the same points are followed.
+struct alignas(64) FollowedPair {  // every step reads them all: what covers sides only where there is any
+  double reuse = -1;               // [m]; < 0: not sought yet
   Vec2 arm;                    // reference arm, on the larger block, of the centroid of the smaller one then
   Mat2 turn;                   // F of the larger block, inverted, times F of the smaller one then
   std::array<Cover, 4> cover;  // of sides of the two
+  int covers = 0;              // how many of these
 };
 
 /// Blocks near each block, those that are glued to it or do not move among them: [begin[i], begin[i + 1]).
@@ -226,9 +230,10 @@ struct State {
   std::vector<Vec2> column_displacement;  // [n_column_nodes] of the free field, dynamic part [m]
   std::vector<Vec2> column_rate;          // [n_column_nodes] at the middle of the step before [m/s]
   CandidateList candidates;
-  std::vector<ContactPair> pairs;  // sorted by (a, b)
-  std::vector<Contact> contacts;   // pair by pair, of formulations that go by corners
-  std::vector<Patch> patches;      // pair by pair, of the one that goes by patches
+  std::vector<ContactPair> pairs;      // sorted by (a, b)
+  std::vector<Contact> contacts;       // pair by pair, of formulations that go by corners
+  std::vector<FollowedPair> followed;  // [pairs] of these; empty else
+  std::vector<Patch> patches;          // pair by pair, of the one that goes by patches
 
   std::vector<Mat2>
       initial_stress;  // [count] T0 in the frame of the block, symmetric [Pa] (theory 1.7); empty: none

@@ -31,25 +31,27 @@ void each_field(Is<Contact> auto& c, auto&& f) {
 
 void each_field(Is<Patch> auto& p, auto&& f) {
   auto& [block_a, block_b, part_a, part_b, side_a, side_b, joint, other_joint, other_share, way, touched,
-         overlaps, normal, arm_a, arm_b, closure, gap, allowed, length, area, root, root_kept, force, stretch,
-         slip, slip_signed] = p;
+         overlaps, normal, arm_a, arm_b, closure, gap, allowed, length, area, root_kept, force, stretch, slip,
+         slip_signed] = p;
   f("block_a", block_a), f("block_b", block_b), f("part_a", part_a), f("part_b", part_b);
   f("side_a", side_a), f("side_b", side_b), f("joint", joint), f("other_joint", other_joint);
   f("other_share", other_share), f("touched", touched), f("overlaps", overlaps), f("normal", normal);
   f("arm_a_0", arm_a[0]), f("arm_a_1", arm_a[1]), f("arm_b_0", arm_b[0]), f("arm_b_1", arm_b[1]);
-  f("closure", closure), f("gap", gap), f("allowed", allowed), f("length", length), f("area", area),
-      f("root", root);
+  f("closure", closure), f("gap", gap), f("allowed", allowed), f("length", length), f("area", area);
   f("root_kept", root_kept), f("way", way);
   f("force_0", force[0]), f("force_1", force[1]);
   f("stretch", stretch), f("slip", slip), f("slip_signed", slip_signed);
 }
 
 void each_field(Is<ContactPair> auto& p, auto&& f) {
-  auto& [a, b, begin, count, face, joint, from_start, shares_face, covers, reuse, margin, arm, turn, cover] =
-      p;
+  auto& [a, b, begin, count, face, joint, from_start, shares_face, margin] = p;
   f("a", a), f("b", b), f("begin", begin), f("count", count), f("face", face), f("joint", joint);
-  f("from_start", from_start), f("shares_face", shares_face), f("covers", covers), f("reuse", reuse);
-  f("margin", margin), f("arm", arm), f("turn", turn);
+  f("from_start", from_start), f("shares_face", shares_face), f("margin", margin);
+}
+
+void each_field(Is<FollowedPair> auto& p, auto&& f) {
+  auto& [reuse, arm, turn, cover, covers] = p;
+  f("reuse", reuse), f("arm", arm), f("turn", turn), f("covers", covers);
   for (size_t k = 0; k < cover.size(); ++k) {
     auto& [block, of_b, at] = cover[k];
     const std::string name = "cover_" + std::to_string(k);
@@ -121,15 +123,16 @@ void each_field(Is<StepJudged> auto& j, auto&& f) {
 void each_field(Is<State> auto& s, auto&& f) {
   auto& [time, step, history_time, dt_before, displacement, strain_part, angle, rate, row_force, bond_force,
          face, supports, boundaries, ties, bolts, column_displacement, column_rate, candidates, pairs,
-         contacts, patches, initial_stress, kept_force, relaxed, displacement_start, strain_part_start,
-         carried_stress, acceleration, rate_old, judged, strain_work, work, energy_start, largest_kinetic,
-         rest] = s;
+         contacts, followed, patches, initial_stress, kept_force, relaxed, displacement_start,
+         strain_part_start, carried_stress, acceleration, rate_old, judged, strain_work, work, energy_start,
+         largest_kinetic, rest] = s;
   f("time", time), f("step", step), f("history_time", history_time), f("dt_before", dt_before);
   f("displacement", displacement), f("strain_part", strain_part), f("angle", angle), f("rate", rate);
   f("row_force", row_force), f("bond_force", bond_force), f("face", face);
   f("supports", supports), f("boundaries", boundaries), f("ties", ties), f("bolts", bolts);
   f("column_displacement", column_displacement), f("column_rate", column_rate);
-  f("candidates", candidates), f("pairs", pairs), f("contacts", contacts), f("patches", patches);
+  f("candidates", candidates), f("pairs", pairs), f("contacts", contacts), f("followed", followed);
+  f("patches", patches);
   f("initial_stress", initial_stress), f("kept_force", kept_force), f("relaxed", relaxed);
   f("displacement_start", displacement_start), f("strain_part_start", strain_part_start);
   f("carried_stress", carried_stress), f("acceleration", acceleration), f("rate_old", rate_old);

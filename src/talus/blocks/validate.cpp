@@ -108,6 +108,16 @@ void validate_patch(const State& s, const BlockSet& b, const ContactPair& pair, 
 void validate_pairs(const State& s, const BlockSet& b) {
   const size_t most = std::max(s.contacts.size(), s.patches.size());
   promise(s.contacts.empty() || s.patches.empty(), "a state has contacts and patches");
+  promise(s.followed.empty() || s.followed.size() == s.pairs.size(), "{} pairs of {} are followed",
+          s.followed.size(), s.pairs.size());
+  for (const FollowedPair& pair : s.followed) {
+    promise(pair.covers >= 0 && static_cast<size_t>(pair.covers) <= pair.cover.size(),
+            "{} of {} blocks cover a side", pair.covers, pair.cover.size());
+    for (int k = 0; k < pair.covers; ++k) {
+      const int third = pair.cover[static_cast<size_t>(k)].block;
+      promise(is_index(third, static_cast<size_t>(b.count)), "block {} of {} covers a side", third, b.count);
+    }
+  }
   const auto blocks = static_cast<size_t>(b.count);
   size_t contacts = 0;
   for (size_t p = 0; p < s.pairs.size(); ++p) {
@@ -124,12 +134,6 @@ void validate_pairs(const State& s, const BlockSet& b) {
     promise(contacts <= most, "pairs have more contacts than there are, {}", most);
     promise(pair.face >= -1 && (pair.face < 0 || is_index(pair.face, s.face.size())),
             "blocks {} and {} have face {} of {}", pair.a, pair.b, pair.face, s.face.size());
-    promise(pair.covers >= 0 && static_cast<size_t>(pair.covers) <= pair.cover.size(),
-            "{} of {} blocks cover a side", pair.covers, pair.cover.size());
-    for (int k = 0; k < pair.covers; ++k) {
-      const int third = pair.cover[static_cast<size_t>(k)].block;
-      promise(is_index(third, blocks), "block {} of {} covers a side", third, blocks);
-    }
     for (int k = 0; k < pair.count; ++k)
       s.patches.empty() ? validate_contact(s, b, pair, k) : validate_patch(s, b, pair, k);
   }

@@ -32,27 +32,45 @@ void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
 
 }  // namespace
 
-// Convex parts overlap unless a side of one has all of the other before it.
-void PartsMeeting::find_ways(double margin, double rounding) {
+// How far the nearest corner of the other part is before a side; less than `least`, which one corner tells: -kAll.
+double PartsMeeting::gap_before(bool of_b, size_t side, double least) const {
+  const PartNow& own = part(of_b);
+  const Vec2 along = own.along[side], from = of_b ? own.corner[side] + shift_ : own.corner[side] - shift_;
+  double gap = kAll;
+  for (const Vec2 x : part(!of_b).corner) {
+    gap = std::min(gap, -cross(along, x - from));
+    if (gap < least) return -kAll;
+  }
+  return gap;
+}
+
+// Convex parts overlap unless a side of one has all of the other before it. What is behind the widest gap by more than
+// twice the margin is no way, nor will be one in this step: they come together by half the margin at most.
+void PartsMeeting::find_ways(double margin, double rounding, int first) {
   bool apart = false, blocked = false;
   ways_.clear();
-  for (const bool of_b : {true, false}) {
-    const PartNow &own = part(of_b), &other = part(!of_b);
-    for (size_t j = 0; j < own.size(); ++j) {
-      const Vec2 along = own.along[j];
-      const Vec2 from = of_b ? own.corner[j] + shift_ : own.corner[j] - shift_;
-      double most = -kAll;
-      for (const Vec2 x : other.corner) most = std::max(most, cross(along, x - from));
-      met_.kind = PartsMet::kFar;
-      if (-most > margin) return;
-      const SideRole role = own.role_of(j);
-      if (role != SideRole::kCut) ways_.push_back({of_b, j, -most});
+  met_.kind = PartsMet::kFar;
+  const auto is_side = [](int way, size_t sides) { return way > 0 && static_cast<size_t>(way) <= sides; };
+  double widest = -kAll;  // of ways out
+  const auto see = [&](bool of_b, size_t side) {
+    const double gap = gap_before(of_b, side, widest - 2 * margin);
+    if (part(of_b).role_of(side) == SideRole::kOut) widest = std::max(widest, gap);
+    return gap;
+  };
+  if (is_side(first, b_.size())) see(true, static_cast<size_t>(first) - 1);
+  if (is_side(-first, a_.size())) see(false, static_cast<size_t>(-first) - 1);
+  for (const bool of_b : {true, false})
+    for (size_t j = 0; j < part(of_b).size(); ++j) {
+      const double gap = see(of_b, j);
+      if (gap > margin) return;
+      if (gap == -kAll) continue;
+      const SideRole role = part(of_b).role_of(j);
+      if (role != SideRole::kCut) ways_.push_back({of_b, j, gap});
       if (role == SideRole::kOut)
-        apart = apart || most <= rounding;
+        apart = apart || gap >= -rounding;
       else
-        blocked = blocked || most < 0;
+        blocked = blocked || gap > 0;
     }
-  }
   if (!blocked && !ways_.empty()) met_.kind = apart ? PartsMet::kApart : PartsMet::kOverlap;
 }
 
@@ -61,8 +79,9 @@ void PartsMeeting::find_ways(double margin, double rounding) {
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
 // What overlaps by no more than `before.by` touches, and keeps in the same way to the ways that it touches along.
 // Of two sides that lie on each other the longer one has the way: it is the better one as soon as they turn at all.
-void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
-  const double moves = std::max(find_moves(false, motion_a, motion_b), find_moves(true, motion_b, motion_a));
+void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before,
+                              double moves) {
+  motion_[0] = motion_a, motion_[1] = motion_b;
   double widest = -kAll;
   for (const Way& w : ways_) widest = std::max(widest, w.gap);
   // what is behind the best by more than all moves is neither the best nor as good
@@ -73,7 +92,7 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   };
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
-    w.then = w.gap < least ? -kAll : then_before(w);
+    w.then = w.gap < least ? -kAll : then_before(w, moves);
     if (!best || better(w, *best)) best = &w;
     if (w.number() == before.way) kept = &w;
   }
@@ -84,7 +103,7 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
     best = nullptr;
     for (Way& w : ways_) {
       if (!stands(w)) continue;
-      w.then = then_before(w);
+      w.then = then_before(w, moves);
       if (!best || better(w, *best)) best = &w;
     }
   }
@@ -109,26 +128,18 @@ double PartsMeeting::side_length(bool of_b, size_t side) const {
   return norm(own.corner[side + 1 == own.size() ? 0 : side + 1] - own.corner[side]);
 }
 
-// Where the corners of a part are going to be at the end of the step, as the other part sees them; returns how far
-// they move at most, or more.
-double PartsMeeting::find_moves(bool of_b, const PartMotion& own, const PartMotion& other) {
-  std::vector<Vec2>& then = then_[of_b];
-  then.resize(part(of_b).size());
-  double most = 0;
-  for (size_t k = 0; k < then.size(); ++k) {
-    const Vec2 x = part(of_b).corner[k], seen = of_b ? x + shift_ : x - shift_;  // from the other's origin
-    const Vec2 move = (own.way + own.turn * x) - (other.way + other.turn * seen);
-    then[k] = seen + move;
-    most = std::max(most, std::abs(move.x) + std::abs(move.y));
-  }
-  return most;
-}
-
-// How far the nearest corner of the other part is going to be before a side at the end of the step.
-double PartsMeeting::then_before(const Way& w) const {
+// How far the nearest corner of the other part is going to be before a side at the end of the step: one of those that
+// are not further now than the two move.
+double PartsMeeting::then_before(const Way& w, double moves) const {
+  const PartMotion &own = motion_[w.of_b], &other = motion_[!w.of_b];
   const Vec2 out = turn_right(part(w.of_b).along[w.side]), from = part(w.of_b).corner[w.side];
   double least = kAll;
-  for (const Vec2 x : then_[!w.of_b]) least = std::min(least, dot(out, x - from));
+  for (const Vec2 x : part(!w.of_b).corner) {
+    const Vec2 seen = w.of_b ? x - shift_ : x + shift_;  // from the origin of the part with the side
+    const double now = dot(out, seen - from);
+    if (now - w.gap > 2 * moves) continue;
+    least = std::min(least, now + dot(out, (other.way + other.turn * x) - (own.way + own.turn * seen)));
+  }
   return least;
 }
 
@@ -347,14 +358,14 @@ bool PartsMeeting::sum_up() {
 }
 
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
-                                   double rounding, int face) {
+                                   double rounding, LookFirst first) {
   a_ = a, b_ = b, shift_ = shift, rounding_ = rounding;
-  is_strip_ =
-      face > 0 && static_cast<size_t>(face) <= b.size() && measure_strip(true, static_cast<size_t>(face) - 1);
+  is_strip_ = first.strip && first.way > 0 && static_cast<size_t>(first.way) <= b.size() &&
+              measure_strip(true, static_cast<size_t>(first.way) - 1);
   if (is_strip_)
     met_.kind = PartsMet::kOverlap;
   else
-    find_ways(margin, rounding);
+    find_ways(margin, rounding, first.way);
   return met_;
 }
 

@@ -2,6 +2,7 @@
 // Two convex parts as they lie: what they have in common, the energy of that and its gradient, or how far they
 // are apart. Geometry only: no stiffness, no memory. Theory: docs/theory.md 3.2, 3.3.
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,12 @@ struct WayBefore {
   double by = 0;
 };
 
+/// The way of the step before, where to look first, and whether it was that of a strip that was measured.
+struct LookFirst {
+  int way = 0;
+  bool strip = false;
+};
+
 /// The part of an overlap that is nearest to one side of a block.
 struct SideCell {
   int side = -1;     // of the part
@@ -83,17 +90,20 @@ class PartsMeeting {
   /// @param shift     of b's origin, seen from a's [m]
   /// @param margin    gaps up to this are told [m]
   /// @param rounding  overlaps up to this have no shape: the parts are apart, by less than nothing [m]
-  /// @param face      where to look first for an overlap that is a strip: PartsMet::way of such a one; makes no difference
-  ///                  to what is found. choose_way() wants 0.
+  /// @param first     where to look first: makes no difference to what is found. choose_way() wants no strip.
+  /// @pre  in the step to come they come together by half the margin at most
   const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding,
-                       int face = 0);
+                       LookFirst first = {});
 
   /// Normal and sides by the way along which the two are furthest apart, or least in each other, at the end of the
   /// step. What is apart and not along that way is kFar from now on.
   /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last
   /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
+  /// @param moves   by how much a place of one moves at most as the other sees it: makes no difference to what is
+  ///                found [m]
   /// @pre  look() found them apart or in overlap
-  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
+  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {},
+                  double moves = std::numeric_limits<double>::infinity());
 
   /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these: of all of it,
   /// or of the first connected piece where ties leave several. False: it has no way out but those that ties close, or
@@ -125,7 +135,8 @@ class PartsMeeting {
     int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
   };
 
-  void find_ways(double margin, double rounding);
+  void find_ways(double margin, double rounding, int first);
+  double gap_before(bool of_b, size_t side, double least) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {
@@ -147,8 +158,7 @@ class PartsMeeting {
   void put_with_neighbours(size_t cell);
   bool share_a_place(size_t cell, size_t other) const;
   bool sum_up();
-  double find_moves(bool of_b, const PartMotion& own, const PartMotion& other);
-  double then_before(const Way& w) const;
+  double then_before(const Way& w, double moves) const;
   double side_length(bool of_b, size_t side) const;
   double facing_along(Vec2 tangent) const;
   size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
@@ -182,7 +192,7 @@ class PartsMeeting {
     double s, n;  // along the tangent and the normal [m]
   };
   std::vector<Seen> seen_, face_[2];  // all corners of a part; those of a and b that face the other
-  std::vector<Vec2> then_[2];         // the same at the end of the step, seen from the other's origin
+  PartMotion motion_[2];              // of a and b
   // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those
   // and the faces, which part it is that ends, and where its end meets the two faces.
   struct StripEnd {

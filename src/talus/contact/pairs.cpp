@@ -178,9 +178,10 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
   const std::vector<ContactPair> before = std::move(state.pairs);
   std::vector<ContactPair> now;
   std::vector<Contact> contacts;
+  std::vector<FollowedPair> followed;
   std::vector<Patch> patches;
   contacts.reserve(state.contacts.size() + state.contacts.size() / 32);
-  patches.reserve(state.patches.size() + state.patches.size() / 32);
+  patches.reserve(state.patches.size());
   auto known = before.begin();
   const std::vector<std::pair<int, int>> close = close_pairs(boxes, 0);
   list_neighbours(blocks, close, list.neighbours);
@@ -189,8 +190,10 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
     if (std::binary_search(bonds.tied.begin(), bonds.tied.end(), std::pair(a, b))) continue;
     while (known != before.end() && std::pair(known->a, known->b) < std::pair(a, b)) ++known;
     ContactPair pair;
+    FollowedPair as_followed;
     if (known != before.end() && known->a == a && known->b == b) {
       pair = *known;
+      if (!state.followed.empty()) as_followed = state.followed[static_cast<size_t>(known - before.begin())];
     } else {
       pair.a = a, pair.b = b;
       pair.from_start = state.step == 0;
@@ -208,10 +211,12 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
                       state.contacts.begin() + from + pair.count);
     }
     now.push_back(pair);
+    if (!state.followed.empty()) followed.push_back(as_followed);
   }
   now.shrink_to_fit();
   state.pairs = std::move(now);
   state.contacts = std::move(contacts);
+  state.followed = std::move(followed);
   state.patches = std::move(patches);
   return true;
 }

@@ -61,18 +61,15 @@ class PairSearch {
 
   double approach_speed(size_t a, size_t b) const {
     const std::vector<BlockRate>& rate = ahead_.before;
-    const auto turning = [&](size_t k) {
-      return std::sqrt(contract(rate[k].G, rate[k].G)) * w_.blocks.radius[k];
-    };
-    return norm(rate[a].a - rate[b].a) + turning(a) + turning(b);
+    return norm(rate[a].a - rate[b].a) + turning_speed(w_.blocks, rate, a) +
+           turning_speed(w_.blocks, rate, b);
   }
 
   PartMotion motion(int block) const {
     const auto k = static_cast<size_t>(block);
     const BlockRate& v = ahead_.before[k];
     const bool deforms = w_.blocks.kind[k] == BlockKind::kDeformable;  // G acts on the reference arm
-    return {ahead_.clock.dt * v.a,
-            ahead_.clock.dt * (deforms ? v.G * inverse(kIdentity + state_.strain_part[k]) : v.G)};
+    return {ahead_.clock.dt * v.a, ahead_.clock.dt * (deforms ? v.G * search_.back_[k] : v.G)};
   }
 
   double rise(const Patch& p, size_t end) const {
@@ -140,11 +137,13 @@ class PairSearch {
     if (before && highest_ > 0)
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
     const bool measured = elastic_ && before && before->overlaps;
-    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, measured ? before->way : 0);
+    const PartsMet& met =
+        meeting_.look(a, b, shift, margin_, rounding_, {before ? before->way : 0, measured});
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
     if (met.kind == PartsMet::kApart || !elastic_)
-      meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kLevel * size_});
+      meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kLevel * size_},
+                          approach_);
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     const bool overlaps = met.kind == PartsMet::kOverlap;
@@ -196,7 +195,9 @@ class PairSearch {
 
   // Of the patches that two parts had the one nearest to a place, seen from block a.
   const Patch* known_near(int p, int q, Vec2 place) const {
-    const auto off = [&](const Patch& c) { return norm(0.5 * (place_of(c, 0) + place_of(c, 1)) - place); };
+    const auto off = [&](const Patch& c) {
+      return norm(0.5 * (carried(c, 0).place() + carried(c, 1).place()) - place);
+    };
     const Patch* nearest = nullptr;
     for (const Patch& c : known_)
       if (c.part_a == p && c.part_b == q && (!nearest || off(c) < off(*nearest))) nearest = &c;
@@ -243,28 +244,21 @@ class PairSearch {
     const auto a = static_cast<size_t>(patch.block_a), b = static_cast<size_t>(patch.block_b);
     patch.normal = met.normal, patch.length = met.length();
     patch.closure = {met.closure[0], met.closure[1]};
-    const Mat2 back_a = inverse(kIdentity + state_.strain_part[a]),
-               back_b = inverse(kIdentity + state_.strain_part[b]);
     const std::array<Vec2, 2> x{met.begin, met.end};
     for (size_t end = 0; end < 2; ++end)
-      patch.arm_a[end] = back_a * x[end],
-      patch.arm_b[end] = back_b * (x[end] - met.across[end] * met.normal - shift);
+      patch.arm_a[end] = search_.back_[a] * x[end],
+      patch.arm_b[end] = search_.back_[b] * (x[end] - met.across[end] * met.normal - shift);
   }
 
-  // How far the two blocks have slid past each other at an end of a known chord since then: it is somewhere between.
-  Vec2 slid(const Patch& p, size_t end) const {
+  // Where the two blocks have carried an end of a known chord: its place is half way between, somewhere between at least.
+  struct Carried {
+    Vec2 by_a, by_b;
+    Vec2 place() const { return 0.5 * (by_a + by_b); }
+  };
+  Carried carried(const Patch& p, size_t end) const {
     const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
-    const Vec2 in_a = p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
-               in_b = p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_;
-    return in_a - in_b;
-  }
-
-  // Where an end of a known chord lies now: half way between where the two blocks have carried it.
-  Vec2 place_of(const Patch& p, size_t end) const {
-    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
-    const Vec2 in_a = p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
-               in_b = p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_;
-    return 0.5 * (in_a + in_b);
+    return {p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
+            p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_};
   }
 
   // The field of elastic slip on a new chord as it is added up: moments over the chord, and which span of it has
@@ -299,16 +293,16 @@ class PairSearch {
     const Vec2 x0 = patch.arm_a[0] + state_.strain_part[a] * patch.arm_a[0];
     Field field;
     double nearest = -1;
+    const double share = 1 / patch.length;
     const auto take = [&](const Patch& old) {
       if (dot(old.normal, patch.normal) < kSameWay) return;
-      const double s0 = dot(t, place_of(old, 0) - x0) / patch.length,
-                   s1 = dot(t, place_of(old, 1) - x0) / patch.length;
+      const Carried one = carried(old, 0), two = carried(old, 1);
+      const double s0 = share * dot(t, one.place() - x0), s1 = share * dot(t, two.place() - x0);
       patch.touched = patch.touched || old.touched;
       if (const double common = std::min(s1, 1.0) - std::max(s0, 0.0); &old == own || common > nearest)
         nearest = &old == own ? 1 : common, take_slip(old, s0, s1, patch);
-      std::array<double, 2> reach;
-      for (size_t end = 0; end < 2; ++end) reach[end] = std::abs(dot(t, slid(old, end))) / (2 * patch.length);
-      field.take(s0, s1, reach, old.stretch);
+      const auto slid = [&](const Carried& c) { return 0.5 * share * std::abs(dot(t, c.by_a - c.by_b)); };
+      field.take(s0, s1, {slid(one), slid(two)}, old.stretch);
     };
     if (own) take(*own);
     for (const Patch& old : known_)
@@ -380,10 +374,11 @@ class PairSearch {
 
   // Normal closure less what the patch keeps for good (theory 3.5).
   void measure(const PartsMet& met, const Patch* before, Patch& patch) const {
-    patch.root = patch.overlaps ? std::sqrt(std::max(0.0, met.energy)) : 0;
-    if (!before && patch.overlaps && state_.step == 0 && w_.model.in_situ.given) keep_start(met, patch);
-    if (patch.root_kept == 0 || !patch.overlaps || !(patch.root > 0)) return;
-    const double share = 1 - patch.root_kept / patch.root;
+    if (!patch.overlaps) return;
+    const double root = std::sqrt(std::max(0.0, met.energy));
+    if (!before && state_.step == 0 && w_.model.in_situ.given) keep_start(met, root, patch);
+    if (patch.root_kept == 0 || !(root > 0)) return;
+    const double share = 1 - patch.root_kept / root;
     for (double& c : patch.closure) c *= share;
   }
 
@@ -394,9 +389,9 @@ class PairSearch {
   }
 
   // At the start a patch bears what the stress of the ground asks of the faces there, a crossing nothing.
-  void keep_start(const PartsMet& met, Patch& patch) const {
+  void keep_start(const PartsMet& met, double root, Patch& patch) const {
     const double wanted = closed_by_ground(patch);
-    patch.root_kept = met.force > 0 ? patch.root * (1 - wanted / met.force) : 0;
+    patch.root_kept = met.force > 0 ? root * (1 - wanted / met.force) : 0;
   }
 
   // Where along an edge of block b the sides of a part lie that are of that edge of its block: a span that is
@@ -462,9 +457,11 @@ class PairSearch {
 void PatchSearch::place_parts(const PatchWorld& world, const Workers& workers, const State& state) {
   const Outlines& o = world.outlines;
   corner_.resize(o.corner.size()), along_.resize(o.corner.size());
+  back_.resize(state.strain_part.size());
   workers.for_chunks(static_cast<size_t>(world.blocks.count), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Mat2& h = state.strain_part[i];
+      back_[i] = inverse(kIdentity + h);
       for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p) {
         const auto first = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p)]),
                    last = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p) + 1]);
@@ -508,14 +505,19 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
   int met = 0;
   bool any = false;
   for (const Changed& c : changed_) met += c.met, any = any || !c.pair.empty();
-  if (any) put_together(state);
+  if (any) put_together(state), changed_.clear();  // at the start it holds all patches
   return met;
 }
 
 // Patches of all pairs one after the other again.
 void PatchSearch::put_together(State& state) {
+  size_t count = state.patches.size();
+  for (const Changed& c : changed_) {
+    count += c.patch.size();
+    for (const auto& [pair, now] : c.pair) count -= static_cast<size_t>(state.pairs[pair].count);
+  }
   std::vector<Patch> all;
-  all.reserve(state.patches.size() + state.patches.size() / 32);
+  all.reserve(count);
   for (size_t c = 0; c < changed_.size(); ++c) {
     auto changed = changed_[c].pair.begin();
     auto from = changed_[c].patch.begin();

@@ -31,6 +31,7 @@ class PatchSearch {
 
  private:
   std::vector<Vec2> corner_, along_;  // of all parts as they lie, from each block's centroid
+  std::vector<Mat2> back_;            // [blocks] F inverted
   struct Changed {
     std::vector<std::pair<size_t, int>> pair;  // and how many it has now
     std::vector<Patch> patch;

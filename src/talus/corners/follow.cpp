@@ -29,34 +29,34 @@ constexpr size_t kMostPoints = 32767;
 
 // How far the two have moved against each other since their contact points were sought, at the worst place of
 // the smaller block, where they touch (theory 13.6).
-double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p) {
+double moved_apart(const BlockSet& blocks, const State& s, const ContactPair& p, const FollowedPair& then) {
   const auto [small, large] = by_size(blocks, p);
-  const Vec2 off = (blocks.centroid[small] - blocks.centroid[large] - p.arm) +
-                   (s.displacement[small] - s.displacement[large] - s.strain_part[large] * p.arm);
+  const Vec2 off = (blocks.centroid[small] - blocks.centroid[large] - then.arm) +
+                   (s.displacement[small] - s.displacement[large] - s.strain_part[large] * then.arm);
   // F of the smaller block less what it would be had it gone along with the larger one
-  const Mat2 turn = (kIdentity + s.strain_part[small]) - (kIdentity + s.strain_part[large]) * p.turn;
+  const Mat2 turn = (kIdentity + s.strain_part[small]) - (kIdentity + s.strain_part[large]) * then.turn;
   return norm(off) + std::sqrt(contract(turn, turn)) * blocks.radius[small];
 }
 
-void keep_cover(const std::vector<Cover>& cover, ContactPair& p) {
-  p.covers = static_cast<int8_t>(std::min(cover.size(), p.cover.size()));
+void keep_cover(const std::vector<Cover>& cover, FollowedPair& p) {
+  p.covers = static_cast<int>(std::min(cover.size(), p.cover.size()));
   p.cover = {};
   std::copy_n(cover.begin(), p.covers, p.cover.begin());
 }
 
 // Whether a block that covers a side of the pair has gone, or left that side (theory 13.6).
-bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p) {
-  return std::any_of(p.cover.begin(), p.cover.begin() + p.covers,
+bool uncovered(const BlockSet& blocks, const State& s, const ContactPair& p, const FollowedPair& then) {
+  return std::any_of(then.cover.begin(), then.cover.begin() + then.covers,
                      [&](const Cover& c) { return !covers(blocks, s, p.a, p.b, c); });
 }
 
-void keep_pose(const BlockSet& blocks, const State& s, ContactPair& p) {
+void keep_pose(const BlockSet& blocks, const State& s, const ContactPair& p, FollowedPair& now_at) {
   const auto [small, large] = by_size(blocks, p);
   const Vec2 now =
       (blocks.centroid[small] - blocks.centroid[large]) + (s.displacement[small] - s.displacement[large]);
   const Mat2 back = inverse(kIdentity + s.strain_part[large]);
-  p.arm = back * now;
-  p.turn = back * (kIdentity + s.strain_part[small]);
+  now_at.arm = back * now;
+  now_at.turn = back * (kIdentity + s.strain_part[small]);
 }
 
 // Where the corner of a contact lies now, seen from the reference centroid of block a of its pair.
@@ -177,6 +177,7 @@ class Updater {
       for (size_t i = begin; i < end; ++i) turning_[i] = turning_speed(blocks_, ahead_.before, i);
     });
     const size_t n = state_.pairs.size();
+    state_.followed.resize(n);
     changed_.resize((n + kPairGrain - 1) / kPairGrain);
     sought_.assign(changed_.size(), {});
     workers.for_chunks(n, kPairGrain, [&](size_t begin, size_t end) { look_at(begin, end); });
@@ -206,9 +207,10 @@ class Updater {
       ContactPair& pair = state_.pairs[i];
       if (held_by_faces(bonds_, s, pair))
         continue;  // and so since it was made: intact faces have no contacts
+      FollowedPair& followed = state_.followed[i];
       const double need = needed(pair);
-      if (pair.reuse >= 0 && need <= pair.margin && moved_apart(blocks_, s, pair) <= pair.reuse &&
-          !uncovered(blocks_, s, pair))
+      if (followed.reuse >= 0 && need <= pair.margin &&
+          moved_apart(blocks_, s, pair, followed) <= followed.reuse && !uncovered(blocks_, s, pair, followed))
         continue;
       SearchReport& report = sought_[begin / kPairGrain];
       ++report.searched;
@@ -228,11 +230,11 @@ class Updater {
       const Found& sought = search.touch(blocks_, s, pair.a, pair.b, range);
       const auto& found = sought.points;
       const Memory memory(blocks_, s, pair, found);
-      keep_pose(blocks_, s, pair);
-      keep_cover(sought.cover, pair);
+      keep_pose(blocks_, s, pair, followed);
+      keep_cover(sought.cover, followed);
       // what velocities decided is asked again in the next step
-      pair.reuse =
-          sought.this_step_only || sought.cover.size() > pair.cover.size()
+      followed.reuse =
+          sought.this_step_only || sought.cover.size() > followed.cover.size()
               ? -1
               : std::min(0.25 * pair.margin,
                          std::max(0.5 * kSamePlace * size, std::min(0.5 * sought.clearance, kReuse * size)));

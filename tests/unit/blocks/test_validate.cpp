@@ -92,8 +92,13 @@ TEST_CASE("validate: states") {
   check_said([](Bricks& b) { b.state.pairs[1] = b.state.pairs[0]; }, "pair 1 is out of order");
   check_said([](Bricks& b) { b.state.pairs[0].begin = 1; }, "begin at 1, not 0");
   check_said([](Bricks& b) { b.state.pairs[0].face = 0; }, "have face 0 of 0");
-  check_said([](Bricks& b) { b.state.pairs[0].covers = 1, b.state.pairs[0].cover[0].block = 3; },
-             "block 3 of 3 covers a side");
+  check_said([](Bricks& b) { b.state.followed.resize(1 + b.state.pairs.size()); }, "are followed");
+  check_said(
+      [](Bricks& b) {
+        b.state.followed.resize(b.state.pairs.size());
+        b.state.followed[0].covers = 1, b.state.followed[0].cover[0].block = 3;
+      },
+      "block 3 of 3 covers a side");
   check_said([](Bricks& b) { b.state.contacts.emplace_back(); }, "has contacts and patches");
   check_said([](Bricks& b) { b.state.patches.emplace_back(); }, "contacts of");
   check_said([](Bricks& b) { b.state.patches[0].block_a = 2; }, "is listed with those of 0 and 1");

@@ -57,7 +57,8 @@ Two random_two(Random& random) {
 PartsMet measured(const Two& two, int face) {
   PartsMeeting meeting;
   const Seen one(two.a), other(two.b);
-  PartsMet met = meeting.look(one.now(), other.now(), two.b.origin - two.a.origin, kMargin, kRounding, face);
+  PartsMet met =
+      meeting.look(one.now(), other.now(), two.b.origin - two.a.origin, kMargin, kRounding, {face, true});
   const bool overlaps = met.kind == PartsMet::kOverlap;
   const bool any = overlaps && meeting.measure_overlap();
   met = meeting.met();

@@ -137,6 +137,7 @@ TEST_CASE("saved state: no field of any struct is left out of the list") {
   CHECK(uncovered<CandidateList>() == 0);
   CHECK(uncovered<Neighbours>() == 0);
   CHECK(uncovered<ContactPair>() == 0);
+  CHECK(uncovered<FollowedPair>() == 0);
   CHECK(uncovered<Contact>() == 0);
   CHECK(uncovered<FaceState>() == 0);
   CHECK(uncovered<HeldPoint>() == 0);

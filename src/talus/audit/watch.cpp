@@ -31,6 +31,17 @@ double least_thickness(const Polygon& p) {
   return least;
 }
 
+// How fast the sides of a block turn or stretch at most in the step that follows [1/s].
+double turning(const Block& block) {
+  const Polygon& p = block.polygon;
+  double most = 0;
+  for (size_t k = 0; k < block.next.size(); ++k) {
+    const size_t after = (k + 1) % p.size();
+    most = std::max(most, norm(block.next[after] - block.next[k]) / norm(p[after] - p[k]));
+  }
+  return most;
+}
+
 // Where on the way p to q the polygon's sides are crossed, as shares of the way, from 0 to 1.
 std::vector<double> crossings(const Polygon& polygon, Vec2 p, Vec2 q) {
   std::vector<double> at{0, 1};
@@ -139,7 +150,14 @@ void Watch::judge_patch(const Step& step, const StepPoint& before, double mean, 
   // both surfaces must lie that deep in the other block
   const double depth = depth_in(a.polygon, before.place) + depth_in(b.polygon, before.place);
   if (depth <= allowed) return;
-  if (before.hard && dot(before.normal, moves(&Block::next)) > 0) return;
+  // hard, and keeps the overlap that it has: it lets go, but for the arc by which corners leave their tangent in a step
+  const auto arc = [&](const Block& x, int block) {
+    const double turn = step.step * turning(x);
+    return 0.5 * turn * turn * step.blocks[static_cast<size_t>(block)].radius;
+  };
+  if (before.hard && step.step * dot(before.normal, moves(&Block::next)) >
+                         -(2 * rules_.tolerance + arc(a, before.block_a) + arc(b, before.block_b)))
+    return;
   const double near = kSamePlace * size + step.step * speed;
   for (const StepPoint& p : step.points) {
     if (p.normal_force <= 0) continue;

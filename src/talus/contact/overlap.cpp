@@ -44,8 +44,7 @@ double PartsMeeting::gap_before(bool of_b, size_t side, double least) const {
   return gap;
 }
 
-// Convex parts overlap unless a side of one has all of the other before it. What is behind the widest gap by more than
-// twice the margin is no way, nor will be one in this step: they come together by half the margin at most.
+// Convex parts overlap unless a side of one has all of the other before it.
 void PartsMeeting::find_ways(double margin, double rounding, int first) {
   bool apart = false, blocked = false;
   ways_.clear();
@@ -53,8 +52,9 @@ void PartsMeeting::find_ways(double margin, double rounding, int first) {
   const auto is_side = [](int way, size_t sides) { return way > 0 && static_cast<size_t>(way) <= sides; };
   double widest = -kAll;  // of ways out
   const auto see = [&](bool of_b, size_t side) {
-    const double gap = gap_before(of_b, side, widest - 2 * margin);
-    if (part(of_b).role_of(side) == SideRole::kOut) widest = std::max(widest, gap);
+    const bool out = part(of_b).role_of(side) == SideRole::kOut;
+    const double gap = gap_before(of_b, side, out ? widest - behind_ : std::min(0.0, widest - behind_));
+    if (out) widest = std::max(widest, gap);
     return gap;
   };
   if (is_side(first, b_.size())) see(true, static_cast<size_t>(first) - 1);
@@ -79,37 +79,48 @@ void PartsMeeting::find_ways(double margin, double rounding, int first) {
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
 // What overlaps by no more than `before.by` touches, and keeps in the same way to the ways that it touches along.
 // Of two sides that lie on each other the longer one has the way: it is the better one as soon as they turn at all.
-void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before,
-                              double moves) {
+void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
   motion_[0] = motion_a, motion_[1] = motion_b;
   double widest = -kAll;
   for (const Way& w : ways_) widest = std::max(widest, w.gap);
-  // what is behind the best by more than all moves is neither the best nor as good
-  const double least = widest - 2 * moves - before.by;
   const auto better = [this](const Way& w, const Way& than) {
     if (std::abs(w.then - than.then) > rounding_) return w.then > than.then;
     return side_length(w.of_b, w.side) > side_length(than.of_b, than.side);
   };
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
-    w.then = w.gap < least ? -kAll : then_before(w, moves);
+    w.then = w.gap < widest - behind_ ? -kAll : then_before(w);
     if (!best || better(w, *best)) best = &w;
     if (w.number() == before.way) kept = &w;
   }
   const bool apart = met_.kind == PartsMet::kApart;
   const double in = apart ? rounding_ : before.by;
   const auto stands = [&](const Way& w) { return w.gap >= -in; };
-  if (widest >= -in && !stands(*best) && best->then < -before.by) {
-    best = nullptr;
+  const auto best_that_stands = [&](const auto& may) {
+    const Way* found = nullptr;
     for (Way& w : ways_) {
-      if (!stands(w)) continue;
-      w.then = then_before(w, moves);
-      if (!best || better(w, *best)) best = &w;
+      if (!stands(w) || !may(w)) continue;
+      w.then = then_before(w);
+      if (!found || better(w, *found)) found = &w;
     }
+    return found;
+  };
+  if (widest >= -in && !stands(*best)) {
+    // the two sides of one interface are one way: a corner that hangs over may be behind the other's line
+    const bool deep = best->then < -before.by;
+    if (const Way* way = best_that_stands([&](const Way& w) { return deep || in_line(w, *best); }))
+      best = way;
   }
   if (apart && !stands(*best)) met_.kind = PartsMet::kFar;
   // what is apart would be struck by a way that it has passed
-  if (!apart && kept && kept->then >= best->then - before.by) best = kept;
+  if (!apart && kept && kept->then >= best->then - before.by && (in_line(*kept, *best) || stands_at(*kept))) {
+    const Way* other = nullptr;
+    for (const Way& w : ways_)
+      if (w.then >= best->then - before.by && !in_line(w, *kept) && stands_at(w) &&
+          pushed_off(*kept, before.force) && (!other || better(w, *other)))
+        other = &w;
+    best = other ? other : kept;
+  }
   met_.at_corner = false;
   for (const Way& w : ways_)
     if (!apart && &w != best && w.then >= best->then - before.by &&
@@ -128,19 +139,61 @@ double PartsMeeting::side_length(bool of_b, size_t side) const {
   return norm(own.corner[side + 1 == own.size() ? 0 : side + 1] - own.corner[side]);
 }
 
+// Where a place of the other part is going to be at the end of the step, seen from the origin of one.
+Vec2 PartsMeeting::then_at(bool of_b, Vec2 seen) const {
+  const PartMotion &own = motion_[of_b], &other = motion_[!of_b];
+  const Vec2 x = of_b ? seen + shift_ : seen - shift_;
+  return seen + ((other.way + other.turn * x) - (own.way + own.turn * seen));
+}
+
 // How far the nearest corner of the other part is going to be before a side at the end of the step: one of those that
 // are not further now than the two move.
-double PartsMeeting::then_before(const Way& w, double moves) const {
-  const PartMotion &own = motion_[w.of_b], &other = motion_[!w.of_b];
+double PartsMeeting::then_before(const Way& w) const {
   const Vec2 out = turn_right(part(w.of_b).along[w.side]), from = part(w.of_b).corner[w.side];
   double least = kAll;
   for (const Vec2 x : part(!w.of_b).corner) {
     const Vec2 seen = w.of_b ? x - shift_ : x + shift_;  // from the origin of the part with the side
     const double now = dot(out, seen - from);
-    if (now - w.gap > 2 * moves) continue;
-    least = std::min(least, now + dot(out, (other.way + other.turn * x) - (own.way + own.turn * seen)));
+    if (now - w.gap > behind_) continue;
+    least = std::min(least, dot(out, then_at(w.of_b, seen) - from));
   }
   return least;
+}
+
+// Whether two ways are of sides in one line.
+bool PartsMeeting::in_line(const Way& one, const Way& two) const {
+  return std::abs(cross(part(one.of_b).along[one.side], part(two.of_b).along[two.side])) <= kOneSide;
+}
+
+// Whether the nearest corner of the other part is going to lie before the side of a way, or past an end of it by no more
+// than it is in: so far contacts give.
+bool PartsMeeting::stands_at(const Way& w) const {
+  const Vec2 along = part(w.of_b).along[w.side], from = part(w.of_b).corner[w.side];
+  const double past = std::max(0.0, -w.then) + rounding_;
+  for (const Vec2 now : part(!w.of_b).corner) {
+    const Vec2 x = then_at(w.of_b, w.of_b ? now - shift_ : now + shift_);
+    const double s = dot(along, x - from);
+    if (dot(turn_right(along), x - from) <= w.then + rounding_ && s >= -past &&
+        s <= side_length(w.of_b, w.side) + past)
+      return true;
+  }
+  return false;
+}
+
+// Whether the force on a, which holds the corner of a way back, holds it from leaving the side by an end that it is going to
+// lie at.
+bool PartsMeeting::pushed_off(const Way& w, Vec2 force) const {
+  const Vec2 along = part(w.of_b).along[w.side], from = part(w.of_b).corner[w.side];
+  const double towards = dot(along, w.of_b ? -force : force), length = side_length(w.of_b, w.side);
+  const double past = std::max(0.0, -w.then) + rounding_;
+  for (const Vec2 now : part(!w.of_b).corner) {
+    const Vec2 x = then_at(w.of_b, w.of_b ? now - shift_ : now + shift_);
+    const double s = dot(along, x - from);
+    if (dot(turn_right(along), x - from) <= w.then + rounding_ &&
+        ((towards > 0 && s >= length - past) || (towards < 0 && s <= past)))
+      return true;
+  }
+  return false;
 }
 
 // Over how much of a line the two parts lie beside each other.
@@ -359,7 +412,7 @@ bool PartsMeeting::sum_up() {
 
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
                                    double rounding, LookFirst first) {
-  a_ = a, b_ = b, shift_ = shift, rounding_ = rounding;
+  a_ = a, b_ = b, shift_ = shift, rounding_ = rounding, behind_ = first.behind;
   is_strip_ = first.strip && first.way > 0 && static_cast<size_t>(first.way) <= b.size() &&
               measure_strip(true, static_cast<size_t>(first.way) - 1);
   if (is_strip_)

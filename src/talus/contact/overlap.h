@@ -43,12 +43,16 @@ struct PartMotion {
 struct WayBefore {
   int way = 0;
   double by = 0;
+  Vec2 force = {};  // on a, of any measure
 };
 
-/// The way of the step before, where to look first, and whether it was that of a strip that was measured.
+/// Where to look for two parts, which makes no difference to what is found: the way of the step before first, and
+/// whether it was that of a strip that was measured; by how much a way must be behind another one to be behind it at the
+/// end of the step too, and by more than WayBefore::by [m].
 struct LookFirst {
   int way = 0;
   bool strip = false;
+  double behind = std::numeric_limits<double>::infinity();
 };
 
 /// The part of an overlap that is nearest to one side of a block.
@@ -90,8 +94,7 @@ class PartsMeeting {
   /// @param shift     of b's origin, seen from a's [m]
   /// @param margin    gaps up to this are told [m]
   /// @param rounding  overlaps up to this have no shape: the parts are apart, by less than nothing [m]
-  /// @param first     where to look first: makes no difference to what is found. choose_way() wants no strip.
-  /// @pre  in the step to come they come together by half the margin at most
+  /// @param first     makes no difference to what is found. choose_way() wants no strip.
   const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding,
                        LookFirst first = {});
 
@@ -99,11 +102,8 @@ class PartsMeeting {
   /// step. What is apart and not along that way is kFar from now on.
   /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last
   /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
-  /// @param moves   by how much a place of one moves at most as the other sees it: makes no difference to what is
-  ///                found [m]
   /// @pre  look() found them apart or in overlap
-  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {},
-                  double moves = std::numeric_limits<double>::infinity());
+  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
 
   /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these: of all of it,
   /// or of the first connected piece where ties leave several. False: it has no way out but those that ties close, or
@@ -158,8 +158,12 @@ class PartsMeeting {
   void put_with_neighbours(size_t cell);
   bool share_a_place(size_t cell, size_t other) const;
   bool sum_up();
-  double then_before(const Way& w, double moves) const;
+  Vec2 then_at(bool of_b, Vec2 seen) const;
+  double then_before(const Way& w) const;
   double side_length(bool of_b, size_t side) const;
+  bool in_line(const Way& one, const Way& two) const;
+  bool stands_at(const Way& w) const;
+  bool pushed_off(const Way& w, Vec2 force) const;
   double facing_along(Vec2 tangent) const;
   size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
   void see_face(bool of_b);
@@ -205,7 +209,7 @@ class PartsMeeting {
     StripEnd end[2];
   } strip_;
   bool is_strip_ = false;
-  double rounding_ = 0;
+  double rounding_ = 0, behind_ = 0;
   PartsMet met_;
 };
 

@@ -65,11 +65,29 @@ class PairSearch {
            turning_speed(w_.blocks, rate, b);
   }
 
+  // By how much a way must be behind another to stay so in this step: twice what any place of one block moves at most as the
+  // other one sees it.
+  double behind(const PartMotion& of_a, const PartMotion& of_b, Vec2 shift) const {
+    const auto size = [](const Mat2& m) { return std::sqrt(contract(m, m)); };
+    const auto radius = [&](int block) {
+      const auto k = static_cast<size_t>(block);
+      return size(kIdentity + state_.strain_part[k]) * w_.blocks.radius[k];
+    };
+    const double across = norm(shift) + radius(pair_->a) + radius(pair_->b);
+    return 2 * (norm(of_a.way - of_b.way) + (size(of_a.turn) + size(of_b.turn)) * across) + kLevel * size_;
+  }
+
   PartMotion motion(int block) const {
     const auto k = static_cast<size_t>(block);
     const BlockRate& v = ahead_.before[k];
     const bool deforms = w_.blocks.kind[k] == BlockKind::kDeformable;  // G acts on the reference arm
     return {ahead_.clock.dt * v.a, ahead_.clock.dt * (deforms ? v.G * search_.back_[k] : v.G)};
+  }
+
+  // On block a [N].
+  static Vec2 force_of(const Patch& p) {
+    return (p.force[0][0] + p.force[1][0]) * p.normal +
+           (p.force[0][1] + p.force[1][1]) * turn_right(p.normal);
   }
 
   double rise(const Patch& p, size_t end) const {
@@ -137,13 +155,14 @@ class PairSearch {
     if (before && highest_ > 0)
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
     const bool measured = elastic_ && before && before->overlaps;
-    const PartsMet& met =
-        meeting_.look(a, b, shift, margin_, rounding_, {before ? before->way : 0, measured});
+    LookFirst first{.way = before ? before->way : 0, .strip = measured};
+    if (!measured) first.behind = behind(motion(pair_->a), motion(pair_->b), shift);
+    const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, first);
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
     if (met.kind == PartsMet::kApart || !elastic_)
-      meeting_.choose_way(motion(pair_->a), motion(pair_->b), {before ? before->way : 0, kLevel * size_},
-                          approach_);
+      meeting_.choose_way(motion(pair_->a), motion(pair_->b),
+                          {before ? before->way : 0, kLevel * size_, before ? force_of(*before) : Vec2{}});
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     const bool overlaps = met.kind == PartsMet::kOverlap;

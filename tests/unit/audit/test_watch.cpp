@@ -82,6 +82,38 @@ TEST_CASE("audit watch: a force that goes while the two overlap") {
 }
 
 TEST_CASE(
+    "audit watch: a hard patch that keeps an overlap lets go as the two part, but for the arc of the step") {
+  // the block turns by 5 mrad a step about its centroid: its corners leave their tangents by 0.5 (5e-3)^2 0.8 = 1e-5 m
+  const double d = 0.02;
+  const auto vanished = [&](double closing, double spin, bool hard) {
+    Two t;
+    const StepPoint end{0, 2, 1, -2, 1e5, -d, hard, {0.5, -0.5 * d}, {0, -1}};
+    for (const bool held : {true, false}) {
+      std::vector<StepPoint> points;
+      if (held) points.push_back(end);
+      const std::vector<Vec2> centroid{{0.5, -0.5}, {0.5, 0.5 - d}};
+      t.watch.look(
+          {held ? 1.0 : 2.0, 1e-3, points, centroid, t.blocks,
+           [&](int i) {
+             Block block{Hold::kFree, i == 0 ? box_polygon(-1, -1, 2, 0) : box_polygon(0, -d, 1, 1 - d), {}};
+             if (i == 0) return block;
+             for (const Vec2 x : block.polygon)
+               block.next.push_back(Vec2{0, -closing} +
+                                    spin * Vec2{-(x - centroid[1]).y, (x - centroid[1]).x});
+             return block;
+           }},
+          t.report);
+    }
+    return t.count(Defect::kForceVanished) == 1;
+  };
+  CHECK(!vanished(-1e-3, 0, true));
+  CHECK(vanished(-1e-3, 0, false));
+  CHECK(vanished(1e-3, 0, true));
+  CHECK(!vanished(5e-3, 5, true));
+  CHECK(vanished(20e-3, 5, true));
+}
+
+TEST_CASE(
     "audit watch: how deep the two are in each other, and how large the force was, says whether it counts") {
   struct Gone {
     double depth, force;  // of a block of 1 m, with another force of 1e5 N

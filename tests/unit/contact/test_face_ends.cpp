@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "support/convex_parts.h"
@@ -167,7 +168,8 @@ TEST_CASE("parts apart: the way that is left last at the end of the step is the 
   CHECK(norm(meet(a, middle, {{}, spin_matrix(-0.02)}).normal - Vec2{0, -1}) < kPlace);
 }
 
-TEST_CASE("parts apart: of two sides that lie on each other the longer one is the way, whichever block is first") {
+TEST_CASE(
+    "parts apart: of two sides that lie on each other the longer one is the way, whichever block is first") {
   // a way that is kept stays with its side: the longer one is the better one as soon as they turn at all
   const Body wall{box_polygon(-1, -4, 0, 5), {}}, stone{box_polygon(-0.5, -0.5, 0.5, 0.5), {0.5, 0.1}};
   for (const bool wall_first : {true, false}) {
@@ -197,6 +199,44 @@ TEST_CASE("overlap: what touches along one way keeps to it when two corners are 
   }
   // what is deep in another touches along no way: it is pushed out where it is in least
   CHECK(norm(normal(2 * kLevel) - Vec2{0.95, -1} / norm(Vec2{0.95, -1})) < 1e-12);
+}
+
+TEST_CASE("overlap: a corner on a corner bears along the side that its force does not push it off") {
+  // a's tip, under its slanted side, stands on b's corner: the two sides are both what it may bear on
+  constexpr double kIn = 1e-8;
+  constexpr int kSlanted = -1, kTop = 3;  // a's side, b's
+  const double slope = std::atan2(1, 2);
+  const auto way = [&](double right, int before, double lean, bool exchanged) {
+    const Body tip{{{0, 0}, {2, 1}, {0, 1}}, {right, -kIn}}, block{box_polygon(0, -1, 2, 0), {}};
+    const Seen one(exchanged ? block : tip), two(exchanged ? tip : block);
+    const double sign = exchanged ? -1 : 1;  // the force on the tip leans to the left
+    PartsMeeting meeting;
+    REQUIRE(meeting.look(one.now(), two.now(), sign * (block.origin - tip.origin), kMargin, kRounding).kind ==
+            PartsMet::kOverlap);
+    meeting.choose_way({}, {},
+                       {exchanged ? -before : before, kLevel, sign * Vec2{-std::sin(lean), std::cos(lean)}});
+    return exchanged ? -meeting.met().way : meeting.met().way;
+  };
+  for (const bool exchanged : {false, true}) {
+    CAPTURE(exchanged);
+    for (const double right : {-0.3 * kIn, 0.0, 0.4 * kIn}) {
+      CAPTURE(right);
+      // between the two normals either side may hold it, and the one that does goes on
+      for (const double share : {0.1, 0.9})
+        for (const int before : {kSlanted, kTop})
+          CHECK(way(right, before, share * slope, exchanged) == before);
+      // pushed to the right it slides along the top, not up b's corner; to the left down its slanted side
+      CHECK(way(right, kSlanted, 1.1 * slope, exchanged) == kTop);
+      CHECK(way(right, kTop, 1.1 * slope, exchanged) == kTop);
+      CHECK(way(right, kTop, -0.1 * slope, exchanged) == kSlanted);
+      CHECK(way(right, kSlanted, -0.1 * slope, exchanged) == kSlanted);
+    }
+    // past the corner by more than it is in it bears on the top alone; short of it by as much b's corner holds it
+    for (const double lean : {0.5 * slope, 1.5 * slope}) {
+      CHECK(way(5 * kIn, kSlanted, lean, exchanged) == kTop);
+      CHECK(way(-kIn, kSlanted, lean, exchanged) == kSlanted);
+    }
+  }
 }
 
 TEST_CASE("overlap: a chord ends at the corner where a side along the normal begins a rounding beyond it") {
@@ -231,6 +271,60 @@ TEST_CASE("parts apart: a tilted face has the same length from either side") {
     REQUIRE(meeting.face_ends(kMargin));
     CHECK(meeting.met().length() == doctest::Approx(1).epsilon(1e-12));
   }
+}
+
+TEST_CASE("parts apart: where it is looked for them first makes no difference") {
+  // a long floor and stones that turn on it: places of the floor far off move most of all as a stone sees them
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int apart = 0, of_stone = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const double tilt = 2e-3 * unit(random), spin = 4e-3 * unit(random), low = 1e-3 * unit(random);
+    const Vec2 way{1e-3 * unit(random), 1e-3 * unit(random)};
+    const bool wide = n % 2 == 0;
+    const Body floor{box_polygon(wide ? -17 : 0.2 * unit(random), -1, wide ? 5 : 0.5, 0), {}};
+    Body stone = moved({box_polygon(-0.3, -0.2, 0.3, 0.2), {}}, {0, 0}, tilt);
+    stone.origin = {0.5 * unit(random), 0.2 + low + 0.3 * std::abs(std::sin(tilt))};
+    const Seen one(floor), two(stone);
+    const PartMotion motion{way, {0, -spin, spin, 0}};
+    // no place of either moves further as the other sees it
+    const double moves = norm(way) + std::sqrt(2) * std::abs(spin) * 20;
+    PartsMet met[2];
+    for (const bool told : {false, true}) {
+      PartsMeeting meeting;
+      LookFirst first;
+      if (told) first = {n % 9 - 4, false, 2 * moves + kLevel};
+      met[told] = meeting.look(one.now(), two.now(), stone.origin, kMargin, kRounding, first);
+      if (met[told].kind != PartsMet::kFar)
+        meeting.choose_way({}, motion, {0, kLevel}), met[told] = meeting.met();
+    }
+    REQUIRE(met[0].kind == met[1].kind);
+    if (met[0].kind == PartsMet::kFar) continue;
+    REQUIRE(met[0].way == met[1].way);
+    REQUIRE(met[0].at_corner == met[1].at_corner);
+    apart += met[0].kind == PartsMet::kApart, of_stone += met[0].way > 0;
+  }
+  CHECK(apart > 2000);
+  CHECK(of_stone > 20);
+}
+
+TEST_CASE("parts apart: of the two sides of one interface one that a corner hangs over is the way") {
+  // the stone's left corner is past the end of the floor and below its line: along the stone's own side they are apart. It
+  // turns back, so that the floor's side is the better one at the end of the step
+  for (const bool exchanged : {false, true})
+    for (const double lean : {1e-9, 1e-6}) {
+      const Body floor{box_polygon(0, -1, 2, 0), {}};
+      Body stone{box_polygon(-0.2, 0, 1, 1), {}};
+      stone = moved(stone, {0, 0.2 * lean - 0.1 * lean}, lean);
+      const Seen one(exchanged ? stone : floor), two(exchanged ? floor : stone);
+      PartsMeeting meeting;
+      const Vec2 shift = exchanged ? floor.origin - stone.origin : stone.origin - floor.origin;
+      REQUIRE(meeting.look(one.now(), two.now(), shift, kMargin, kRounding).kind != PartsMet::kFar);
+      const PartMotion still, turns{{}, {0, 3 * lean, -3 * lean, 0}};
+      meeting.choose_way(exchanged ? turns : still, exchanged ? still : turns, {0, kLevel});
+      CHECK(meeting.met().kind == PartsMet::kApart);
+      CHECK(std::abs(meeting.met().normal.y) == doctest::Approx(1).epsilon(1e-9));
+    }
 }
 
 }  // namespace test_face_ends

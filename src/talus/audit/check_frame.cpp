@@ -400,8 +400,8 @@ class Check {
             found, wanted)));
   }
 
-  // The trapezium of the two ends of each face, the wedge of each corner alone, and what the solver may
-  // leave.
+  // The trapezium of the two ends of each face and the cells at these, the wedge of each corner alone, and what the solver
+  // may leave.
   double explained_by_points(const Pair& pair) const {
     const double size = size_of(pair.a, pair.b);
     const double left = rules_.slop * size + rules_.tolerance;
@@ -415,12 +415,16 @@ class Check {
         const Seen& o = seen_[static_cast<size_t>(p.partner)];
         const double length = norm(o.place - s.place);
         sum += trapezium(s.gap, o.gap, length) + left * length;
+        if (p.patch()) sum += end_cell(s.gap) + end_cell(o.gap);
       } else if (!p.bond() && !p.patch()) {
         sum += wedge(p, s, s.depth + left);
       }
     }
     return sum;
   }
+
+  // What of an overlap is at an end of a patch nearer to the sides beside the face than to it, and pushes along it.
+  static double end_cell(double gap) { return gap < 0 ? gap * gap : 0; }
 
   // Area below zero of a gap that is linear along a face.
   static double trapezium(double gap_0, double gap_1, double length) {

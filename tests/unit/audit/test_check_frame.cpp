@@ -326,6 +326,18 @@ TEST_CASE("audit: the force of a patch is that of the energy of the overlap") {
   CHECK(has(aside.look(), Defect::kEnergyLaw, true));
 }
 
+TEST_CASE("audit: what of an overlap is nearer to the sides beside a face is accounted for, no more") {
+  // the block's two end cells, half of the square of the closure each, push along the face
+  const double c = 0.02;
+  const auto told = [&](double less) {
+    Case one = patch(c, 1);
+    for (Point& p : one.frame.points) p.gap = -(c - less);
+    return one.look();
+  };
+  CHECK(!has_any(told(0.5 * c * c), Defect::kUnexplainedOverlap));
+  CHECK(has(told(3 * c * c), Defect::kUnexplainedOverlap, false));
+}
+
 TEST_CASE("audit: what else may close or hold a patch is not compared with its energy") {
   const auto not_judged = [](auto change) {
     Case c = patch(1e-4, 1.05);

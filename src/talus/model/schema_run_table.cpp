@@ -17,13 +17,15 @@ std::vector<SectionSpec> run_sections() {
          .doc =
              "`newton`: semismooth, per island of touching blocks. `gauss_seidel`: projected, point by "
              "point, by all threads. `primal_newton`: semismooth in the velocities of the blocks, for large "
-             "compressed masses whose joints have stiffness. `auto`: what is faster for the number of contact "
+             "compressed masses whose joints have stiffness. `pivoting`: Lemke's method, for small models. `auto`: what is faster for the number of contact "
              "points (docs/performance.md has the table)."},
         {.name = "second_solver",
          .type = K::kBool,
          .default_text = "true",
-         .doc = "A step that misses the tolerance is tried by another method (by `newton` up to 8000 contact "
-                "points, by `primal_newton` where joints have stiffness and sweeps are slow)."},
+         .doc =
+             "A step that misses the tolerance is tried by another method (by `newton` up to 8000 contact "
+             "points, by `primal_newton` where joints have stiffness and sweeps are slow, last by `pivoting` "
+             "where it is small)."},
         {.name = "jacobian",
          .type = K::kChoice,
          .default_text = "\"analytic\"",

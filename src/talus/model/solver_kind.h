@@ -9,11 +9,11 @@
 namespace talus {
 
 /// kAuto: what is faster for a step.
-enum class SolverKind { kAuto, kNewton, kGaussSeidel, kPrimalNewton };
+enum class SolverKind { kAuto, kNewton, kGaussSeidel, kPrimalNewton, kPivoting };
 
-inline constexpr std::array<std::string_view, 4> kSolverName{"auto", "newton", "gauss_seidel",
-                                                             "primal_newton"};
-static_assert(kSolverName.size() == static_cast<size_t>(SolverKind::kPrimalNewton) + 1);
+inline constexpr std::array<std::string_view, 5> kSolverName{"auto", "newton", "gauss_seidel",
+                                                             "primal_newton", "pivoting"};
+static_assert(kSolverName.size() == static_cast<size_t>(SolverKind::kPivoting) + 1);
 
 inline constexpr std::string_view name_of(SolverKind kind) { return kSolverName[static_cast<size_t>(kind)]; }
 

@@ -7,6 +7,7 @@
 #include "talus/base/error.h"
 #include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
+#include "talus/solve/pivoting.h"
 #include "talus/solve/primal_newton.h"
 
 namespace talus {
@@ -21,6 +22,10 @@ std::unique_ptr<Solver> make() {
 // Newton is asked to mend up to so many points: beyond, its factors would fill the memory.
 constexpr size_t kMostNewtonPoints = 8000, kAny = std::numeric_limits<size_t>::max();
 
+// Pivoting looks at each island by itself and leaves the large ones; beyond so many points in all a step is too dear
+// to be asked about.
+constexpr size_t kMostPivotedPoints = 20000;
+
 // In the order of SolverKind. A new solver is a file of its own, a name in model/solver_kind.h and a line
 // here.
 constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
@@ -29,6 +34,7 @@ constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
                                           .mended = SolverKind::kGaussSeidel,
                                           .far_off = true,
                                           .goes_on = false,
+                                          .last = false,
                                           .most_points = kMostNewtonPoints},
                               SolverEntry{.kind = SolverKind::kGaussSeidel,
                                           .make = make<GaussSeidel>,
@@ -36,6 +42,7 @@ constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
                                           .mended = SolverKind::kNewton,
                                           .far_off = false,
                                           .goes_on = true,
+                                          .last = false,
                                           .most_points = kAny},
                               SolverEntry{.kind = SolverKind::kPrimalNewton,
                                           .make = make<PrimalNewton>,
@@ -43,7 +50,16 @@ constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
                                           .mended = SolverKind::kGaussSeidel,
                                           .far_off = false,
                                           .goes_on = false,
-                                          .most_points = kAny}};
+                                          .last = false,
+                                          .most_points = kAny},
+                              SolverEntry{.kind = SolverKind::kPivoting,
+                                          .make = make<Pivoting>,
+                                          .smoothed = false,
+                                          .mended = SolverKind::kGaussSeidel,
+                                          .far_off = false,
+                                          .goes_on = false,
+                                          .last = true,
+                                          .most_points = kMostPivotedPoints}};
 static_assert(kSolvers.size() + 1 == kSolverName.size());
 static_assert(std::ranges::all_of(kSolvers, [](const SolverEntry& e) {
   return static_cast<size_t>(e.kind) == static_cast<size_t>(&e - kSolvers.data()) + 1;
@@ -139,9 +155,12 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
                        problem.rows.points.size() >= kFewestPrimal;
   const bool again = options.second_solver && !smoothed && !shorter &&
                      problem.rows.points.size() <= entry(second).most_points;
+  const SolverEntry& last = *std::ranges::find_if(kSolvers, &SolverEntry::last);
+  const bool to_the_last = options.second_solver && !smoothed && !shorter && first != last.kind &&
+                           problem.rows.points.size() <= last.most_points;
   TALUS_ASSERT(!smoothed || entry(first).smoothed);
   guess.clear();
-  if (again || keep_guess) guess = problem.rows.impulse;
+  if (again || to_the_last || keep_guess) guess = problem.rows.impulse;
 
   Solved now;
   Attempts attempts;
@@ -171,7 +190,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   solve_by(first, few, worth);
   const bool gave_up = now.report.gave_up;
   now.attempts = attempts;
-  if (!gave_up && (!now.failed || !again)) return now;
+  if (!gave_up && (!now.failed || !(again || to_the_last))) return now;
 
   struct Attempt {
     Solved solved;
@@ -191,6 +210,9 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   if (best.solved.failed && (gave_up || few < options.max_sweeps))
     for (const SolverEntry& e : kSolvers)
       if (e.goes_on && best.solved.failed) attempt(e.kind, options.max_sweeps, false);
+  // what sweeps leave may lie where the way turns in circles, and the forces of the step before do not
+  if (best.solved.failed && to_the_last) attempt(last.kind, few, false);
+  if (best.solved.failed && to_the_last) attempt(last.kind, few, true);
   if (!best_stands) {
     problem.rows.impulse = std::move(best.impulse);
     problem.rate = std::move(best.rate);

@@ -17,6 +17,7 @@ struct SolverEntry {
   SolverKind mended;   // by which other one its failed steps are tried
   bool far_off;        // a failure of it is no place to begin from
   bool goes_on;        // more sweeps lead on from where any solver ended
+  bool last;           // asked where all else has failed
   size_t most_points;  // of a step of another solver that it is asked to mend
 };
 
@@ -70,7 +71,7 @@ struct Solved {
 };
 
 /// Solves a step: the chosen solver; where its result misses the tolerance, another; then sweeps from the
-/// best so far for as many as the model allows. The best stays, and is what the judge of the problem was asked last.
+/// best so far for as many as the model allows; last, pivoting. The best stays, and is what the judge of the problem was asked last.
 /// @param kinds      of the rows: they say by which share of the tolerance solvers stop earlier than the judge
 /// @param tolerance  largest contact error [m]
 /// @param sharper    share of it to which steps are solved where that takes few sweeps more

@@ -1,0 +1,22 @@
+#pragma once
+// Lemke's method in the rows of an island: the solution of a neighbouring problem is followed, from one set of
+// open, sticking and sliding points to the next, to that of the step. Dense; for the few steps that nothing else
+// solves. Theory: docs/theory.md 5.10.
+
+#include "talus/solve/solver.h"
+
+namespace talus {
+
+/// Rows of one island that may reach a bound, two of a contact with friction: three dense matrices of them squared are
+/// kept (100 MB), and a change of one row passes over them (some 10 ms; hundreds of changes are usual).
+inline constexpr size_t kMostPivotRows = 2000;
+
+class Pivoting : public Solver {
+ public:
+  /// Solves the islands whose error is more than enough; those with more rows than kMostPivotRows stay as they are, as do
+  /// those that it does not bring nearer.
+  SolveReport solve(const StepProblem& problem, const SolverGoal& goal, const SolverInput& limits,
+                    const Workers& workers) override;
+};
+
+}  // namespace talus

@@ -1,5 +1,6 @@
-// Overlaps that are strips: two sides that lie on each other and at each end the side of one of the two parts. Their
-// cells are triangles at the ends and what those leave: closed form, without clipping. Theory: docs/theory.md 3.2.
+// Overlaps of parts without cuts and ties that are strips: two sides that lie on each other and at each end the side
+// of one of the two parts. Their cells are triangles at the ends and what those leave: closed form, without clipping.
+// Theory: docs/theory.md 3.2.
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +62,7 @@ bool PartsMeeting::strip_is_all(bool of_b) const {
   for (size_t k = 0; k < own.size(); ++k) {
     const bool at_low = low.side[of_b] == k, at_high = high.side[of_b] == k;
     if (k == strip_.side[of_b] || (at_low && low.of_b == of_b) || (at_high && high.of_b == of_b)) continue;
-    const double least = at_low || at_high || own.role_of(k) == SideRole::kCut ? 0 : deepest;
+    const double least = at_low || at_high ? 0 : deepest;
     for (const Vec2 x : at)
       if (!(depth_of(of_b, k, x) >= least)) return false;
   }
@@ -74,8 +75,6 @@ double PartsMeeting::take_triangle(bool of_b, bool high, Moments& triangle) cons
   const StripEnd& end = strip_.end[high];
   const PartNow& own = part(of_b);
   triangle = {};
-  if (own.role_of(end.side[of_b]) == SideRole::kCut) return 0;
-  if (own.role_of(end.side[of_b]) != SideRole::kOut) return kNoStrip;
   const Vec2 way = own.along[strip_.side[of_b]] + own.along[end.side[of_b]];
   // the bisector is square to the sum of two sides' ways; on which side of it the face lies goes by their order
   const double sign = of_b == high ? -1 : 1;
@@ -107,9 +106,8 @@ bool PartsMeeting::strip_cells(bool of_b, const Moments& all, std::vector<SideCe
 }
 
 bool PartsMeeting::measure_strip(bool of_b, size_t side) {
+  if (!a_.role.empty() || !b_.role.empty()) return false;
   strip_.side[of_b] = side, strip_.side[!of_b] = facing(!of_b, side);
-  for (const bool one : {false, true})
-    if (part(one).role_of(strip_.side[one]) != SideRole::kOut) return false;
   if (!take_end(false) || !take_end(true) || !strip_is_all(false) || !strip_is_all(true)) return false;
   const StripEnd &low = strip_.end[0], &high = strip_.end[1];
   bearing_.assign({low.on[1], high.on[1], high.on[0], low.on[0]});

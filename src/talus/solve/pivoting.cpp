@@ -76,7 +76,7 @@ struct Stands {
   At normal = At::kFree, tangent = At::kFree;
 };
 
-// e = C p + q of the live rows, the others eliminated; rows and impulses are scaled so that their own influence is 1.
+// Eq. 5.4: e = C p + q of the live rows, the others eliminated; rows and impulses are scaled so that their own influence is 1.
 struct Reduced {
   std::vector<LivePoint> points;
   Eigen::MatrixXd C;

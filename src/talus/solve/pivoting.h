@@ -8,8 +8,8 @@
 namespace talus {
 
 /// Rows of one island that may reach a bound, two of a contact with friction: three dense matrices of them squared are
-/// kept (100 MB), and a change of one row passes over them (some 10 ms; hundreds of changes are usual).
-inline constexpr size_t kMostPivotRows = 2000;
+/// kept (25 MB), and a change of one row passes over them (some 3 ms; hundreds of changes are usual).
+inline constexpr size_t kMostPivotRows = 1000;
 
 class Pivoting : public Solver {
  public:

@@ -1,19 +1,14 @@
-// Overlaps of parts without cuts and ties that are strips: two sides that lie on each other and at each end the side
-// of one of the two parts. Their cells are triangles at the ends and what those leave: closed form, without clipping.
-// Theory: docs/theory.md 3.2.
+// Overlaps that are strips: two sides that lie on each other and at each end the side of one of the two parts. Their
+// cells are triangles at the ends and what those leave: closed form, without clipping. Theory: docs/theory.md 3.2.
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "talus/contact/overlap.h"
 
 namespace talus {
 
 namespace {
-
-// Share of a face that no triangle may have.
-constexpr double kNoStrip = std::numeric_limits<double>::infinity();
 
 size_t after(size_t k, size_t n) { return k + 1 == n ? 0 : k + 1; }
 size_t ahead_of(size_t k, size_t n) { return k == 0 ? n - 1 : k - 1; }
@@ -52,7 +47,8 @@ bool PartsMeeting::take_end(bool high) {
   return true;
 }
 
-// Whether no other side of a part bounds the strip, or is nearer to any of it than its face and the next ones are.
+// Whether the sides of a part bound the strip where they end it and nowhere else, and none is nearer to any of it than its face
+// and the next ones are.
 bool PartsMeeting::strip_is_all(bool of_b) const {
   const PartNow& own = part(of_b);
   const StripEnd &low = strip_.end[0], &high = strip_.end[1];
@@ -60,11 +56,14 @@ bool PartsMeeting::strip_is_all(bool of_b) const {
   double deepest = 0;
   for (const Vec2 x : at) deepest = std::max(deepest, depth_of(of_b, strip_.side[of_b], x));
   for (size_t k = 0; k < own.size(); ++k) {
-    const bool at_low = low.side[of_b] == k, at_high = high.side[of_b] == k;
-    if (k == strip_.side[of_b] || (at_low && low.of_b == of_b) || (at_high && high.of_b == of_b)) continue;
-    const double least = at_low || at_high ? 0 : deepest;
-    for (const Vec2 x : at)
-      if (!(depth_of(of_b, k, x) >= least)) return false;
+    if (k == strip_.side[of_b]) continue;
+    const bool next = low.side[of_b] == k || high.side[of_b] == k;
+    const double least = next || own.role_of(k) == SideRole::kCut ? 0 : deepest;
+    for (size_t i = 0; i < 4; ++i) {
+      const StripEnd& end = strip_.end[i / 2];
+      if (end.of_b == of_b && end.side[of_b] == k) continue;  // its own two places
+      if (!(depth_of(of_b, k, at[i]) >= least)) return false;
+    }
   }
   return true;
 }
@@ -75,14 +74,16 @@ double PartsMeeting::take_triangle(bool of_b, bool high, Moments& triangle) cons
   const StripEnd& end = strip_.end[high];
   const PartNow& own = part(of_b);
   triangle = {};
+  if (own.role_of(end.side[of_b]) == SideRole::kCut) return 0;
+  if (own.role_of(end.side[of_b]) != SideRole::kOut) return 1;
   const Vec2 way = own.along[strip_.side[of_b]] + own.along[end.side[of_b]];
   // the bisector is square to the sum of two sides' ways; on which side of it the face lies goes by their order
   const double sign = of_b == high ? -1 : 1;
   const auto beside = [&](Vec2 x) { return sign * dot(way, x - end.corner[of_b]); };
   const double here = end.of_b == of_b ? 0 : beside(end.on[of_b]), beyond = beside(end.on[!of_b]);
-  if (!(beyond < 0)) return 0;
   const double far = beside(strip_.end[!high].on[!of_b]);
-  if (!(here >= 0 && far > 0)) return kNoStrip;
+  if (beyond >= 0 && far >= 0) return 0;
+  if (!(beyond < 0 && here >= 0 && far > 0)) return 1;
   const Vec2 tip = end.on[!of_b], u = (beyond / (beyond - here)) * (end.on[of_b] - tip),
              v = (beyond / (beyond - far)) * (strip_.end[!high].on[!of_b] - tip);
   const double area = 0.5 * std::abs(cross(u, v));
@@ -106,8 +107,9 @@ bool PartsMeeting::strip_cells(bool of_b, const Moments& all, std::vector<SideCe
 }
 
 bool PartsMeeting::measure_strip(bool of_b, size_t side) {
-  if (!a_.role.empty() || !b_.role.empty()) return false;
   strip_.side[of_b] = side, strip_.side[!of_b] = facing(!of_b, side);
+  for (const bool one : {false, true})
+    if (part(one).role_of(strip_.side[one]) != SideRole::kOut) return false;
   if (!take_end(false) || !take_end(true) || !strip_is_all(false) || !strip_is_all(true)) return false;
   const StripEnd &low = strip_.end[0], &high = strip_.end[1];
   bearing_.assign({low.on[1], high.on[1], high.on[0], low.on[0]});

@@ -24,6 +24,7 @@ Body halved(const Body& body) {
   for (size_t k = 0; k < n; ++k)
     out.corner.push_back(body.corner[k]),
         out.corner.push_back(0.5 * (body.corner[k] + body.corner[(k + 1) % n]));
+  for (const SideRole role : body.role) out.role.push_back(role), out.role.push_back(role);
   return out;
 }
 
@@ -98,6 +99,50 @@ TEST_CASE("strips have the force, energy and chord of the general way") {
           ", closure ", closure, "; strips ", strips, " of ", all);
   // the others are those whose ends cross within the overlap
   CHECK(strips > 0.99 * all);
+}
+
+TEST_CASE(
+    "strips as short as they are deep: where ends cross within the overlap, or a cut does, it is none") {
+  Random random(73);
+  int strips = 0, cut_strips = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const double width = std::exp(random.uniform() * std::log(1e-3)), closed = 1.2 * width * random.uniform();
+    const auto leaning = [&](bool above) {
+      const auto off = [&](double most) { return most * width * (2 * random.uniform() - 1); };
+      const double left = -0.5 * width + off(0.45), right = 0.5 * width + off(0.45),
+                   high = (above ? 2 : -2) * width, out_left = off(3), out_right = off(3);
+      Body body{{{left, 0}, {right, 0}, {right + out_right, high}, {left - out_left, high}}, {}};
+      if (random.uniform() < 0.5)
+        body.role = {SideRole::kOut, SideRole::kCut, SideRole::kOut, SideRole::kOut};
+      if (!above) {
+        std::swap(body.corner[0], body.corner[1]), std::swap(body.corner[2], body.corner[3]);
+        if (!body.role.empty()) std::swap(body.role[1], body.role[3]);
+      }
+      return body;
+    };
+    Body above = moved(leaning(true), {}, 0.3 * (random.uniform() - 0.5)), below = leaning(false);
+    above.origin = {0, -closed};
+    const auto convex = [](const Body& body) {
+      for (size_t k = 0; k < 4; ++k)
+        if (cross(body.at(k + 1) - body.at(k), body.at(k + 2) - body.at(k + 1)) <= 0) return false;
+      return true;
+    };
+    if (!convex(above) || !convex(below)) continue;
+    const PartsMet strip = measured({above, below}, i % 4 + 1),
+                   cells = measured({halved(above), halved(below)}, 0);
+    if (strip.way == 0) continue;
+    ++strips, cut_strips += !above.role.empty() || !below.role.empty();
+    CAPTURE(i);
+    REQUIRE(cells.kind == PartsMet::kOverlap);
+    // bodies of 1 m are rounded to 1e-16 m: so is each length of an overlap, and its area by as much of its width
+    const double rounded = 1e-14 * width;
+    CHECK(std::abs(strip.area - cells.area) < rounded);
+    CHECK(norm(strip.force * strip.normal - cells.force * cells.normal) < rounded);
+    CHECK(std::abs(strip.energy - cells.energy) < rounded * width);
+  }
+  MESSAGE("strips ", strips, ", beside cuts ", cut_strips);
+  CHECK(strips > 2000);
+  CHECK(cut_strips > 1000);
 }
 
 TEST_CASE("where a strip is looked for first makes no difference") {

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "support/random_rows.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/newton.h"
 #include "talus/solve/solvers.h"
@@ -13,32 +14,22 @@
 namespace test_pivoting {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
 
-// `count` unit squares in a row, the first fixed, every third one rigid.
-std::vector<Mobility> squares(int count) {
-  Model model;
-  model.materials.push_back({"m", 2000, 1e9, 0.2});
-  Layout layout;
-  for (int i = 0; i < count; ++i) {
-    BlockShape b;
-    b.name = "b" + std::to_string(i);
-    b.group = i;
-    const double x = 1.1 * i;
-    b.polygon = {{x, 0}, {x + 1, 0}, {x + 1, 1}, {x, 1}};
-    b.kind = i == 0 ? BlockKind::kFixed : i % 3 == 0 ? BlockKind::kRigid : BlockKind::kDeformable;
-    layout.blocks.push_back(b);
-    layout.groups.push_back(b.name);
-  }
-  return mobilities(build_blocks(model, layout), 1);
-}
-
 struct Problem {
+  BlockSet blocks;
   std::vector<Mobility> mobility;
   std::vector<BlockRate> free;
   RowSet rows;
 };
+
+Problem between_squares(int count) {
+  Problem problem{make_squares(count), {}, {}, {}};
+  problem.mobility = mobilities(problem.blocks, 1);
+  return problem;
+}
 
 struct Answer {
   std::vector<Impulse> impulse;
@@ -65,37 +56,10 @@ Answer pivoted(const Problem& problem, int threads = 1) {
   return solved_by(pivoting, problem, threads);
 }
 
-PointRows random_point(std::mt19937& random, int blocks) {
-  std::uniform_real_distribution<double> unit(-1, 1);
-  std::uniform_int_distribution<int> any(0, blocks - 1);
-  PointRows p;
-  p.block_a = 1 + any(random) % (blocks - 1);
-  do p.block_b = any(random) % 5 == 0 ? -1 : any(random);
-  while (p.block_b == p.block_a);
-  p.arm_a = {0.5 * unit(random), 0.5 * unit(random)};
-  p.arm_b = {0.5 * unit(random), 0.5 * unit(random)};
-  const double angle = 3.14 * unit(random);
-  p.normal = {std::cos(angle), std::sin(angle)};
-  p.row[0].bias = unit(random), p.row[1].bias = unit(random);
-  return p;
-}
-
-std::vector<BlockRate> random_rates(std::mt19937& random, const std::vector<Mobility>& mobility) {
-  std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<BlockRate> rate(mobility.size());
-  for (size_t i = 0; i < rate.size(); ++i) {
-    if (!mobility[i].moves()) continue;
-    rate[i].a = {unit(random), unit(random)};
-    rate[i].G = mobility[i].stretch[0] == 0 ? spin_matrix(unit(random))
-                                            : Mat2{unit(random), unit(random), unit(random), unit(random)};
-  }
-  return rate;
-}
-
 // Rows of every kind, each with some give: contacts, ties, faces with strength (of some the bounds vanish before the
 // face opens), bolts, and the two ends of a face.
 Problem every_kind(std::mt19937& random) {
-  Problem problem{squares(9), {}, {}};
+  Problem problem = between_squares(9);
   for (int i = 0; i < 12; ++i) {
     PointRows p = random_point(random, 9);
     p.row[0].compliance = 1e-4, p.row[1].compliance = 2e-4;
@@ -122,20 +86,20 @@ Problem every_kind(std::mt19937& random) {
     }
     problem.rows.add(p, {0, 0});
   }
-  problem.free = random_rates(random, problem.mobility);
+  problem.free = random_rates(random, problem.blocks);
   return problem;
 }
 
 // Hard contacts of 80 degrees of friction.
 Problem rough(std::mt19937& random) {
-  Problem problem{squares(9), {}, {}};
+  Problem problem = between_squares(9);
   for (int i = 0; i < 24; ++i) {
     PointRows p = random_point(random, 9);
     p.lower = 0, p.friction = 5.67, p.cohesion = 0;
     p.row[0].bias = std::abs(p.row[0].bias), p.row[1].bias = 0;  // gaps: at rest all is well
     problem.rows.add(p, {0, 0});
   }
-  problem.free = random_rates(random, problem.mobility);
+  problem.free = random_rates(random, problem.blocks);
   return problem;
 }
 
@@ -201,7 +165,7 @@ TEST_CASE("pivoting solves contacts of 80 degrees that neither sweeps nor Newton
 }
 
 TEST_CASE("pivoting tolerates redundant ties, and redundant contacts on them") {
-  Problem problem{squares(3), {}, {}};
+  Problem problem = between_squares(3);
   for (const int b : {1, 2})
     for (const double y : {-0.5, -0.2, 0.2, 0.5}) {
       PointRows p;
@@ -235,7 +199,7 @@ TEST_CASE(
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int trial = 0; trial < 5; ++trial) {
     CAPTURE(trial);
-    Problem problem{squares(7), {}, {}};
+    Problem problem = between_squares(7);
     for (int a = 1; a < 7; ++a)
       for (const int b : {a - 1, a - 2, a - 3})
         for (int k = 0; k < 5; ++k) {
@@ -249,7 +213,7 @@ TEST_CASE(
           p.row[0].bias = 1e-3 * unit(random), p.row[1].bias = 1e-3 * unit(random);
           problem.rows.add(p, {0, 0});
         }
-    problem.free = random_rates(random, problem.mobility);
+    problem.free = random_rates(random, problem.blocks);
     CHECK(pivoted(problem).error < 1e-10);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "support/random_rows.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/contact_problem.h"
 #include "talus/solve/newton.h"
@@ -11,42 +12,16 @@
 namespace test_solve {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
-
-// `count` squares, every third one rigid, the first fixed.
-BlockSet make_squares(int count) {
-  Model model;
-  model.materials.push_back({"m", 2000, 1e9, 0.2});
-  Layout layout;
-  for (int i = 0; i < count; ++i) {
-    BlockShape b;
-    b.name = "b" + std::to_string(i);
-    b.group = i;
-    const double x = 1.1 * i;
-    b.polygon = {{x, 0}, {x + 1, 0}, {x + 1, 1}, {x, 1}};
-    b.kind = i == 0 ? BlockKind::kFixed : i % 3 == 0 ? BlockKind::kRigid : BlockKind::kDeformable;
-    layout.blocks.push_back(b);
-    layout.groups.push_back(b.name);
-  }
-  return build_blocks(model, layout);
-}
 
 // Random rows of every kind: hard contacts with friction, ties, cohesive faces, compliant rows, supports.
 RowSet random_rows(std::mt19937& random, int blocks, int count) {
   std::uniform_real_distribution<double> unit(-1, 1);
-  std::uniform_int_distribution<int> any(0, blocks - 1);
   RowSet set;
   for (int i = 0; i < count; ++i) {
-    PointRows p;
-    p.block_a = 1 + any(random) % (blocks - 1);
-    do p.block_b = any(random) % 5 == 0 ? -1 : any(random);
-    while (p.block_b == p.block_a);
-    p.arm_a = {0.5 * unit(random), 0.5 * unit(random)};
-    p.arm_b = {0.5 * unit(random), 0.5 * unit(random)};
-    const double angle = 3.14 * unit(random);
-    p.normal = {std::cos(angle), std::sin(angle)};
-    p.row[0].bias = unit(random), p.row[1].bias = unit(random);
+    PointRows p = random_point(random, blocks);
     switch (i % 4) {
       case 0:
         p.lower = 0, p.friction = 0.6, p.cohesion = 0;
@@ -63,20 +38,6 @@ RowSet random_rows(std::mt19937& random, int blocks, int count) {
     set.add(p, {500 * unit(random), 500 * unit(random)});
   }
   return set;
-}
-
-std::vector<BlockRate> random_rates(std::mt19937& random, const BlockSet& blocks) {
-  std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<BlockRate> rate(static_cast<size_t>(blocks.count));
-  for (int i = 0; i < blocks.count; ++i) {
-    auto& v = rate[static_cast<size_t>(i)];
-    if (!blocks.moves_freely(i)) continue;
-    v.a = {unit(random), unit(random)};
-    v.G = blocks.kind[static_cast<size_t>(i)] == BlockKind::kRigid
-              ? spin_matrix(unit(random))
-              : Mat2{unit(random), unit(random), unit(random), unit(random)};
-  }
-  return rate;
 }
 
 std::vector<BlockRate> after(const BlockSet& blocks, const RowSet& set, std::vector<BlockRate> rate) {

@@ -7,6 +7,7 @@
 #include "talus/base/error.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/contact_problem.h"
+#include "talus/solve/lemke_path.h"
 #include "talus/solve/newton.h"
 #include "talus/solve/symmetric_factor.h"
 
@@ -30,470 +31,8 @@ constexpr double kLess = 0.01;
 
 constexpr int kMostCentres = 12, kMostRefined = 8;
 
-// The free residuals are moved by this share of the largest one, each by another number: no two rows then reach a
-// bound at once. The last set of rows is solved without.
-constexpr double kMoved = 1e-12;
-
-// What is this share of the scale is no way off a bound, of residuals and of how fast they change.
-constexpr double kZero = 1e-12, kFlat = 1e-13;
-
-// Changes of rows after which the inverse is made anew.
-constexpr int kFresh = 200, kSoonest = 20;
-
-// Residuals of rows that are to have none are corrected beyond this share of the scale.
-constexpr double kDrift = 1e-9;
-
-// Most changes of a way, by its rows: from the impulses known, from rows that gave more, from all faces apart.
-constexpr double kFewChanges = 0.25, kSomeChanges = 1, kMostChanges = 2;
-
-// Numbers between 0 and 1 that are the same in every run.
-class Numbers {
- public:
-  explicit Numbers(uint64_t seed) : state_(seed) {}
-  double next() {  // splitmix64
-    uint64_t z = (state_ += 0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-
- private:
-  uint64_t state_;
-};
-
-// Where an impulse is: between its bounds, at one of them, or (tangential) where both are one.
-enum class At : char { kFree, kLower, kUpper, kNone };
-
-// A point with its live rows, those that may reach a bound; -1: its row is no such.
-struct LivePoint {
-  int normal = -1, tangent = -1;
-  double lower = 0, upper = 0;        // of the normal impulse
-  double friction = 0, cohesion = 0;  // p_t within -+ max(0, cohesion + friction p_n)
-  double bound(double p_n) const { return cohesion + friction * p_n; }
-};
-
-struct Stands {
-  At normal = At::kFree, tangent = At::kFree;
-};
-
-// Eq. 5.4: e = C p + q of the live rows, the others eliminated; rows and impulses are scaled so that their own influence is 1.
-struct Reduced {
-  std::vector<LivePoint> points;
-  Eigen::MatrixXd C;
-  Eigen::VectorXd q;
-};
-
-// One row leaves a bound, or comes to one: `slack` falls to zero.
-struct Event {
-  int point = -1;
-  enum Kind {
-    kLower,  // p_n at its lower bound
-    kUpper,  // at its upper
-    kLeave,  // e_n zero: p_n leaves its bound
-    kPlus,   // p_t at its bounds
-    kMinus,
-    kStick,   // e_t zero: sliding ends
-    kVanish,  // bounds of p_t go to zero, and come from there
-    kAppear
-  } kind = kLower;
-  double slack = 0, rate = 0;
-};
-
-// The way t from 1 to 0 of e = C p + q + t d, from a p that solves it at t = 1.
-class Path {
- public:
-  Path(const Reduced& r, Eigen::VectorXd q, uint64_t seed)
-      : r_(r), size_(q.size()), stands_(r.points.size()), q_(std::move(q)) {
-    Numbers numbers(seed);
-    scale_ = std::max(q_.lpNorm<Eigen::Infinity>(), 1e-300);
-    for (Index i = 0; i < size_; ++i) q_[i] += kMoved * scale_ * (1 + numbers.next());
-    apart_.resize(size_);
-    for (double& x : apart_) x = 0.5 + numbers.next();
-  }
-
-  // From impulses near the solution: bounds as they leave them, and the residuals that are left as d.
-  void start_from(Eigen::VectorXd p) {
-    const Eigen::VectorXd e = r_.C * p + q_;
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      const LivePoint& a = r_.points[i];
-      Stands& s = stands_[i];
-      double p_n = 0;
-      if (a.normal >= 0) {
-        const double trial = p[a.normal] - e[a.normal];
-        s.normal = trial <= a.lower ? At::kLower : trial >= a.upper ? At::kUpper : At::kFree;
-        p_n = p[a.normal];
-        if (s.normal == At::kLower) p_n = a.lower;
-        if (s.normal == At::kUpper) p_n = a.upper;
-        if (s.normal == At::kFree && p_n <= a.lower)
-          p_n = a.lower + 0.01 * (std::min(trial, a.upper) - a.lower);
-        if (s.normal == At::kFree && p_n >= a.upper)
-          p_n = a.upper - 0.01 * (a.upper - std::max(trial, a.lower));
-        p[a.normal] = p_n;
-      }
-      start_tangent(a, p_n, a.tangent < 0 ? 0 : e[a.tangent], p, s);
-    }
-    begin_at(p);
-  }
-
-  // From all faces as far apart as their strength lets them: first the way of the tangential rows alone, then that of a d
-  // that parts the faces. With rows that all give, this way has no other end than a solution (theory 5.10).
-  bool start_apart(Eigen::VectorXd p) {
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      const LivePoint& a = r_.points[i];
-      Stands& s = stands_[i];
-      double p_n = 0;
-      if (a.normal >= 0) {
-        p_n = std::isfinite(a.lower) ? a.lower : std::min(p[a.normal], a.upper);
-        s.normal = p_n == a.lower ? At::kLower : p_n == a.upper ? At::kUpper : At::kFree;
-        p[a.normal] = p_n;
-      }
-      if (a.tangent >= 0) p[a.tangent] = 0;
-      start_tangent(a, p_n, 0, p, s);
-    }
-    begin_at(p);
-    held_ = true;
-    if (!follow(kSomeChanges)) return false;
-    held_ = false;
-    d_.setZero();
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      const LivePoint& a = r_.points[i];
-      if (a.normal < 0 || stands_[i].normal != At::kLower) continue;
-      const double e_t = a.tangent < 0 ? 0 : std::abs(residual_(a.tangent, 0)), e = residual_(a.normal, 0);
-      d_[a.normal] = (1 + apart_[a.normal]) * (scale_ + std::abs(e) + a.friction * e_t);
-    }
-    return true;
-  }
-
-  // Follows the way. False when it leads nowhere.
-  bool follow(double share) {
-    double t = 1;
-    int sense = -1;
-    refresh();
-    for (const int most = changes_ + 100 + static_cast<int>(share * static_cast<double>(size_));
-         changes_ < most;) {
-      const Event next = first_event(t, sense);
-      const double step =
-          next.point < 0 ? std::numeric_limits<double>::infinity() : std::max(0.0, next.slack / -next.rate);
-      if (sense < 0 && step >= t) {
-        return line_.allFinite();
-      }
-      if (next.point < 0) return false;
-      t += sense * step;
-      if (!(t < 1e6)) return false;
-      const double rise = pass(next, t);
-      if (!(std::abs(rise) > 0)) return false;
-      sense = rise > 0 ? 1 : -1;
-    }
-    return false;
-  }
-
-  // The matrix of the rows as they stand.
-  Eigen::MatrixXd matrix() const {
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size_, size_);
-    for_equations([&](Index row, const Equation& e) {
-      if (e.residual) {
-        A.row(row) = r_.C.row(row);
-      } else {
-        A(row, row) = 1;
-        if (e.other >= 0) A(row, e.other) = e.share;
-      }
-    });
-    return A;
-  }
-
-  // What impulses p with the residuals e leave of them.
-  Eigen::VectorXd left(const Eigen::VectorXd& p, const Eigen::VectorXd& e) const {
-    Eigen::VectorXd x(size_);
-    for_equations([&](Index row, const Equation& q) {
-      x[row] = q.residual ? e[row] : p[row] + (q.other < 0 ? 0 : q.share * p[q.other]) - q.value;
-    });
-    return x;
-  }
-
-  // Impulses exactly at the bounds where they stand, and within them elsewhere.
-  void settle(Eigen::VectorXd& p) const {
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      const LivePoint& a = r_.points[i];
-      double p_n = 0;
-      if (a.normal >= 0) {
-        double& n = p[a.normal];
-        n = stands_[i].normal == At::kLower   ? a.lower
-            : stands_[i].normal == At::kUpper ? a.upper
-                                              : std::clamp(n, a.lower, a.upper);
-        p_n = n;
-      }
-      if (a.tangent < 0) continue;
-      const double b = std::max(0.0, a.bound(p_n));
-      double& p_t = p[a.tangent];
-      p_t = stands_[i].tangent == At::kLower   ? -b
-            : stands_[i].tangent == At::kUpper ? b
-            : stands_[i].tangent == At::kNone  ? 0
-                                               : std::clamp(p_t, -b, b);
-    }
-  }
-
-  Eigen::VectorXd impulses() const { return line_.col(0); }  // at t = 0
-  int changes() const { return changes_; }
-
- private:
-  void start_tangent(const LivePoint& a, double p_n, double e_t, Eigen::VectorXd& p, Stands& s) {
-    if (a.tangent < 0) return;
-    const double b = a.bound(p_n);
-    double& p_t = p[a.tangent];
-    const double trial = p_t - e_t;
-    if (b <= 0) {
-      s.tangent = At::kNone, p_t = 0;
-    } else if (trial >= b || trial <= -b) {
-      s.tangent = trial > 0 ? At::kUpper : At::kLower, p_t = trial > 0 ? b : -b;
-    } else {
-      s.tangent = At::kFree, p_t = std::clamp(p_t, -0.99 * b, 0.99 * b);
-    }
-  }
-
-  void begin_at(const Eigen::VectorXd& p) {
-    const Eigen::VectorXd e = r_.C * p + q_;
-    d_ = Eigen::VectorXd::Zero(size_);
-    // e >= 0 asked of a row: what is missing, and a little more
-    const auto lift = [&](Index i, double sign) {
-      const double over = sign * e[i], more = 1e-9 * scale_ * apart_[i];
-      if (over < more) d_[i] = sign * (more - over + 0.1 * apart_[i] * std::abs(over));
-    };
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      const LivePoint& a = r_.points[i];
-      if (a.normal >= 0) {
-        if (stands_[i].normal == At::kFree) d_[a.normal] = -e[a.normal];
-        if (stands_[i].normal == At::kLower) lift(a.normal, 1);
-        if (stands_[i].normal == At::kUpper) lift(a.normal, -1);
-      }
-      if (a.tangent >= 0) {
-        if (stands_[i].tangent == At::kFree) d_[a.tangent] = -e[a.tangent];
-        if (stands_[i].tangent == At::kLower) lift(a.tangent, 1);
-        if (stands_[i].tangent == At::kUpper) lift(a.tangent, -1);
-      }
-    }
-  }
-
-  // Row i of the equations A p = r0 + t r1 where the rows of its point stand.
-  struct Equation {
-    bool residual = false;  // e = 0
-    int other = -1;         // else p_i + share p_other = value
-    double share = 0, value = 0;
-  };
-  Equation normal_equation(size_t i) const {
-    const LivePoint& a = r_.points[i];
-    if (stands_[i].normal == At::kFree) return {.residual = true};
-    return {.value = stands_[i].normal == At::kLower ? a.lower : a.upper};
-  }
-  Equation tangent_equation(size_t i) const {
-    const LivePoint& a = r_.points[i];
-    if (stands_[i].tangent == At::kFree) return {.residual = true};
-    if (stands_[i].tangent == At::kNone) return {};
-    const double sign = stands_[i].tangent == At::kUpper ? 1 : -1;
-    return {.other = a.normal, .share = -sign * a.friction, .value = sign * a.cohesion};
-  }
-  template <class F>
-  void for_equations(const F& f) const {
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      if (r_.points[i].normal >= 0) f(r_.points[i].normal, normal_equation(i));
-      if (r_.points[i].tangent >= 0) f(r_.points[i].tangent, tangent_equation(i));
-    }
-  }
-  void set_right(Index row, const Equation& e) {
-    right_(row, 0) = e.residual ? -q_[row] : e.value;
-    right_(row, 1) = e.residual ? -d_[row] : 0;
-  }
-
-  // The inverse, and all that hangs on it, from nothing but the states.
-  void refresh() {
-    right_.resize(size_, 2);
-    for_equations([&](Index row, const Equation& e) { set_right(row, e); });
-    inverse_ = Eigen::PartialPivLU<Eigen::MatrixXd>(matrix()).inverse();
-    fresh_ = 0;
-    find_line();
-  }
-
-  // The solution of a set is a line in t.
-  void find_line() {
-    line_.resize(size_, 2), residual_.resize(size_, 2);
-    for (int k = 0; k < 2; ++k) line_.col(k).noalias() = inverse_ * right_.col(k);
-    find_residual();
-    correct_line();
-  }
-  void find_residual() {
-    for (int k = 0; k < 2; ++k) {
-      residual_.col(k) = k == 0 ? q_ : d_;
-      residual_.col(k).noalias() += r_.C * line_.col(k);
-    }
-    measure_line();
-  }
-  // What the inverse has lost in many changes.
-  void correct_line() {
-    Eigen::MatrixX2d left(size_, 2);
-    for_equations([&](Index row, const Equation& e) {
-      left.row(row) = residual_.row(row);
-      if (!e.residual) left.row(row) = line_.row(row) - right_.row(row);
-      if (!e.residual && e.other >= 0) left.row(row) += e.share * line_.row(e.other);
-    });
-    for (int k = 0; k < 2; ++k) line_.col(k).noalias() -= inverse_ * left.col(k);
-    find_residual();
-  }
-  void measure_line() {
-    drift_ = 0;
-    for_equations([&](Index row, const Equation& e) {
-      if (e.residual) drift_ = std::max({drift_, std::abs(residual_(row, 0)), std::abs(residual_(row, 1))});
-    });
-    fall_ = std::max(line_.col(1).lpNorm<Eigen::Infinity>(), residual_.col(1).lpNorm<Eigen::Infinity>());
-  }
-
-  // Another equation in a row: the solution moves along the column of the inverse.
-  void change(Index row, const Equation& e) {
-    const Eigen::VectorXd column = inverse_.col(row), pushed = r_.C * column;
-    Eigen::RowVectorXd w;
-    double rate = 0;
-    Eigen::RowVector2d left;
-    if (e.residual) {
-      w.noalias() = r_.C.col(row).transpose() * inverse_;
-      rate = pushed[row], left = -residual_.row(row);
-    } else {
-      w = inverse_.row(row), rate = column[row], left = -line_.row(row);
-      left[0] += e.value;
-      if (e.other >= 0) {
-        w += e.share * inverse_.row(e.other), rate += e.share * column[e.other];
-        left -= e.share * line_.row(e.other);
-      }
-    }
-    w[row] -= 1;
-    set_right(row, e);
-    for (int k = 0; k < 2; ++k) {
-      line_.col(k) += left[k] / rate * column;
-      residual_.col(k) += left[k] / rate * pushed;
-    }
-    w /= rate;
-    inverse_.noalias() -= column * w;
-    ++fresh_, ++changes_;
-  }
-
-  double at(const Eigen::MatrixX2d& line, Index row, double t) const {
-    return line(row, 0) + t * line(row, 1);
-  }
-
-  // The slack that is the first to reach zero; of those that are about equal the fastest, which is the best known.
-  Event first_event(double t, int sense) const {
-    std::vector<Event> all;
-    const auto add = [&](size_t i, Event::Kind kind, double slack, double rate) {
-      if (sense * rate < -kFlat * fall_)
-        all.push_back({static_cast<int>(i), kind, std::max(slack, 0.0), sense * rate});
-    };
-    for (size_t i = 0; i < stands_.size(); ++i) {
-      const LivePoint& a = r_.points[i];
-      const Stands& s = stands_[i];
-      double p_n = 0, dp_n = 0;
-      if (a.normal >= 0) {
-        p_n = at(line_, a.normal, t), dp_n = line_(a.normal, 1);
-        const double e = at(residual_, a.normal, t), de = residual_(a.normal, 1);
-        if (s.normal == At::kLower && !held_) add(i, Event::kLeave, e, de);
-        if (s.normal == At::kUpper && !held_) add(i, Event::kLeave, -e, -de);
-        if (s.normal == At::kFree && std::isfinite(a.lower)) add(i, Event::kLower, p_n - a.lower, dp_n);
-        if (s.normal == At::kFree && std::isfinite(a.upper)) add(i, Event::kUpper, a.upper - p_n, -dp_n);
-      }
-      if (a.tangent < 0) continue;
-      const double b = a.bound(p_n), db = a.friction * dp_n;
-      const double p_t = at(line_, a.tangent, t), dp_t = line_(a.tangent, 1);
-      const double e = at(residual_, a.tangent, t), de = residual_(a.tangent, 1);
-      const bool moving = s.normal == At::kFree && a.normal >= 0 && a.friction > 0;
-      // a contact without cohesion loses its bounds as it opens
-      const bool apex = moving && !(a.bound(a.lower) >= 0);
-      if (s.tangent == At::kFree)
-        add(i, Event::kPlus, b - p_t, db - dp_t), add(i, Event::kMinus, b + p_t, db + dp_t);
-      if (s.tangent == At::kUpper) add(i, Event::kStick, -e, -de);
-      if (s.tangent == At::kLower) add(i, Event::kStick, e, de);
-      if (apex && s.tangent != At::kNone && s.tangent != At::kFree) add(i, Event::kVanish, b, db);
-      if (moving && s.tangent == At::kNone) add(i, Event::kAppear, -b, -db);
-    }
-    double last = std::numeric_limits<double>::infinity();
-    for (const Event& e : all) last = std::min(last, (e.slack + kZero * scale_) / -e.rate);
-    Event best;
-    for (const Event& e : all)
-      if (e.slack / -e.rate <= last && (best.point < 0 || e.rate < best.rate)) best = e;
-    return best;
-  }
-
-  // Goes over into the next set of rows; returns by what the slack behind rises with t.
-  double pass(const Event& event, double t) {
-    const auto i = static_cast<size_t>(event.point);
-    const LivePoint& a = r_.points[i];
-    Stands& s = stands_[i];
-    const Stands before = s;
-    const double e_t = a.tangent < 0 ? 0 : at(residual_, a.tangent, t);
-    switch (event.kind) {
-      case Event::kLower:
-      case Event::kUpper:
-        s.normal = event.kind == Event::kLower ? At::kLower : At::kUpper;
-        if (a.tangent >= 0 && a.bound(event.kind == Event::kLower ? a.lower : a.upper) <= 0)
-          s.tangent = At::kNone;
-        break;
-      case Event::kLeave:
-        s.normal = At::kFree;
-        if (a.tangent >= 0 && s.tangent == At::kNone && a.friction > 0 &&
-            a.bound(before.normal == At::kLower ? a.lower : a.upper) >= 0)
-          s.tangent = e_t > 0 ? At::kLower : At::kUpper;
-        break;
-      case Event::kPlus:
-        s.tangent = At::kUpper;
-        break;
-      case Event::kMinus:
-        s.tangent = At::kLower;
-        break;
-      case Event::kStick:
-        s.tangent = At::kFree;
-        break;
-      case Event::kVanish:
-        s.tangent = At::kNone;
-        break;
-      case Event::kAppear:
-        s.tangent = e_t > 0 ? At::kLower : At::kUpper;
-        break;
-    }
-    if (s.normal != before.normal) change(a.normal, normal_equation(i));
-    if (s.tangent != before.tangent) change(a.tangent, tangent_equation(i));
-    measure_line();
-    if (!(drift_ < kDrift * scale_)) correct_line();
-    if (fresh_ > kFresh || (fresh_ > kSoonest && !(drift_ < kDrift * scale_))) refresh();
-    const auto slope = [&](const Eigen::MatrixX2d& line, int row) { return line(row, 1); };
-    switch (event.kind) {
-      case Event::kLower:
-        return slope(residual_, a.normal);
-      case Event::kUpper:
-        return -slope(residual_, a.normal);
-      case Event::kLeave:
-        return before.normal == At::kLower ? slope(line_, a.normal) : -slope(line_, a.normal);
-      case Event::kPlus:
-        return -slope(residual_, a.tangent);
-      case Event::kMinus:
-        return slope(residual_, a.tangent);
-      case Event::kStick: {
-        const double db = a.normal < 0 ? 0 : a.friction * slope(line_, a.normal);
-        return before.tangent == At::kUpper ? db - slope(line_, a.tangent) : db + slope(line_, a.tangent);
-      }
-      case Event::kVanish:
-        return -slope(line_, a.normal);
-      case Event::kAppear:
-        return slope(line_, a.normal);
-    }
-    return 0;
-  }
-
-  const Reduced& r_;
-  Index size_;
-  std::vector<Stands> stands_;
-  Eigen::VectorXd q_, d_;
-  Eigen::VectorXd apart_;
-  double scale_ = 1, fall_ = 0, drift_ = 0;
-  Eigen::MatrixXd inverse_;
-  Eigen::MatrixX2d right_, line_, residual_;  // [of t^0, of t^1]
-  bool held_ = false;
-  int fresh_ = 0, changes_ = 0;
-};
+// Most changes of a way by its rows: from the impulses known, from all faces apart.
+constexpr double kFewChanges = 0.25, kMostChanges = 2;
 
 // The rows of an island: those that only tie are eliminated, those that may reach a bound stay.
 class Island {
@@ -523,7 +62,7 @@ class Island {
     for (int n = 0; n < kMostCentres && !(least <= enough); ++n) {
       Eigen::VectorXd trial = p;
       const bool there = n == 0 ? begin(centre, trial, changes)
-                                : by_path(kKnown, kSomeChanges, give, centre, &trial, changes);
+                                : by_path(kKnown, lemke::kSomeChanges, give, centre, &trial, changes);
       if (!there) break;
       found = true;
       Eigen::VectorXd plain = p;
@@ -543,7 +82,7 @@ class Island {
   bool by_path(Start start, double share, const Eigen::VectorXd& give, Eigen::VectorXd& centre,
                Eigen::VectorXd* p, int& changes) {
     reduced_.C.diagonal() = own_ + give;
-    Path path(reduced_, reduced_.q - give.cwiseProduct(centre), start);
+    lemke::Path path(reduced_, reduced_.q - give.cwiseProduct(centre), start);
     if (start == kKnown) path.start_from(centre);
     const bool there = (start == kKnown || path.start_apart(centre)) && path.follow(share);
     changes += path.changes();
@@ -558,10 +97,11 @@ class Island {
     if (by_path(kKnown, kFewChanges, give_, centre, &p, changes)) return true;
     Eigen::VectorXd by_steps = centre;
     double give = 1;
-    for (const LivePoint& a : reduced_.points) give = std::max(give, a.friction);
-    while (give > kGive && by_path(kKnown, kSomeChanges, give_.cwiseMax(give), by_steps, nullptr, changes))
+    for (const lemke::Point& a : reduced_.points) give = std::max(give, a.friction);
+    while (give > kGive &&
+           by_path(kKnown, lemke::kSomeChanges, give_.cwiseMax(give), by_steps, nullptr, changes))
       give *= kLess;
-    if (give <= kGive && by_path(kKnown, kSomeChanges, give_, by_steps, &p, changes)) {
+    if (give <= kGive && by_path(kKnown, lemke::kSomeChanges, give_, by_steps, &p, changes)) {
       centre = by_steps;
       return true;
     }
@@ -579,7 +119,7 @@ class Island {
     const bool stuck[2] = {!(problem_.diagonal[2 * i] > 0), !(problem_.diagonal[2 * i + 1] > 0)};
     const bool bounded = rows.cohesion < std::numeric_limits<double>::infinity();
     const bool coupled = bounded && rows.friction > 0 && !stuck[1];
-    LivePoint a{
+    lemke::Point a{
         .lower = rows.lower, .upper = rows.upper, .friction = rows.friction, .cohesion = rows.cohesion};
     if (stuck[0] || rows.lower == rows.upper) {
       if (!stuck[0]) fixed_.emplace_back(2 * i, rows.lower);
@@ -671,7 +211,7 @@ class Island {
   }
 
   void scale_points() {
-    for (LivePoint& a : reduced_.points) {
+    for (lemke::Point& a : reduced_.points) {
       const double n = a.normal < 0 ? 1 : share_[a.normal], t = a.tangent < 0 ? 1 : share_[a.tangent];
       a.lower /= n, a.upper /= n, a.friction *= n / t, a.cohesion /= t;
     }
@@ -691,7 +231,7 @@ class Island {
   }
 
   // The impulses of the last set of rows, of the rows as they are.
-  void finish(const Path& path, Eigen::VectorXd& p) const {
+  void finish(const lemke::Path& path, Eigen::VectorXd& p) const {
     const Eigen::PartialPivLU<Eigen::MatrixXd> factor(path.matrix());
     Eigen::VectorXd live = path.impulses(), best;
     double least = std::numeric_limits<double>::infinity();
@@ -728,7 +268,7 @@ class Island {
   Eigen::VectorXd share_;  // of the live rows: 1 / sqrt(Wii)
   ColumnMatrix between_;   // ties by live rows, scaled
   SymmetricFactor factor_;
-  Reduced reduced_;
+  lemke::Reduced reduced_;
 };
 
 // The worst point of an island.

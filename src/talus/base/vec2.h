@@ -60,6 +60,8 @@ inline double det(const Mat2& a) { return a.xx * a.yy - a.xy * a.yx; }
 inline double contract(const Mat2& a, const Mat2& b) {
   return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
 }
+/// Of all entries (Frobenius): no vector becomes longer than by this factor.
+inline double norm(const Mat2& a) { return std::sqrt(contract(a, a)); }
 /// a b^T
 inline Mat2 outer(Vec2 a, Vec2 b) { return {a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y}; }
 /// @pre det(a) != 0

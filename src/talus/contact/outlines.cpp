@@ -271,6 +271,8 @@ Outlines build_outlines(const Model& model, const Layout& layout, const BlockSet
       out.corner.insert(out.corner.end(), part.corner.begin(), part.corner.end());
       out.side.insert(out.side.end(), part.side.begin(), part.side.end());
       out.corner_begin.push_back(static_cast<int>(out.corner.size()));
+      out.plain.push_back(std::all_of(part.side.begin(), part.side.end(),
+                                      [](const PartSide& s) { return s.edge >= 0 && s.face < 0; }));
     }
     out.part_begin.push_back(static_cast<int>(out.corner_begin.size()) - 1);
   }

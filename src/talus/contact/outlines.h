@@ -20,6 +20,7 @@ struct Outlines {
   std::vector<int> corner_begin;  // [n_parts + 1] of each part
   std::vector<Vec2> corner;       // [n_corners] reference arms, counter-clockwise [m]
   std::vector<PartSide> side;     // [n_corners]
+  std::vector<char> plain;        // [n_parts] whether no side of the part is a cut or tied
   std::vector<std::pair<int, int>>
       closed;  // pairs of blocks between which the ground has closed a joint, sorted
 

@@ -32,45 +32,47 @@ void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
 
 }  // namespace
 
-// How far the nearest corner of the other part is before a side; less than `least`, which one corner tells: -kAll.
-double PartsMeeting::gap_before(bool of_b, size_t side, double least) const {
+// How far the nearest corner of the other part is before a side. No corner ends the loop: what a wrong guess of a branch costs
+// is more than all of it.
+double PartsMeeting::gap_before(bool of_b, size_t side) const {
   const PartNow& own = part(of_b);
   const Vec2 along = own.along[side], from = of_b ? own.corner[side] + shift_ : own.corner[side] - shift_;
   double gap = kAll;
-  for (const Vec2 x : part(!of_b).corner) {
-    gap = std::min(gap, -cross(along, x - from));
-    if (gap < least) return -kAll;
-  }
+  for (const Vec2 x : part(!of_b).corner) gap = std::min(gap, -cross(along, x - from));
   return gap;
 }
 
-// Convex parts overlap unless a side of one has all of the other before it.
-void PartsMeeting::find_ways(double margin, double rounding, int first) {
-  bool apart = false, blocked = false;
+// Convex parts overlap unless a side of one has all of the other before it. What is behind the widest way out by more than
+// the step can change is no way.
+void PartsMeeting::find_ways(double margin, double rounding) {
   ways_.clear();
   met_.kind = PartsMet::kFar;
-  const auto is_side = [](int way, size_t sides) { return way > 0 && static_cast<size_t>(way) <= sides; };
+  const size_t nb = b_.size(), n = nb + a_.size();
+  side_gap_.resize(n), near_side_.resize(n);
   double widest = -kAll;  // of ways out
-  const auto see = [&](bool of_b, size_t side) {
-    const bool out = part(of_b).role_of(side) == SideRole::kOut;
-    const double gap = gap_before(of_b, side, out ? widest - behind_ : std::min(0.0, widest - behind_));
-    if (out) widest = std::max(widest, gap);
-    return gap;
-  };
-  if (is_side(first, b_.size())) see(true, static_cast<size_t>(first) - 1);
-  if (is_side(-first, a_.size())) see(false, static_cast<size_t>(-first) - 1);
-  for (const bool of_b : {true, false})
-    for (size_t j = 0; j < part(of_b).size(); ++j) {
-      const double gap = see(of_b, j);
-      if (gap > margin) return;
-      if (gap == -kAll) continue;
-      const SideRole role = part(of_b).role_of(j);
-      if (role != SideRole::kCut) ways_.push_back({of_b, j, gap});
-      if (role == SideRole::kOut)
-        apart = apart || gap >= -rounding;
-      else
-        blocked = blocked || gap > 0;
-    }
+  for (size_t k = 0; k < n; ++k) {
+    const bool of_b = k < nb;
+    const size_t side = of_b ? k : k - nb;
+    const double gap = side_gap_[k] = gap_before(of_b, side);
+    if (gap > margin) return;
+    if (part(of_b).role_of(side) == SideRole::kOut) widest = std::max(widest, gap);
+  }
+  size_t near = 0;
+  for (size_t k = 0; k < n; ++k)
+    near_side_[near] = k, near += static_cast<size_t>(side_gap_[k] >= std::min(0.0, widest - behind_));
+  bool apart = false, blocked = false;
+  for (size_t i = 0; i < near; ++i) {
+    const bool of_b = near_side_[i] < nb;
+    const size_t side = of_b ? near_side_[i] : near_side_[i] - nb;
+    const double gap = side_gap_[near_side_[i]];
+    const SideRole role = part(of_b).role_of(side);
+    if (role == SideRole::kOut && gap < widest - behind_) continue;
+    if (role != SideRole::kCut) ways_.push_back({of_b, side, gap});
+    if (role == SideRole::kOut)
+      apart = apart || gap >= -rounding;
+    else
+      blocked = blocked || gap > 0;
+  }
   if (!blocked && !ways_.empty()) met_.kind = apart ? PartsMet::kApart : PartsMet::kOverlap;
 }
 
@@ -153,9 +155,8 @@ double PartsMeeting::then_before(const Way& w) const {
   double least = kAll;
   for (const Vec2 x : part(!w.of_b).corner) {
     const Vec2 seen = w.of_b ? x - shift_ : x + shift_;  // from the origin of the part with the side
-    const double now = dot(out, seen - from);
-    if (now - w.gap > behind_) continue;
-    least = std::min(least, dot(out, then_at(w.of_b, seen) - from));
+    const double now = dot(out, seen - from), then = dot(out, then_at(w.of_b, seen) - from);
+    least = std::min(least, now - w.gap > behind_ ? kAll : then);
   }
   return least;
 }
@@ -418,7 +419,7 @@ const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shif
   if (is_strip_)
     met_.kind = PartsMet::kOverlap;
   else
-    find_ways(margin, rounding, first.way);
+    find_ways(margin, rounding);
   return met_;
 }
 
@@ -468,22 +469,19 @@ void PartsMeeting::see_face(bool of_b) {
   const PartNow& own = part(of_b);
   const Vec2 n = met_.normal, t = turn_right(n);
   const size_t count = own.size();
-  seen_.clear();
+  seen_.resize(count);
   size_t first = 0, last = 0;
   // of corners as far along, the one nearer to the other part: along the tangent a's face goes on counter-clockwise,
   // b's comes back
   const double towards = of_b ? -1 : 1;
-  const auto before = [&](const Seen& x, const Seen& y) {
-    return x.s < y.s || (x.s == y.s && towards * x.n < towards * y.n);
-  };
-  const auto after = [&](const Seen& x, const Seen& y) {
-    return x.s > y.s || (x.s == y.s && towards * x.n < towards * y.n);
-  };
+  const auto nearer = [&](const Seen& x, const Seen& y) { return towards * x.n < towards * y.n; };
+  Seen low{kAll, 0}, high{-kAll, 0};
   for (size_t k = 0; k < count; ++k) {
-    const Vec2 x = corner(of_b, k);
-    seen_.push_back({dot(t, x), dot(n, x)});
-    if (before(seen_[k], seen_[first])) first = k;
-    if (after(seen_[k], seen_[last])) last = k;
+    const Vec2 place = corner(of_b, k);
+    const Seen x{dot(t, place), dot(n, place)};
+    if (x.s < low.s || (x.s == low.s && nearer(x, low))) low = x, first = k;
+    if (x.s > high.s || (x.s == high.s && nearer(x, high))) high = x, last = k;
+    seen_[k] = x;
   }
   std::vector<Seen>& face = face_[of_b];
   face.clear();

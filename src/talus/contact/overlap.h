@@ -135,8 +135,8 @@ class PartsMeeting {
     int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
   };
 
-  void find_ways(double margin, double rounding, int first);
-  double gap_before(bool of_b, size_t side, double least) const;
+  void find_ways(double margin, double rounding);
+  double gap_before(bool of_b, size_t side) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {
@@ -173,6 +173,8 @@ class PartsMeeting {
 
   PartNow a_, b_;
   Vec2 shift_;
+  std::vector<double> side_gap_;   // before each side, those of b first [m]
+  std::vector<size_t> near_side_;  // which of them are not too far behind
   std::vector<Way> ways_;
   Polygon region_, bearing_;  // the overlap; the corners of what of it bears
   mutable Polygon work_;

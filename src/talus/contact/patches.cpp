@@ -61,27 +61,24 @@ class PairSearch {
 
   double approach_speed(size_t a, size_t b) const {
     const std::vector<BlockRate>& rate = ahead_.before;
-    return norm(rate[a].a - rate[b].a) + turning_speed(w_.blocks, rate, a) +
-           turning_speed(w_.blocks, rate, b);
+    return norm(rate[a].a - rate[b].a) + search_.now_[a].turning + search_.now_[b].turning;
   }
 
   // By how much a way must be behind another to stay so in this step: twice what any place of one block moves at most as the
   // other one sees it.
-  double behind(const PartMotion& of_a, const PartMotion& of_b, Vec2 shift) const {
-    const auto size = [](const Mat2& m) { return std::sqrt(contract(m, m)); };
-    const auto radius = [&](int block) {
-      const auto k = static_cast<size_t>(block);
-      return size(kIdentity + state_.strain_part[k]) * w_.blocks.radius[k];
-    };
-    const double across = norm(shift) + radius(pair_->a) + radius(pair_->b);
-    return 2 * (norm(of_a.way - of_b.way) + (size(of_a.turn) + size(of_b.turn)) * across) + kLevel * size_;
+  double behind(const std::array<PartMotion, 2>& of, Vec2 shift) const {
+    const double across = norm(shift) + search_.now_[static_cast<size_t>(pair_->a)].reach +
+                          search_.now_[static_cast<size_t>(pair_->b)].reach;
+    return 2 * (norm(of[0].way - of[1].way) + (norm(of[0].turn) + norm(of[1].turn)) * across) +
+           kLevel * size_;
   }
 
+  std::array<PartMotion, 2> motions() const { return {motion(pair_->a), motion(pair_->b)}; }
   PartMotion motion(int block) const {
     const auto k = static_cast<size_t>(block);
     const BlockRate& v = ahead_.before[k];
     const bool deforms = w_.blocks.kind[k] == BlockKind::kDeformable;  // G acts on the reference arm
-    return {ahead_.clock.dt * v.a, ahead_.clock.dt * (deforms ? v.G * search_.back_[k] : v.G)};
+    return {ahead_.clock.dt * v.a, ahead_.clock.dt * (deforms ? v.G * search_.now_[k].back : v.G)};
   }
 
   // On block a [N].
@@ -99,7 +96,7 @@ class PairSearch {
     const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
                n = static_cast<size_t>(o.corners_of(part));
     roles.clear();
-    for (size_t k = 0; k < n; ++k) {
+    for (size_t k = 0; k < n && !o.plain[static_cast<size_t>(part)]; ++k) {
       const PartSide& side = o.side[begin + k];
       if (side.edge >= 0 && side.face < 0) continue;
       if (side.edge >= 0 && state_.face[static_cast<size_t>(side.face)].broken) continue;
@@ -156,13 +153,16 @@ class PairSearch {
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
     const bool measured = elastic_ && before && before->overlaps;
     LookFirst first{.way = before ? before->way : 0, .strip = measured};
-    if (!measured) first.behind = behind(motion(pair_->a), motion(pair_->b), shift);
+    std::array<PartMotion, 2> moves;
+    if (!measured) moves = motions(), first.behind = behind(moves, shift);
     const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, first);
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
-    if (met.kind == PartsMet::kApart || !elastic_)
-      meeting_.choose_way(motion(pair_->a), motion(pair_->b),
+    if (met.kind == PartsMet::kApart || !elastic_) {
+      if (measured) moves = motions();
+      meeting_.choose_way(moves[0], moves[1],
                           {before ? before->way : 0, kLevel * size_, before ? force_of(*before) : Vec2{}});
+    }
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     const bool overlaps = met.kind == PartsMet::kOverlap;
@@ -265,8 +265,8 @@ class PairSearch {
     patch.closure = {met.closure[0], met.closure[1]};
     const std::array<Vec2, 2> x{met.begin, met.end};
     for (size_t end = 0; end < 2; ++end)
-      patch.arm_a[end] = search_.back_[a] * x[end],
-      patch.arm_b[end] = search_.back_[b] * (x[end] - met.across[end] * met.normal - shift);
+      patch.arm_a[end] = search_.now_[a].back * x[end],
+      patch.arm_b[end] = search_.now_[b].back * (x[end] - met.across[end] * met.normal - shift);
   }
 
   // Where the two blocks have carried an end of a known chord: its place is half way between, somewhere between at least.
@@ -473,14 +473,17 @@ class PairSearch {
 };
 
 // Parts as they lie, from the centroid of their block.
-void PatchSearch::place_parts(const PatchWorld& world, const Workers& workers, const State& state) {
+void PatchSearch::place_parts(const PatchWorld& world, const std::vector<BlockRate>& before,
+                              const Workers& workers, const State& state) {
   const Outlines& o = world.outlines;
   corner_.resize(o.corner.size()), along_.resize(o.corner.size());
-  back_.resize(state.strain_part.size());
+  now_.resize(state.strain_part.size());
   workers.for_chunks(static_cast<size_t>(world.blocks.count), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Mat2& h = state.strain_part[i];
-      back_[i] = inverse(kIdentity + h);
+      const Mat2 turned = kIdentity + h;
+      now_[i] = {inverse(turned), norm(turned) * world.blocks.radius[i],
+                 turning_speed(world.blocks, before, i)};
       for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p) {
         const auto first = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p)]),
                    last = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p) + 1]);
@@ -497,7 +500,7 @@ void PatchSearch::place_parts(const PatchWorld& world, const Workers& workers, c
 int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                         State& state) {
   TALUS_ASSERT(world.outlines.part_begin.size() == static_cast<size_t>(world.blocks.count) + 1);
-  place_parts(world, workers, state);
+  place_parts(world, ahead.before, workers, state);
   const size_t n = state.pairs.size();
   changed_.resize((n + kPatchGrain - 1) / kPatchGrain);
   workers.for_chunks(n, kPatchGrain, [&](size_t begin, size_t end) {

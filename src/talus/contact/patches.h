@@ -31,7 +31,12 @@ class PatchSearch {
 
  private:
   std::vector<Vec2> corner_, along_;  // of all parts as they lie, from each block's centroid
-  std::vector<Mat2> back_;            // [blocks] F inverted
+  struct BlockNow {
+    Mat2 back;       // F inverted
+    double reach;    // from its centroid, at most [m]
+    double turning;  // speed of its corners beside that of the centroid, at most [m/s]
+  };
+  std::vector<BlockNow> now_;  // [blocks]
   struct Changed {
     std::vector<std::pair<size_t, int>> pair;  // and how many it has now
     std::vector<Patch> patch;
@@ -39,7 +44,8 @@ class PatchSearch {
   };
   std::vector<Changed> changed_;
 
-  void place_parts(const PatchWorld& world, const Workers& workers, const State& state);
+  void place_parts(const PatchWorld& world, const std::vector<BlockRate>& before, const Workers& workers,
+                   const State& state);
   void put_together(State& state);
   friend class PairSearch;
 };

@@ -15,6 +15,10 @@ class LivePage : public Observer {
   /// @param page  of the report, without data
   LivePage(Observer& next, std::filesystem::path folder, std::string page);
 
+  void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
+                         const std::string& why) override {
+    next_.stage_is_followed(scene, stage, plan, why);
+  }
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     next_.stage_begins(scene, stage, plan);
   }

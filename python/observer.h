@@ -18,6 +18,10 @@ class PyObserver : public Observer {
     displacement_ = s.displacement.data(), strain_part_ = s.strain_part.data(), rate_ = s.rate.data();
   }
 
+  void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
+                         const std::string& why) override {
+    if (next_) next_->stage_is_followed(scene, stage, plan, why);
+  }
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     if (next_) next_->stage_begins(scene, stage, plan);
   }

@@ -54,11 +54,13 @@ window = "5 ms"
 [[stage]]
 name = "rest"
 kind = "static"
+integration = "dynamic"
 duration = "1 s"
 unbalanced = 1e-3
 [[stage]]
 name = "dig"
 kind = "static"
+integration = "dynamic"
 duration = "1 s"
 unbalanced = 1e-3
 excavate = ["prop"]

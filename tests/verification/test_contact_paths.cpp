@@ -269,7 +269,7 @@ TEST_SUITE("optimised") {
 }
 
 TEST_SUITE("long: paths") {
-  TEST_CASE("contact paths: forces of patches do not jump along many paths") { patches_are_continuous(400); }
+  TEST_CASE("contact paths: forces of patches do not jump along many paths") { patches_are_continuous(2000); }
 }
 
 }  // namespace test_contact_paths

@@ -190,6 +190,7 @@ struct RestWatch {
   int stuck = 0;       // looks in a row that stall or, at the sharpest, are without any progress
   double length = 0;   // of the next step of a stage from rest [s]
   int whole = 0;       // such steps in a row that were not halved
+  double gone = 0;     // no block has gone further in them, as share of its size
 };
 
 /// What an implicit step leaves out of balance, and how it moved (of conventional DDA).

@@ -11,6 +11,10 @@ namespace talus {
 
 namespace {
 
+// Strain of rock under a stress that is foreseen whatever the loads: arches and beams of blocks press on their corners with
+// many times what weighs on a level joint, and there contacts give a hundredth of what the blocks do.
+constexpr double kRockStrain = 2e-3;
+
 double largest(const Signal& s, const Model& model) {
   if (s.history < 0) return std::abs(s.factor);
   double most = 0;
@@ -32,6 +36,7 @@ double principal(const Mat2& s) {
 struct Extent {
   double density = 0;        // largest [kg/m3]
   double impedance = 0;      // largest rho cp, of deformable blocks [Pa s/m]
+  double stiffness = 0;      // largest modulus of those in uniaxial strain [Pa]
   double along_gravity = 0;  // [m]
   double widest = 0;         // diagonal of the box around the blocks [m]
   double size = 0;           // of the median block [m]
@@ -49,8 +54,10 @@ Extent extent_of(const Model& model, const BlockSet& blocks) {
     const auto k = static_cast<size_t>(i);
     const double density = blocks.mass[k] / blocks.volume[k];
     e.density = std::max(e.density, density);
-    if (blocks.kind[k] == BlockKind::kDeformable)
+    if (blocks.kind[k] == BlockKind::kDeformable) {
       e.impedance = std::max(e.impedance, std::sqrt(density * blocks.moduli[k].c11));
+      e.stiffness = std::max(e.stiffness, blocks.moduli[k].c11);
+    }
     sizes.push_back(blocks.size[k]);
     for (int v = 0; v < blocks.vertex_count(i); ++v) {
       const Vec2 x = blocks.centroid[k] + blocks.corner({i, v});
@@ -83,6 +90,7 @@ ContactGive contact_give(const Model& model, const Layout& layout, const BlockSe
   };
   const Extent e = extent_of(model, blocks);
   take(e.density * norm(model.gravity) * e.along_gravity, "weight of the blocks");
+  take(kRockStrain * e.stiffness, "stiffness of the blocks");
   for (const Mat2& stress : initial_stresses(model, blocks)) take(principal(stress), "stress of the ground");
   for (const LoadInput& load : model.loads) {
     const double along_axes = std::hypot(largest(load.x, model), largest(load.y, model));

@@ -208,9 +208,13 @@ class PairSearch {
       if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
     if (soft)
       measure(met, before, patch), count_from_ground(lifted > 0, patch);
-    else if (!before || dot(before->normal, patch.normal) < kSameWay)
+    else if ((!before || dot(before->normal, patch.normal) < kSameWay) && !goes_out_at_once())
       for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
   }
+
+  // Whether a step leaves no overlap of hard blocks: where it ends at rest, what is pushed out has no speed. What is drawn
+  // with an overlap keeps it.
+  bool goes_out_at_once() const { return ahead_.clock.from_rest && state_.step > 0; }
 
   // Of the patches that two parts had the one nearest to a place, seen from block a.
   const Patch* known_near(int p, int q, Vec2 place) const {

@@ -203,6 +203,9 @@ struct SolverInput {
 enum class StageKind { kStatic, kDynamic };
 constexpr StageKind last_of(StageKind) { return StageKind::kDynamic; }
 
+/// Local damping of static stages that give none [-].
+inline constexpr double kStaticDamping = 0.8;
+
 struct StageInput {
   std::string name;
   StageKind kind = StageKind::kDynamic;
@@ -211,7 +214,9 @@ struct StageInput {
   double safety = 0.8;
   bool moment_clamp = false;
   bool from_rest = false;        // static: backward Euler, every step from rest (theory 4.23)
-  bool from_rest_auto = false;   // that where the model is large (set by build_scene)
+  bool from_rest_auto = false;   // that unless it says how blocks shall move (set by build_scene)
+  bool may_follow = false;       // what does not come to rest in steps from rest is followed by damped motion
+  bool follow_implicit = false;  // `implicit` of that
   bool implicit = false;         // block-implicit elasticity
   bool elasticity_auto = false;  // implicit where theory 4.9 asks for it (set by build_scene)
   double damping_mass = 0;       // [1/s]
@@ -227,6 +232,10 @@ struct StageInput {
   /// Makes it one of steps from rest, with what these ask for: a first step, no damping, tractions of excavated rock
   /// that go in shares.
   void go_from_rest();
+
+  /// Makes it one of damped motion, with the steps and the damping of a stage that says nothing of either.
+  /// @pre  may_follow
+  void go_by_motion();
 
   /// Share of the tractions of excavated rock that is gone `t` after the start; `before` without a
   /// relaxation.

@@ -50,7 +50,7 @@ class StageReader : private SectionReader {
     s.elasticity_auto = f.get<std::string>("elasticity") == "auto" && !f.given("safety") && !s.moment_clamp;
     s.damping_mass = f.get("damping_mass", 0.0);
     s.damping_stiffness = f.get("damping_stiffness", 0.0);
-    s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? 0.8 : 0.0);
+    s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? kStaticDamping : 0.0);
     s.unbalanced = f.get("unbalanced", s.unbalanced);
     s.excavate = f.get<std::vector<std::string>>("excavate");
     s.relaxation = f.get<std::vector<Vec2>>("relaxation");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 
@@ -18,6 +19,13 @@ void StageInput::go_from_rest() {
   if (std::isnan(time_step)) time_step = std::min(kFirst, duration);
   if (!excavate.empty() && relaxation.empty())
     relaxation = {{0, 0}, {std::min(kShares * time_step, duration), 1}};
+}
+
+void StageInput::go_by_motion() {
+  from_rest = may_follow = false;
+  implicit = follow_implicit;
+  damping_local = kStaticDamping;
+  time_step = std::numeric_limits<double>::quiet_NaN();
 }
 
 double StageInput::relaxed_at(double t, double before) const {

@@ -70,6 +70,18 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
   stage_step_ = 0;
 }
 
+void Progress::stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
+                                 const std::string& why) {
+  next_.stage_is_followed(scene, stage, plan, why);
+  finish();
+  say(out_, fmt::format("  {}: {}; followed by damped motion, {:g} s in at most {} steps of {:.4g} s\n",
+                        scene.model.stages[static_cast<size_t>(stage)].name, why,
+                        plan.dt * static_cast<double>(plan.steps), plan.steps, plan.dt));
+  std::fflush(out_);
+  stage_wall_ = last_shown_ = wall_now();
+  stage_step_ = 0;
+}
+
 void Progress::at(const Instant& instant) {
   next_.at(instant);
   worst_error_ = std::max(worst_error_, instant.report.error.worst);
@@ -161,8 +173,10 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
       out += fmt::format("  moment clamp    stage \"{}\": {} of {} blocks, up to {:.3g} times\n", s.name,
                          s.plan.clamped, scene.blocks.count, s.plan.largest_clamp);
     if (s.at_rest)
-      out += fmt::format("  at rest         stage \"{}\" after {} steps, unbalanced {:.1e}\n", s.name,
-                         s.steps, s.unbalanced);
+      out += fmt::format(
+          "  at rest         stage \"{}\" after {} steps{}, unbalanced {:.1e}\n", s.name, s.steps,
+          s.followed() ? fmt::format(" ({} from rest, then damped motion)", s.steps_from_rest) : "",
+          s.unbalanced);
   }
   if (r.broken_faces > 0)
     out += fmt::format(

@@ -16,6 +16,8 @@ class Progress : public Observer {
   Progress(Observer& next, std::FILE* out, bool terminal) : next_(next), out_(out), terminal_(terminal) {}
 
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override;
+  void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
+                         const std::string& why) override;
   void at(const Instant& instant) override;
   bool stop() override { return next_.stop(); }
   bool wants_state() override { return next_.wants_state(); }

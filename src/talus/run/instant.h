@@ -26,6 +26,8 @@ class Observer {
  public:
   virtual ~Observer() = default;
   virtual void stage_begins(const Scene&, int /*stage*/, const StagePlan&) {}
+  /// A stage goes on by damped motion, as its steps from rest found no balance.
+  virtual void stage_is_followed(const Scene&, int /*stage*/, const StagePlan&, const std::string& /*why*/) {}
   virtual void at(const Instant& instant) = 0;
   /// Shown the instant at which numerical trouble ends the run, after at() and before anything moved on.
   virtual void fails(const Instant& /*instant*/) {}

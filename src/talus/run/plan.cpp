@@ -122,88 +122,104 @@ double yields_more(const Scene& scene, const std::vector<StagePlan>& plans) {
   return std::max(kLeastYield, kYield / *middle * dt * dt / per_force);
 }
 
-std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
-  std::vector<StagePlan> plans;
-  std::optional<Scene> staged;
-  if (blocks_change(scene.model)) staged = scene;
-  for (const StageInput& stage : scene.model.stages) {
-    if (staged) change_scene(static_cast<int>(plans.size()), *staged);
-    const BlockSet& blocks = staged ? staged->blocks : scene.blocks;
-    const StableStep undamped = stable_step(blocks);
-    StableStep bound = undamped;
-    const std::string block_name = bound.block >= 0 ? blocks.name[static_cast<size_t>(bound.block)] : "";
-    // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
-    // theory 4.5
-    StagePlan plan;
-    plan.dt_undamped = undamped.dt / std::sqrt(1 + stage.damping_local);
-    // 4.5: 2/w (sqrt(1 + z^2) - z) with z = damping_stiffness w / 2
-    const double beta = stage.damping_stiffness;
-    bound.dt = beta > 0 && bound.block >= 0 ? std::hypot(beta, plan.dt_undamped) - beta : plan.dt_undamped;
-    plan.dt_bound = bound.dt;
-    plan.bound_block = bound.block;
-    const std::string path = "stage." + stage.name;
-    // the free field has a limit of its own where its elasticity is explicit
-    const ColumnStep column =
-        stage.kind == StageKind::kDynamic && !stage.implicit
-            ? stable_step(scene.boundaries.free_field, scene.model.inertia == Inertia::kLumped)
-            : ColumnStep{};
-    double wanted =
-        std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
-    if (scene.model.formulation == Formulation::kPenalty)
-      wanted = step_by_penalty(scene.model, blocks, stage, wanted);
-    else if (stage.implicit)
-      wanted = std::min(wanted, (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks));
-    if (!std::isnan(stage.time_step)) {
-      wanted = stage.time_step;
-    } else if (bound.block < 0) {
-      wanted = std::min(rigid_step(staged ? *staged : scene, stage), stage.safety * column.dt);
-      if (std::isinf(wanted)) {
-        findings.error(
-            stage.where, path + ".time_step",
-            "\"auto\" finds nothing in this model that sets a time: no deformable block, no gravity, "
-            "nothing that moves",
-            "give a time_step, for example \"0.1 ms\"");
-        wanted = stage.duration;
-      }
-    }
-    if (stage.duration / wanted > kMostSteps) {
-      findings.error(std::isnan(stage.time_step) ? stage.where : stage.where_step, path + ".time_step",
-                     fmt::format("{:.3g} s makes {:.3g} steps, more than {:g}", wanted,
-                                 stage.duration / wanted, kMostSteps),
-                     "is a unit missing?");
+namespace {
+
+StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& stage, Findings& findings) {
+  const BlockSet& blocks = staged.blocks;
+  const StableStep undamped = stable_step(blocks);
+  StableStep bound = undamped;
+  const std::string block_name = bound.block >= 0 ? blocks.name[static_cast<size_t>(bound.block)] : "";
+  // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
+  // theory 4.5
+  StagePlan plan;
+  plan.dt_undamped = undamped.dt / std::sqrt(1 + stage.damping_local);
+  // 4.5: 2/w (sqrt(1 + z^2) - z) with z = damping_stiffness w / 2
+  const double beta = stage.damping_stiffness;
+  bound.dt = beta > 0 && bound.block >= 0 ? std::hypot(beta, plan.dt_undamped) - beta : plan.dt_undamped;
+  plan.dt_bound = bound.dt;
+  plan.bound_block = bound.block;
+  const std::string path = "stage." + stage.name;
+  // the free field has a limit of its own where its elasticity is explicit
+  const ColumnStep column =
+      stage.kind == StageKind::kDynamic && !stage.implicit
+          ? stable_step(scene.boundaries.free_field, scene.model.inertia == Inertia::kLumped)
+          : ColumnStep{};
+  double wanted =
+      std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
+  if (scene.model.formulation == Formulation::kPenalty)
+    wanted = step_by_penalty(scene.model, blocks, stage, wanted);
+  else if (stage.implicit)
+    wanted = std::min(wanted, (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks));
+  if (!std::isnan(stage.time_step)) {
+    wanted = stage.time_step;
+  } else if (bound.block < 0) {
+    wanted = std::min(rigid_step(staged, stage), stage.safety * column.dt);
+    if (std::isinf(wanted)) {
+      findings.error(
+          stage.where, path + ".time_step",
+          "\"auto\" finds nothing in this model that sets a time: no deformable block, no gravity, "
+          "nothing that moves",
+          "give a time_step, for example \"0.1 ms\"");
       wanted = stage.duration;
     }
-    plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
-    plan.dt = stage.duration / static_cast<double>(plan.steps);
-    if (stage.from_rest) plan.steps *= kMostShortened;
-    if (stage.implicit) {
-      plan.dt_bound = plan.dt_undamped = std::numeric_limits<double>::infinity();
-      plan.bound_block = -1;
-    } else if (plan.dt >= bound.dt && stage.moment_clamp) {
-      const double clamp_dt = std::sqrt(plan.dt * (plan.dt + 2 * beta) * (1 + stage.damping_local));
-      if (clamp_dt > median_step(blocks)) {
-        findings.error(stage.where_step, path + ".time_step",
-                       fmt::format("{:.4g} s is above the stable limit of a block of median size, {:.4g} s: "
-                                   "the moment clamp would change the model, not its slivers",
-                                   plan.dt, median_step(blocks)),
-                       "use a smaller step");
-      }
-      BlockSet clamped = blocks;
-      clamp_moments(clamped, clamp_dt);
-      plan.clamp_dt = clamp_dt;
-      plan.clamped = clamped.clamped, plan.largest_clamp = clamped.largest_clamp;
-      if (plan.clamped > kWarnClampShare * scene.blocks.count)
-        findings.warning(stage.where_step, path + ".moment_clamp",
-                         fmt::format("clamps {} of {} blocks", plan.clamped, scene.blocks.count),
-                         "a smaller time_step clamps fewer");
-    } else if (plan.dt >= bound.dt) {
+  }
+  if (stage.duration / wanted > kMostSteps) {
+    findings.error(std::isnan(stage.time_step) ? stage.where : stage.where_step, path + ".time_step",
+                   fmt::format("{:.3g} s makes {:.3g} steps, more than {:g}", wanted, stage.duration / wanted,
+                               kMostSteps),
+                   "is a unit missing?");
+    wanted = stage.duration;
+  }
+  plan.steps = std::max<int64_t>(1, static_cast<int64_t>(std::ceil(stage.duration / wanted * (1 - 1e-12))));
+  plan.dt = stage.duration / static_cast<double>(plan.steps);
+  if (stage.from_rest) plan.steps *= kMostShortened;
+  if (stage.implicit) {
+    plan.dt_bound = plan.dt_undamped = std::numeric_limits<double>::infinity();
+    plan.bound_block = -1;
+  } else if (plan.dt >= bound.dt && stage.moment_clamp) {
+    const double clamp_dt = std::sqrt(plan.dt * (plan.dt + 2 * beta) * (1 + stage.damping_local));
+    if (clamp_dt > median_step(blocks)) {
       findings.error(stage.where_step, path + ".time_step",
-                     fmt::format("{:.4g} s is above the stable limit {:.4g} s, set by block \"{}\"", plan.dt,
-                                 bound.dt, block_name),
-                     "use \"auto\", a smaller step, elasticity = \"implicit\", or moment_clamp = true if a "
-                     "few slivers set the limit");
+                     fmt::format("{:.4g} s is above the stable limit of a block of median size, {:.4g} s: "
+                                 "the moment clamp would change the model, not its slivers",
+                                 plan.dt, median_step(blocks)),
+                     "use a smaller step");
     }
-    limit_by_column(scene, stage, column, plan, findings);
+    BlockSet clamped = blocks;
+    clamp_moments(clamped, clamp_dt);
+    plan.clamp_dt = clamp_dt;
+    plan.clamped = clamped.clamped, plan.largest_clamp = clamped.largest_clamp;
+    if (plan.clamped > kWarnClampShare * scene.blocks.count)
+      findings.warning(stage.where_step, path + ".moment_clamp",
+                       fmt::format("clamps {} of {} blocks", plan.clamped, scene.blocks.count),
+                       "a smaller time_step clamps fewer");
+  } else if (plan.dt >= bound.dt) {
+    findings.error(stage.where_step, path + ".time_step",
+                   fmt::format("{:.4g} s is above the stable limit {:.4g} s, set by block \"{}\"", plan.dt,
+                               bound.dt, block_name),
+                   "use \"auto\", a smaller step, elasticity = \"implicit\", or moment_clamp = true if a "
+                   "few slivers set the limit");
+  }
+  limit_by_column(scene, stage, column, plan, findings);
+  return plan;
+}
+
+}  // namespace
+
+std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
+  std::vector<StagePlan> plans;
+  std::optional<Scene> changed;
+  if (blocks_change(scene.model)) changed = scene;
+  for (const StageInput& stage : scene.model.stages) {
+    if (changed) change_scene(static_cast<int>(plans.size()), *changed);
+    const Scene& staged = changed ? *changed : scene;
+    StagePlan plan = plan_stage(scene, staged, stage, findings);
+    if (stage.may_follow) {
+      StageInput moving = stage;
+      moving.go_by_motion();
+      const StagePlan follow = plan_stage(scene, staged, moving, findings);
+      plan.dt_follow = follow.dt, plan.steps_follow = follow.steps, plan.bound_follow = follow.dt_bound;
+    }
     plans.push_back(plan);
   }
   return plans;

@@ -23,6 +23,10 @@ struct StagePlan {
   double clamp_dt = 0;     // undamped step that clamped blocks must allow [s]
   int clamped = 0;         // blocks whose moments are raised
   double largest_clamp = 1;
+  // of the damped motion that follows what does not come to rest in steps from rest; 0: none does
+  double dt_follow = 0;      // [s]
+  int64_t steps_follow = 0;  // at most
+  double bound_follow = 0;   // stable limit [s]
 
   bool operator==(const StagePlan&) const = default;
 };

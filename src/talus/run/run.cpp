@@ -49,6 +49,12 @@ constexpr int kStalls = 2, kMostStuck = 4;
 // rest.
 constexpr double kSolverShare = 0.02;
 
+// Steps from rest within which a stage finds its balance, if there is one near: those of 51,000 blocks took 89.
+constexpr int64_t kMostFromRest = 300;
+
+// How far blocks go in them, as share of their size, on the way to a balance that is near.
+constexpr double kFarFromRest = 0.5;
+
 }  // namespace
 
 class StagedRun::Runner {
@@ -85,7 +91,7 @@ class StagedRun::Runner {
         }
         const double close = 1e-6 * plans_[result_.stages.size() - 1].dt;  // sums of steps are not round
         if (taken >= pause.steps || state_.time >= pause.time - close) return true;
-        if (take_step() && result_.stages.back().steps < plans_[result_.stages.size() - 1].steps) continue;
+        if (take_step() && steps_of_plan() < plans_[result_.stages.size() - 1].steps) continue;
         end_stage();
         if (pause.stage_end && !result_.interrupted && result_.stages.size() < plans_.size()) return true;
       }
@@ -156,7 +162,9 @@ class StagedRun::Runner {
       state_.displacement_start = state_.displacement;
       state_.strain_part_start = state_.strain_part;
     }
-    result_.stages.push_back({stage.name, stage.kind, plan, 0, state_.time, state_.time, 0, false});
+    StageResult& out = result_.stages.emplace_back();
+    out.name = stage.name, out.kind = stage.kind, out.plan = plan;
+    out.begin = out.end = state_.time;
     enter_steps(index);
   }
 
@@ -183,6 +191,7 @@ class StagedRun::Runner {
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     settle_in(scene_.model.stages[static_cast<size_t>(index)]);
+    if (result_.stages.back().followed()) go_by_motion();
     if (!from.between) enter_steps(index);
   }
 
@@ -194,6 +203,55 @@ class StagedRun::Runner {
     from_rest_.emplace(scene_, work_, state_);
   }
 
+  // Steps of the present stage in the way of its plan: those from rest before are not among them.
+  int64_t steps_of_plan() const {
+    const StageResult& out = result_.stages.back();
+    return out.followed() ? out.steps - out.steps_from_rest : out.steps;
+  }
+
+  // Time of the present stage after so many steps of its plan [s].
+  double stage_time(int64_t steps) const {
+    const StageResult& out = result_.stages.back();
+    const double before = out.followed() ? out.followed_from - out.begin : 0;
+    return before + plans_[result_.stages.size() - 1].dt * static_cast<double>(steps);
+  }
+
+  // From the steps from rest of a stage to the damped motion that follows what they brought into no balance.
+  void follow_motion(const std::string& because) {
+    StageResult& out = result_.stages.back();
+    out.steps_from_rest = out.steps, out.followed_from = state_.time, out.followed_because = because;
+    state_.rest = {};
+    state_.largest_kinetic = 0;
+    std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
+    go_by_motion();
+    const int index = static_cast<int>(result_.stages.size()) - 1;
+    observer_.stage_is_followed(scene_, index, plans_[static_cast<size_t>(index)], because);
+  }
+
+  // The plan and the settings of that.
+  void go_by_motion() {
+    const size_t k = result_.stages.size() - 1;
+    StagePlan& plan = plans_[k];
+    scene_.model.stages[k].go_by_motion();
+    plan.dt = plan.dt_follow, plan.steps = plan.steps_follow;
+    plan.dt_bound = plan.dt_undamped = plan.bound_follow;
+    scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
+    settle_in(scene_.model.stages[k]);
+    advance_ = plan.dt;
+  }
+
+  // Whether steps from rest have said all they can say, and blocks are followed as they move. Tells why.
+  bool gives_up_rest(const StageInput& stage, const StageResult& out, std::string& because) const {
+    if (!stage.may_follow) return false;
+    if (out.steps >= kMostFromRest)
+      because = fmt::format("no balance in {} steps from rest", out.steps);
+    else if (state_.rest.gone > kFarFromRest)
+      because = fmt::format("no balance near: a block has gone {:.2g} times its size", state_.rest.gone);
+    else if (state_.time >= out.begin + stage.duration)
+      because = fmt::format("no balance in {:g} s of steps from rest", stage.duration);
+    return !because.empty();
+  }
+
   // Whether the stage goes on after a step more.
   bool take_step() {
     const int index = static_cast<int>(result_.stages.size()) - 1;
@@ -201,7 +259,8 @@ class StagedRun::Runner {
     const StageInput& stage = scene_.model.stages[k];
     const StagePlan& plan = plans_[k];
     StageResult& out = result_.stages.back();
-    const int64_t n = out.steps;
+    if (std::string because; gives_up_rest(stage, out, because)) follow_motion(because);
+    const int64_t n = steps_of_plan();
     if (n >= plan.steps) return false;
     if (memory_is_short()) throw std::bad_alloc();  // while there is some left to end in order
     if (stops()) {
@@ -210,17 +269,24 @@ class StagedRun::Runner {
     }
     if (stage.from_rest && state_.time >= out.begin + stage.duration) return false;
     settings_.sharper = state_.rest.sharper;
-    StepReport report = penalty_          ? penalty_->report(state_)
-                        : stage.from_rest ? from_rest_->kick(stage, out.begin, plan.dt, settings_, advance_)
-                                          : kick(scene_, settings_, plan.dt, work_, state_);
+    StepReport report;
+    if (penalty_) {
+      report = penalty_->report(state_);
+    } else if (stage.from_rest) {
+      const auto kicked = from_rest_->kick(stage, out.begin, plan.dt, settings_, advance_);
+      if (!kicked) return follow_motion(from_rest_->why_not()), true;
+      report = *kicked;
+    } else {
+      report = kick(scene_, settings_, plan.dt, work_, state_);
+    }
     if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance_ / plan.dt_bound);
-    show({scene_, state_, work_, report, plan, advance_, index, n == 0, false, n});
+    show({scene_, state_, work_, report, plan, advance_, index, out.steps == 0, false, n});
     go_on_or_fail(index, n, advance_, report);
     ++out.steps;
     if (stage.from_rest)
       from_rest_->lengthen(plan.dt, is_relaxed(stage, 0));
     else
-      state_.relaxed = stage.relaxed_at(plan.dt * static_cast<double>(n + 1), state_.relaxed);
+      state_.relaxed = stage.relaxed_at(stage_time(n + 1), state_.relaxed);
     out.unbalanced = report.unbalanced;
     last_ = report;
     state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
@@ -253,9 +319,8 @@ class StagedRun::Runner {
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
     // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-    const double end = settings_.from_rest
-                           ? state_.time + advance
-                           : result_.stages.back().begin + plan.dt * static_cast<double>(n + 1);
+    const double end =
+        settings_.from_rest ? state_.time + advance : result_.stages.back().begin + stage_time(n + 1);
     try {
       note(report, state_);
       if (penalty_)
@@ -472,8 +537,7 @@ class StagedRun::Runner {
 
   bool is_relaxed(const StageInput& stage, int64_t n) const {
     if (stage.from_rest) return stage.relaxation.empty() || state_.relaxed >= stage.relaxation.back().y;
-    return stage.relaxation.empty() ||
-           plans_[result_.stages.size() - 1].dt * static_cast<double>(n) >= stage.relaxation.back().x;
+    return stage.relaxation.empty() || stage_time(n) >= stage.relaxation.back().x;
   }
 
   // A stage without rest ends between two sound steps: the instant is shown like that of any end, with its pictures.
@@ -581,7 +645,7 @@ class StagedRun::Runner {
   }
 
   Scene& scene_;
-  const std::vector<StagePlan>& plans_;
+  std::vector<StagePlan> plans_;
   State& state_;
   Observer& observer_;
   BlockSet unclamped_;

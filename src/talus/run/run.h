@@ -19,6 +19,12 @@ struct StageResult {
   double begin = 0, end = 0;  // [s]
   double unbalanced = 0;      // at the end
   bool at_rest = false;       // static stages
+  // of a stage that did not come to rest in steps from rest: how many it took, when damped motion began [s], and why
+  int64_t steps_from_rest = 0;
+  double followed_from = 0;
+  std::string followed_because;  // "": it is not followed
+
+  bool followed() const { return !followed_because.empty(); }
 };
 
 struct RunResult {

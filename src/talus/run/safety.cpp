@@ -66,7 +66,10 @@ class Watch : public Observer {
 
   void at(const Instant& i) override {
     if (i.stage_start) start_ = i.state.displacement, begin_ = i.state.time, peak_ = 0;
-    const double elapsed = i.state.time - begin_;
+    // steps from rest count as one time each: their lengths are but a measure of how little inertia holds
+    const bool from_rest = i.scene.model.stages[static_cast<size_t>(i.stage)].from_rest;
+    const double elapsed = from_rest ? static_cast<double>(i.steps_before + 1) : i.state.time - begin_,
+                 unit = from_rest ? i.work.clock.dt : 1;
     double share = 0, moving = 0;
     failed_ = false;
     for (size_t k = 0; k < start_.size(); ++k) {
@@ -78,18 +81,25 @@ class Watch : public Observer {
         farthest_ = moved, block_ = k;
       }
       failed_ = failed_ || (moved > electorate_.limit[k] &&
-                            (!electorate_.may_rest_beyond || speed * elapsed > kStillMoves * moved));
+                            (!electorate_.may_rest_beyond || speed * unit * elapsed > kStillMoves * moved));
     }
+    fell_ =
+        fell_ || (failed_ && from_rest);  // the last instant is one more step, and may find a balance far off
     peak_ = std::max(peak_, moving);
     speed_left_ = peak_ > 0 ? std::sqrt(moving / peak_) : 0;
     worst_ = i.report.worst_block;
+    beyond_ = share > 1;
   }
-  bool stop() override { return failed_; }
+  // What steps from rest have not held within the limit has failed, wherever it may come to rest then.
+  void stage_is_followed(const Scene&, int, const StagePlan&, const std::string&) override {
+    fell_ = beyond_;
+  }
+  bool stop() override { return failed(); }
 
-  bool failed() const { return failed_; }
+  bool failed() const { return failed_ || fell_; }
   // Whether nothing that votes keeps the last stage from rest.
   bool only_needles_move(double unbalanced) const {
-    return !failed_ && speed_left_ <= unbalanced &&
+    return !failed() && speed_left_ <= unbalanced &&
            (worst_ < 0 || !electorate_.votes[static_cast<size_t>(worst_)]);
   }
   double farthest() const { return farthest_; }
@@ -98,7 +108,7 @@ class Watch : public Observer {
  private:
   const Electorate& electorate_;
   const Scene& scene_;
-  bool failed_ = false;
+  bool failed_ = false, beyond_ = false, fell_ = false;
   double farthest_ = 0, begin_ = 0, peak_ = 0, speed_left_ = 0;
   int worst_ = -1;
   size_t block_ = 0;
@@ -126,6 +136,11 @@ Scene weakened(const PreparedRun& prepared, double factor) {
 class Both : public Observer {
  public:
   Both(Watch& watch, Observer& second) : watch_(watch), second_(second) {}
+  void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
+                         const std::string& why) override {
+    watch_.stage_is_followed(scene, stage, plan, why);
+    second_.stage_is_followed(scene, stage, plan, why);
+  }
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     second_.stage_begins(scene, stage, plan);
   }

@@ -67,6 +67,8 @@ void exchange_plan(auto& field, auto& p) {
   field("bound_block", p.bound_block), field("bound_column", p.bound_column);
   field("dt_undamped", p.dt_undamped), field("clamp_dt", p.clamp_dt);
   field("clamped", p.clamped), field("largest_clamp", p.largest_clamp);
+  field("dt_follow", p.dt_follow), field("steps_follow", p.steps_follow);
+  field("bound_follow", p.bound_follow);
 }
 
 void exchange_standing(auto& x, auto& standing) {
@@ -76,8 +78,12 @@ void exchange_standing(auto& x, auto& standing) {
     exchange_plan(field, s.plan);
     field("kind", s.kind), field("steps", s.steps), field("begin", s.begin), field("end", s.end);
     field("unbalanced", s.unbalanced), field("at_rest", s.at_rest);
+    field("steps_from_rest", s.steps_from_rest), field("followed_from", s.followed_from);
   });
-  for (size_t i = 0; i < r.stages.size(); ++i) x(fmt::format("run.stages.name.{}", i), r.stages[i].name);
+  for (size_t i = 0; i < r.stages.size(); ++i) {
+    x(fmt::format("run.stages.name.{}", i), r.stages[i].name);
+    x(fmt::format("run.stages.followed_because.{}", i), r.stages[i].followed_because);
+  }
   x("run.steps", r.steps), x("run.failed_steps", r.failed_steps);
   x("run.second_solver_steps", r.second_solver_steps), x("run.iterations", r.iterations);
   for (size_t k = 1; k < kSolverName.size(); ++k)
@@ -152,7 +158,8 @@ namespace {
 // it.
 void check_results_finite(const Archive& a) {
   for (const auto& [name, values] : a.numbers) {
-    if (name.rfind("state.", 0) == 0 || name == "run.stages.dt_bound" || name == "run.stages.dt_undamped")
+    if (name.rfind("state.", 0) == 0 || name == "run.stages.dt_bound" || name == "run.stages.dt_undamped" ||
+        name == "run.stages.bound_follow")
       continue;
     for (const double v : values)
       if (!std::isfinite(v)) throw std::logic_error(fmt::format("\"{}\" is {}", name, v));

@@ -30,8 +30,8 @@ RestWatch StepsFromRest::begin(double length) {
 
 // Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
 // they went; where that does not help, it was not solved or they go too far it is taken with half the length (theory 4.23).
-StepReport StepsFromRest::kick(const StageInput& stage, double begin, double first, StepSettings& settings,
-                               double& advance) {
+std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double begin, double first,
+                                              StepSettings& settings, double& advance) {
   const double shortest = first / kMostShortened;
   const State before = state_;
   double length = state_.rest.length;
@@ -49,11 +49,17 @@ StepReport StepsFromRest::kick(const StageInput& stage, double begin, double fir
     way_ = longest_way(length);
     if (!report.failed && !is_far(approach) && approach.of_margin <= 1) {
       state_.rest.length = length;
+      state_.rest.gone += way_;
       state_.rest.whole = !halved ? state_.rest.whole + 1 : length < first ? 0 : kAfterHalving;
       return report;
     }
     looked = !report.failed && !is_far(approach) && !looked;
     if (!looked && length <= shortest) {
+      if (stage.may_follow) {
+        why_not_ = report.failed ? "a step from rest was not solved" : way_text(approach);
+        state_ = before;
+        return std::nullopt;
+      }
       if (report.failed) return report;
       throw NumericalError(too_far(approach, length));
     }
@@ -96,18 +102,20 @@ double StepsFromRest::longest_way(double length) const {
   return most;
 }
 
+std::string StepsFromRest::way_text(const Approach& approach) const {
+  if (!(approach.smaller >= 0 && approach.of_size > kMostApproach))
+    return fmt::format("a block goes {:.2g} times its size", way_);
+  const auto k = static_cast<size_t>(approach.smaller), b = static_cast<size_t>(approach.larger);
+  const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k];
+  return fmt::format("block \"{}\" at ({:.4g}, {:.4g}) moves against \"{}\" by {:.2g} of its size",
+                     scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);
+}
+
 std::string StepsFromRest::too_far(const Approach& approach, double length) const {
-  std::string what = fmt::format("a block goes {:.2g} times its size", way_);
-  if (approach.smaller >= 0 && approach.of_size > kMostApproach) {
-    const auto k = static_cast<size_t>(approach.smaller), b = static_cast<size_t>(approach.larger);
-    const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k];
-    what = fmt::format("block \"{}\" at ({:.4g}, {:.4g}) moves against \"{}\" by {:.2g} of its size",
-                       scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);
-  }
   return fmt::format(
       "step {} at t = {:.9g} s: {}, also in a step of {:.3g} s: something falls, slides or is squeezed out. "
       "integration = \"dynamic\" follows it",
-      state_.step, state_.time, what, length);
+      state_.step, state_.time, way_text(approach), length);
 }
 
 }  // namespace talus

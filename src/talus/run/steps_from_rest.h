@@ -1,6 +1,7 @@
 #pragma once
 // How a static stage goes on in steps from rest. Theory: docs/theory.md 4.23.
 
+#include <optional>
 #include <string>
 
 #include "talus/contact/pairs.h"
@@ -18,12 +19,16 @@ class StepsFromRest {
   /// What a stage begins with: steps of this length [s].
   static RestWatch begin(double length);
 
-  /// A step of backward Euler, of state.rest.length or of as much of it as can be taken. Throws NumericalError where blocks
-  /// go too far in the shortest one.
+  /// A step of backward Euler, of state.rest.length or of as much of it as can be taken. Where blocks go too far in the
+  /// shortest one, or it is not solved: nothing, with the state as before, if the stage may follow them (why_not() tells);
+  /// else NumericalError, or a report that has failed.
   /// @param begin, first  of the stage: its time, and the length of its first step [s]
   /// @param advance       out: by how much its clock goes on [s]
-  StepReport kick(const StageInput& stage, double begin, double first, StepSettings& settings,
-                  double& advance);
+  std::optional<StepReport> kick(const StageInput& stage, double begin, double first, StepSettings& settings,
+                                 double& advance);
+
+  /// Of a kick that was none.
+  const std::string& why_not() const { return why_not_; }
 
   /// Sets state.rest.length for the step after: longer, but not soon after one that had to be shortened.
   /// @param relaxed  nothing is left to be let go of
@@ -39,12 +44,14 @@ class StepsFromRest {
   bool is_far(const Approach& approach) const;
   double longest_way(double length) const;
   void restore(const State& before, bool expect);
+  std::string way_text(const Approach& approach) const;
   std::string too_far(const Approach& approach, double length) const;
 
   const Scene& scene_;
   StepWork& work_;
   State& state_;
   double way_ = 0;  // the longest of a block, as share of its size
+  std::string why_not_;
 };
 
 }  // namespace talus

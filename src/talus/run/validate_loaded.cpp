@@ -141,6 +141,14 @@ void judge_pairs(const Standing& standing, const State& state, const Scene& scen
 }
 
 void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResult& now, const State& state) {
+  if (now.followed()) {
+    const double dt = plan.dt_follow,
+                 time = now.followed_from + dt * static_cast<double>(now.steps - now.steps_from_rest);
+    promise_loaded(
+        std::abs(state.time - time) <= 1e-3 * dt,
+        fmt::format("it stands at {} s, and its stage, followed by motion, at {} s", state.time, time));
+    return;
+  }
   if (stage.from_rest) {
     promise_loaded(state.rest.length >= 0.99 * plan.dt / kMostShortened &&
                        state.rest.length <= 1.01 * plan.dt * kMostLengthened,

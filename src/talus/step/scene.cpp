@@ -20,9 +20,6 @@ Scene::~Scene() = default;
 
 namespace {
 
-// From so many blocks on static stages go in steps from rest where joints give (docs/decisions/0015).
-constexpr int kManyBlocks = 1000;
-
 // Whether a deformable block may meet another over a joint with friction and without give. With explicit
 // elasticity it would ring for ever, its normal force swing, and its friction be lost while that is small
 // (theory 4.9).
@@ -78,12 +75,13 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.supported = supported_points(scene.model, scene.layout, scene.blocks);
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
-  for (StageInput& stage : scene.model.stages)
-    if (stage.from_rest_auto && scene.blocks.count >= kManyBlocks && joints_give(scene.laws))
-      stage.go_from_rest();
-  for (StageInput& stage : scene.model.stages)
-    if (stage.elasticity_auto)
-      stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
+  for (StageInput& stage : scene.model.stages) {
+    if (!stage.elasticity_auto) continue;
+    stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
+    if (!stage.from_rest_auto || !scene.by_patches()) continue;
+    stage.may_follow = true, stage.follow_implicit = stage.implicit;
+    stage.go_from_rest();
+  }
   if (scene.model.formulation == Formulation::kAsPrinted)
     for (StageInput& stage : scene.model.stages) stage.implicit = false, stage.from_rest = false;
   if (scene.model.formulation == Formulation::kPenalty)

@@ -53,8 +53,10 @@ TEST_CASE("contact give: the largest stress that the model gives to be foreseen"
       5e6 / std::sqrt(2), "forces given");
   check_give(prepared(kGravity, "[[load]]\nname = \"a\"\nacceleration_x = 20\n"), 2000 * 20 * std::sqrt(5.0),
              "accelerations given");
+  // what strains rock by 0.2 %
+  check_give(prepared(kGravity, "", "deformable"), 2e-3 * 8e9, "stiffness of the blocks");
   // rho cp = sqrt(rho E), waves of deformable blocks only
-  check_give(prepared("gravity = [0, 0]", "velocity = [0, -3]", "deformable"), std::sqrt(2000 * 8e9) * 3,
+  check_give(prepared("gravity = [0, 0]", "velocity = [0, -5]", "deformable"), std::sqrt(2000 * 8e9) * 5,
              "velocities given");
   check_give(prepared("gravity = [0, 0]", "velocity = [0, -3]"), 0, "");
 }

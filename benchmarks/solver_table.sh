@@ -11,7 +11,7 @@ run() {
   shift 3
   rm -rf "$out/run"
   timeout 30 "$talus" run "$model" -o "$out/run" -q --threads 1 --set "solver.method=\"$method\"" --set 'solver.on_failure="continue"' \
-    --set solver.tolerance=1e-8 --set solver.second_solver=false --set solver.max_sweeps=2000 "$@" >/dev/null 2>&1 || true
+    --set solver.tolerance=1e-8 --set solver.limit=1e-8 --set solver.second_solver=false --set solver.max_sweeps=2000 "$@" >/dev/null 2>&1 || true
   python3 - "$out/run" "$name" "$method" <<'PY' | tee -a "$out/solver_table.csv"
 import json, sys
 s = json.load(open(sys.argv[1] + "/summary.json"))

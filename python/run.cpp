@@ -257,7 +257,10 @@ void bind_runs(py::module_& m) {
           "of each stage that has begun: name, steps, begin and end [s], time_step [s], at_rest")
       .def_property_readonly(
           "failed_steps", [](const PyResult& r) { return r.result.failed_steps; },
-          "steps whose contact equations were not solved to the tolerance")
+          "steps whose contact equations were not solved: error above solver.limit")
+      .def_property_readonly(
+          "loose_steps", [](const PyResult& r) { return r.result.loose_steps; },
+          "steps above solver.tolerance that solver.limit allows")
       .def_property_readonly(
           "energy", [](const PyResult& r) { return energy_of(r.result.energy); },
           "as of an instant, at the end [J]")

@@ -37,8 +37,9 @@ int main(int argc, char** argv) {
     OverlapWatch watch;
     const talus::RunResult result = talus::run_stages(run.scene, run.plans, state, watch);
     fmt::print(
-        "{} blocks, {} steps, {:.1f} s, {} failed steps, energy left over {:.1e} of the largest term\n",
-        run.scene.blocks.count, result.steps, result.wall_seconds, result.failed_steps, result.closure());
+        "{} blocks, {} steps, {:.1f} s, {} failed steps, {} loose, energy left over {:.1e} of the largest term\n",
+        run.scene.blocks.count, result.steps, result.wall_seconds, result.failed_steps, result.loose_steps,
+        result.closure());
     return result.failure.empty() ? 0 : 1;
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());

@@ -133,6 +133,7 @@ TEST_CASE("command: a run writes every result file, and refuses to overwrite") {
   CHECK(summary["stages"][0]["steps"] == 135);
   CHECK(summary["stages"][0]["dt_bound_block"].get<std::string>().rfind("bar[", 0) == 0);
   CHECK(summary["solver"]["failed_steps"] == 0);
+  CHECK(summary["solver"]["loose_steps"] == 0);
   CHECK(summary["energy_closure"].get<double>() < 1e-12);
   const CsvTable histories = read_csv(fs::path(out) / "histories.csv"),
                  steps = read_csv(fs::path(out) / "steps.csv");
@@ -335,7 +336,8 @@ TEST_CASE("command: one step is dumped and replayed by either solver") {
 TEST_CASE("command: a failed step is named, written and can be replayed") {
   const Folder f;
   const std::string out = (f / "out").string();
-  const Outcome o = shell(f, fmt::format("$talus run {} -o {} --set solver.tolerance=1e-30", kBar, out));
+  const Outcome o = shell(
+      f, fmt::format("$talus run {} -o {} --set solver.tolerance=1e-30 --set solver.limit=1e-30", kBar, out));
   CHECK(o.code == 5);
   has(o.text, "the contact equations were not solved");
   has(o.text, "worst at");

@@ -133,6 +133,13 @@ class Runs(unittest.TestCase):
         self.assertAlmostEqual(result.displacement[1, 0], exact, delta=1e-6 * exact)
         self.assertEqual(result.steps, 1000)
 
+    def test_loose_steps(self):
+        loose = talus.Model.from_text(SLOPE, {"solver.tolerance": 1e-300}).run()
+        self.assertEqual(loose.failure, "")
+        self.assertGreater(loose.loose_steps, 500)
+        self.assertEqual(loose.failed_steps, 0)
+        self.assertEqual(talus.Model.from_text(SLOPE).run().loose_steps, 0)
+
     def test_penalty_and_until(self):
         model = talus.Model.from_text(SLOPE, {"model.formulation": "penalty", "new:penalty.largest_displacement": 1e-3})
         result = model.run(until="slide", observer=lambda now: None)

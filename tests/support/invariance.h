@@ -91,7 +91,7 @@ inline Problem problem_of(const std::string& text, const std::vector<std::string
   INFO(findings.render());
   REQUIRE_FALSE(findings.has_errors());
   p.model.monitors.clear();
-  p.model.solver.tolerance = kTightest;
+  p.model.solver.tolerance = p.model.solver.limit = kTightest;
   p.model.solver.stop_on_failure = false;  // what cannot be reached is printed
   p.model.solver.max_sweeps = 1500;
   p.layout = cut_layout(p.model, p.cell);

@@ -72,6 +72,7 @@ inline CaseResult run_case(const std::string& model, const std::vector<std::stri
   INFO(result.run.failure);
   REQUIRE(result.run.failure.empty());
   CHECK(result.run.failed_steps == 0);
+  CHECK(result.run.loose_steps == 0);
   return result;
 }
 

@@ -21,7 +21,9 @@ export function warningsOf(run) {
   if (s.status === "interrupted") out.push("The run was interrupted; the results up to then are valid.");
   const solver = s.solver || {};
   if (solver.failed_steps > 0)
-    out.push(`${count(solver.failed_steps, "step")} of ${count(solver.contact_solves, "step")} missed the contact tolerance; the worst by an error of ${withUnit(solver["contact_error_worst [m]"], "m")}.`);
+    out.push(`${count(solver.failed_steps, "step")} of ${count(solver.contact_solves, "step")} did not solve the contact equations; the worst by an error of ${withUnit(solver["contact_error_worst [m]"], "m")}.`);
+  else if (solver.loose_steps > 0)
+    out.push(`${count(solver.loose_steps, "step")} of ${count(solver.contact_solves, "step")} ${solver.loose_steps === 1 ? "is" : "are"} loose: above the contact tolerance, within solver.limit; the worst by an error of ${withUnit(solver["contact_error_worst [m]"], "m")}.`);
   if (s.energy_closure > 1e-2)
     out.push(`The energy ledger leaves ${number(100 * s.energy_closure, 3)} % of its largest term unexplained; above 1 % the run is not to be trusted.`);
   for (const stage of s.stages || []) {
@@ -131,14 +133,14 @@ export function energyOf(run) {
 export function worstSteps(table, onTime) {
   if (!table) return null;
   const at = (name) => table.columns.indexOf(name);
-  const error = at("contact error [m]"), iterations = at("iterations"), drift = at("drift [m]"), failed = at("failed steps");
+  const error = at("contact error [m]"), iterations = at("iterations"), drift = at("drift [m]"), failed = at("failed steps"), loose = at("loose steps");
   if (error < 0) return null;
   const order = [...Array(table.rows).keys()].sort((i, j) => table.values[error][j] - table.values[error][i] || table.values[iterations][j] - table.values[iterations][i]);
   const rows = order.slice(0, 10).map((i) => [
     onTime ? element("button", { type: "button", class: "link", onclick: () => onTime(table.values[0][i]) }, `${number(table.values[0][i], 6)} s`) : `${number(table.values[0][i], 6)} s`,
     withUnit(table.values[error][i], "m"), String(table.values[iterations][i]),
-    drift < 0 ? "" : withUnit(table.values[drift][i], "m"), failed < 0 ? "" : String(table.values[failed][i])]);
-  return tableOf("Worst steps, by the contact error (each row of steps.csv keeps the worst since the row before)", ["time", "contact error", "iterations", "drift", "steps above the tolerance"], rows);
+    drift < 0 ? "" : withUnit(table.values[drift][i], "m"), failed < 0 ? "" : String(table.values[failed][i]), loose < 0 ? "" : String(table.values[loose][i])]);
+  return tableOf("Worst steps, by the contact error (each row of steps.csv keeps the worst since the row before)", ["time", "contact error", "iterations", "drift", "steps not solved", "loose steps"], rows);
 }
 
 /** A table of texts, numbers with fewer digits; columns of one unit in a prefix that suits the largest. */

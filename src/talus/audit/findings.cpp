@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<const char*, kDefects> kKey{
     "prescribed_overlap", "unexplained_overlap", "deep_closure", "force_vanished", "crossed",
     "covered_side",       "force_across_gap",    "no_joint",     "normal_law",     "energy_law",
-    "shear_law",          "closing_work",        "joint_work",   "failed_steps"};
+    "shear_law",          "closing_work",        "joint_work",   "failed_steps",   "loose_steps"};
 
 // What a kind of defect is called in lines for readers.
 constexpr std::array<const char*, kDefects> kTitle{"overlap of prescribed blocks",
@@ -27,7 +27,8 @@ constexpr std::array<const char*, kDefects> kTitle{"overlap of prescribed blocks
                                                    "force beyond the joint's law",
                                                    "work of closing contacts",
                                                    "work of elastic joints",
-                                                   "failed steps"};
+                                                   "failed steps",
+                                                   "loose steps"};
 
 void exchange_finding(auto& x, const std::string& name, auto& f) {
   x(name + ".defect", f.defect), x(name + ".invalid", f.invalid);

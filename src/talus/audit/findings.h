@@ -27,6 +27,7 @@ enum class Defect {
   kClosingWork,
   kJointWork,
   kFailedSteps,
+  kLooseSteps,
   kCount
 };
 inline constexpr size_t kDefects = static_cast<size_t>(Defect::kCount);

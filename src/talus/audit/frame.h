@@ -60,7 +60,7 @@ struct Rules {
   bool changes = false;            // stages change what the model began with
   double slop = 0;                 // overlap that hard contacts may keep, share of the smaller block's size
   double give = 0;                 // of a hard contact point under a force [m/N]
-  double tolerance = 0;            // largest contact error of a step [m]
+  double tolerance = 0;            // contact error that steps may have left so far [m]
   double thickness = 1;            // [m]
 };
 

@@ -27,6 +27,8 @@ namespace {
 
 // of the largest term of the ledger: what round-off and the half steps of impacts leave
 constexpr double kClosing = 1e-3;
+// of all steps: more of them loose are no accidents of single steps
+constexpr double kLooseWarns = 1e-2;
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 class Reader {
@@ -47,6 +49,7 @@ class Reader {
                       blocks.size(), contacts.size()));
     for (size_t i = 0; i < std::min(blocks.size(), contacts.size()); ++i) {
       const Frame frame = read_frame(blocks[i], contacts[i]);
+      rules_.tolerance = left_by(frame.time);
       try {
         add_frame(rules_, frame, workers, out_.report);
       } catch (const std::runtime_error& e) {  // of polygons that no run has written
@@ -79,13 +82,14 @@ class Reader {
   void judge_ends() {
     const auto& s = summary_;
     if (s.contains("solver")) {
-      const nlohmann::json count = s["solver"].value("failed_steps", nlohmann::json(0));
-      if (!count.is_number_integer())
-        throw FileError(fmt::format(
-            "{}: solver.failed_steps is {}, which is no number of steps: talus did not write that",
-            (folder_ / "summary.json").string(), count.dump()));
-      const auto failed = count.get<int64_t>();
+      const int64_t steps = count_of("contact_solves"), failed = std::max(count_of("failed_steps"), failed_),
+                    loose = std::max(count_of("loose_steps"), loose_);
+      if (failed > steps - loose && s["solver"].contains("contact_solves"))
+        throw FileError(fmt::format("{}: {} steps failed and {} are loose of {}: talus did not write that",
+                                    (folder_ / "summary.json").string(), failed, loose, steps));
       add_failed(failed, first_failed_, s["solver"].value("contact_error_at", std::string()), out_.report);
+      add_loose(loose, steps, loosest_.empty() ? std::nan("") : loosest_.front().time,
+                loosest_.empty() ? std::nan("") : loosest_.back().error, out_.report);
     }
     if (!s.contains("energy [J]")) return;
     const auto& e = s["energy [J]"];
@@ -101,6 +105,18 @@ class Reader {
     const Given c = most(&Given::closing), j = most(&Given::joints);
     add_closing(c.closing, c.friction, largest, lifting_, c.time, out_.report);
     add_joint_work(rules_, j.joints, j.friction, largest, lifting_, j.time, out_.report);
+  }
+
+  // Of summary.json; what an older talus did not count is 0.
+  int64_t count_of(const char* name) const {
+    const auto& solver = summary_["solver"];
+    const nlohmann::json count = solver.value(name, nlohmann::json(0));
+    const int64_t steps = count.is_number_integer() ? count.get<int64_t>() : -1;
+    if (steps < 0)
+      throw FileError(
+          fmt::format("{}: solver.{} is {}, which is no number of steps: talus did not write that",
+                      (folder_ / "summary.json").string(), name, count.dump()));
+    return steps;
   }
 
   void read_summary() {
@@ -120,7 +136,13 @@ class Reader {
                         file.string(), folder_.string()));
       const auto& model = summary_["model"];
       rules_.thickness = model.value("thickness [m]", 1.0);
-      rules_.tolerance = model.value("contact_tolerance [m]", 0.0);
+      tolerance_ = model.value("contact_tolerance [m]", 0.0);
+      // of runs since steps may be loose, by the exact law
+      limit_ = model.value("contact_limit [m]", std::nan(""));
+      if (summary_.contains("solver")) {
+        tells_loose_ = summary_["solver"].contains("loose_steps");
+        worst_error_ = summary_["solver"].value("contact_error_worst [m]", 0.0);
+      }
       if (model.contains("contact_give"))  // of runs since hard contacts give
         rules_.give = model["contact_give"].value("per_force [m/N]", 0.0);
       rules_.joints_everywhere = model.contains("default_joint");
@@ -235,10 +257,40 @@ class Reader {
     const auto &t = column("t [s]"), &failed = column("failed steps"),
                &closing = column("contact closing work [J]"), &joints = column("joint work [J]"),
                &friction = column("friction work [J]");
-    for (size_t i = 0; i < table.rows(); ++i) {
-      if (failed[i] > 0 && std::isnan(first_failed_)) first_failed_ = t[i];
-      given_.push_back({t[i], closing[i], joints[i], friction[i]});
-    }
+    for (size_t i = 0; i < table.rows(); ++i) given_.push_back({t[i], closing[i], joints[i], friction[i]});
+    const std::vector<double> none(table.rows(), 0), &loose = tells_loose_ ? column("loose steps") : none,
+                                                     &error = column("contact error [m]");
+    for (size_t i = 0; i < table.rows(); ++i) take_step(t[i], failed[i], loose[i], error[i]);
+    // those before a branch are in another folder
+    if (!std::isnan(limit_) && count_of("loose_steps") > loose_)
+      left_before_ = std::max(tolerance_, std::fmin(worst_error_, limit_));
+  }
+
+  // Steps of a row of steps.csv. Its error counts, whatever else it says.
+  void take_step(double time, double failed, double loose, double error) {
+    constexpr double kMost = 1e9;
+    for (const double count : {failed, loose})
+      if (!(count >= 0 && count <= kMost))
+        throw FileError(fmt::format("{}: {} is no number of steps", (folder_ / "steps.csv").string(), count));
+    const bool known = !std::isnan(limit_);
+    if (known && failed == 0 && !(error <= limit_)) failed = 1;
+    if (known && failed == 0 && loose == 0 && error > tolerance_) loose = 1;
+    if (failed > 0 && std::isnan(first_failed_)) first_failed_ = time;
+    failed_ += static_cast<int64_t>(failed), loose_ += static_cast<int64_t>(loose);
+    if (!(loose > 0)) return;
+    const double before = loosest_.empty() ? tolerance_ : loosest_.back().error;
+    loosest_.push_back({time, std::max(before, known ? std::fmin(error, limit_) : before)});
+  }
+
+  // The largest contact error that steps have left by a time: a row holds the worst since the one before it.
+  double left_by(double time) const {
+    const auto row =
+        std::find_if(given_.begin(), given_.end(), [&](const Given& g) { return g.time >= time; });
+    const double last = row == given_.end() ? std::numeric_limits<double>::infinity() : row->time;
+    double left = std::max(tolerance_, left_before_);
+    for (const Loosest& l : loosest_)
+      if (l.time <= last) left = std::max(left, l.error);
+    return left;
   }
 
   Frame read_frame(const SeriesEntry& blocks, const SeriesEntry& contacts) const {
@@ -377,6 +429,11 @@ class Reader {
     double time, closing, joints, friction;
   };
 
+  // A time with loose steps, and the largest error of such up to it [m].
+  struct Loosest {
+    double time, error;
+  };
+
   fs::path folder_;
   FolderAudit& out_;
   ordered_json summary_;
@@ -388,6 +445,11 @@ class Reader {
   std::vector<std::pair<double, double>> stage_steps_;  // end, dt [s]
   std::vector<Given> given_;
   double first_failed_ = std::nan(""), end_ = 0;
+  // tolerance and limit of the solver [m], the latter NaN where there is none; what steps.csv has of steps beyond them
+  double tolerance_ = 0, limit_ = std::nan(""), worst_error_ = 0, left_before_ = 0;
+  bool tells_loose_ = false;
+  int64_t failed_ = 0, loose_ = 0;
+  std::vector<Loosest> loosest_;
 };
 
 }  // namespace
@@ -429,11 +491,28 @@ void add_failed(int64_t failed, double time, const std::string& where, Report& r
   if (failed <= 0) return;
   Finding f{Defect::kFailedSteps,        true, -1, -1, std::isnan(time) ? 0 : time, {},
             static_cast<double>(failed), {}};
-  f.text = fmt::format("{} step{} did not reach the tolerance of the contact equations{}{}", failed,
-                       failed == 1 ? "" : "s",
+  f.text = fmt::format("{} step{} did not solve the contact equations{}{}", failed, failed == 1 ? "" : "s",
                        std::isnan(time) ? "" : fmt::format(", first at t = {:.6g} s", time),
                        where.empty() ? "" : ", worst at " + where);
   report.add(f);
+}
+
+void add_loose(int64_t loose, int64_t steps, double time, double error, Report& report) {
+  const double share = static_cast<double>(loose) / static_cast<double>(std::max<int64_t>(steps, 1));
+  if (loose <= 0 || share < kLooseWarns) return;
+  report.add(
+      {Defect::kLooseSteps,
+       false,
+       -1,
+       -1,
+       std::isnan(time) ? 0 : time,
+       {},
+       share,
+       fmt::format("{} of {} steps ({:.2g} %) are above the tolerance of the contact equations, within "
+                   "solver.limit{}{}",
+                   loose, steps, 100 * share,
+                   std::isnan(time) ? "" : fmt::format(", first at t = {:.6g} s", time),
+                   std::isnan(error) ? "" : fmt::format(", the worst by an error of {:.3g} m", error))});
 }
 
 FolderAudit audit_folder(const fs::path& folder, const Workers& workers) {

@@ -193,7 +193,8 @@ enum class JacobianKind { kAnalytic, kDifference };
 struct SolverInput {
   SolverKind method = SolverKind::kAuto;
   JacobianKind jacobian = JacobianKind::kAnalytic;
-  double tolerance = 1e-8;  // share of the smallest block's size
+  double tolerance = 1e-8;  // share of the smallest block's size: what the solvers aim at
+  double limit = 1e-5;      // the same: what a step may keep, at least the tolerance
   int max_iterations = 60;
   int max_sweeps = 20000;
   bool second_solver = true;  // a step that misses the tolerance is tried by the other method

@@ -420,9 +420,29 @@ class ModelReader : private SectionReader {
           f.where("jacobian"), f.path_of("jacobian"),
           fmt::format("difference quotients are of newton; {} takes none", name_of(model_.solver.method)),
           "leave it out, or use method = \"newton\"");
-    model_.solver.tolerance = f.get("tolerance", 1e-8);
+    read_tolerance(f);
     model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
     model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";
+  }
+
+  void read_tolerance(const Fields& f) {
+    SolverInput& solver = model_.solver;
+    solver.tolerance = f.get("tolerance", solver.tolerance);
+    const bool smoothed = model_.contact.law == ContactLaw::kSmoothed;
+    solver.limit = smoothed           ? solver.tolerance
+                   : f.given("limit") ? f.get("limit", solver.limit)
+                                      : std::max(solver.limit, solver.tolerance);
+    if (f.given("limit") && smoothed)
+      findings_.error(f.where("limit"), f.path_of("limit"),
+                      "is of the exact law: steps of the smoothed one are judged by what its solver leaves",
+                      "leave it out, or use contact.law = \"exact\"");
+    if (solver.limit < solver.tolerance)
+      findings_.error(
+          f.where("limit"), f.path_of("limit"),
+          fmt::format("{:g} is not allowed; must be at least solver.tolerance, {:g}", solver.limit,
+                      solver.tolerance),
+          "give a larger limit or a smaller tolerance; without limit it is 1e-5, or the tolerance "
+          "where that is larger");
   }
 
   void read_monitors() {

@@ -60,7 +60,7 @@ json table_of(const CsvTable& table, const std::set<size_t>& keep, Chunks& chunk
 // Rows of steps.csv with the largest values of some columns.
 std::set<size_t> worst_rows(const CsvTable& steps) {
   std::set<size_t> out;
-  for (const char* name : {"contact error [m]", "iterations", "drift [m]", "failed steps"}) {
+  for (const char* name : {"contact error [m]", "iterations", "drift [m]", "failed steps", "loose steps"}) {
     const auto it = std::find(steps.columns.begin(), steps.columns.end(), name);
     if (it == steps.columns.end()) continue;
     const std::vector<double>& v = steps.values[static_cast<size_t>(it - steps.columns.begin())];

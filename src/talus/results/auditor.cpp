@@ -58,6 +58,12 @@ Auditor::Auditor(const Scene& scene) : scene_(scene), watch_(rules_) {
 
 void Auditor::at(const Instant& i, bool frame) {
   if (fresh_ || i.stage_start) look_at_stage(i);
+  ++steps_;
+  if (i.report.loose) {
+    if (loose_++ == 0) first_loose_ = i.state.time;
+    loosest_ = std::max(loosest_, i.report.error.worst);
+    rules_.tolerance = std::max(rules_.tolerance, loosest_);
+  }
   watch(i);
   if (i.report.failed && failed_++ == 0) first_failed_ = i.state.time, worst_failed_ = i.report.worst;
   const Energy& e = i.report.energy;
@@ -84,6 +90,7 @@ audit::Report Auditor::report() const {
   audit::add_closing(closing_, closing_friction_, largest_energy_, lifting_, closing_time_, out);
   audit::add_joint_work(rules_, joints_, joints_friction_, largest_energy_, lifting_, joints_time_, out);
   audit::add_failed(failed_, first_failed_, worst_failed_, out);
+  audit::add_loose(loose_, steps_, first_loose_, loosest_, out);
   return out;
 }
 
@@ -98,7 +105,7 @@ void Auditor::look_at_stage(const Instant& i) {
   rules_.in_situ = scene_.model.in_situ.given, rules_.changes = !scene_.model.changes.empty();
   rules_.slop = scene_.model.contact.slop;
   rules_.give = scene_.give.per_force(scene_.model.thickness);
-  rules_.tolerance = scene_.model.solver.tolerance * tolerance_size(b);
+  rules_.tolerance = std::max(scene_.model.solver.tolerance * tolerance_size(b), loosest_);
   blocks_.clear();
   for (int k = 0; k < b.count; ++k) {
     const auto n = static_cast<size_t>(k);
@@ -222,6 +229,8 @@ template <class X, class Self>
 void Auditor::exchange(X& x, Self& self) {
   x("audit.next", self.next_), x("audit.failed", self.failed_);
   x("audit.first_failed", self.first_failed_), x("audit.worst_failed", self.worst_failed_);
+  x("audit.steps", self.steps_), x("audit.loose", self.loose_);
+  x("audit.first_loose", self.first_loose_), x("audit.loosest", self.loosest_);
   x("audit.lifting", self.lifting_), x("audit.closing", self.closing_);
   x("audit.closing_friction", self.closing_friction_), x("audit.closing_time", self.closing_time_);
   x("audit.joints", self.joints_), x("audit.joints_friction", self.joints_friction_);

@@ -39,8 +39,9 @@ class Auditor {
   audit::Watch watch_;
   bool lifting_ = false;  // some joint dilates
   double next_ = 0;       // [s] of the next audit of polygons, where an interval is given
-  int64_t failed_ = 0;
-  double first_failed_ = 0;  // [s]
+  int64_t failed_ = 0, loose_ = 0, steps_ = 0;
+  double first_loose_ = 0, loosest_ = 0;  // [s], largest error of a loose step [m]
+  double first_failed_ = 0;               // [s]
   std::string worst_failed_;
   double closing_ = 0, closing_friction_ = 0, closing_time_ = 0;  // at the largest work of closing contacts
   double joints_ = 0, joints_friction_ = 0, joints_time_ = 0;     // at the largest work of elastic joints

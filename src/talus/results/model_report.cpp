@@ -185,6 +185,9 @@ ordered_json model_in_numbers(const Scene& scene) {
                          {"closure / length", kGiveClosure},
                          {"per_force [m/N]", scene.give.per_force(m.thickness)}};
   j["contact_tolerance [m]"] = m.solver.tolerance * tolerance_size(scene.blocks);
+  // of the exact law alone: there an error says how far a step is from solved
+  if (m.formulation == Formulation::kContactForces && m.contact.law == ContactLaw::kExact)
+    j["contact_limit [m]"] = m.solver.limit * tolerance_size(scene.blocks);
   j["intervals [s]"] = {{"history", m.output.history_interval},
                         {"steps", m.output.steps_interval},
                         {"fields", m.output.field_interval}};

@@ -22,6 +22,7 @@ const Columns<Instant>& step_columns() {
         {"contact error", "m", [](const I& i) { return i.report.error.worst; }, Over::kWorst},
         {"drift", "m", [](const I& i) { return i.report.drift; }, Over::kWorst},
         {"failed steps", "", [](const I& i) { return i.report.failed ? 1.0 : 0.0; }, Over::kSum},
+        {"loose steps", "", [](const I& i) { return i.report.loose ? 1.0 : 0.0; }, Over::kSum},
         {"unbalanced", "", [](const I& i) { return i.report.unbalanced; }},
         {"broken faces", "",
          [count](const I& i) {

@@ -173,6 +173,7 @@ class StagedRun::Runner {
                  .damping_stiffness = stage.damping_stiffness,
                  .damping_local = stage.damping_local,
                  .tolerance = scene_.model.solver.tolerance * tolerance_size(scene_.blocks),
+                 .limit = scene_.model.solver.limit * tolerance_size(scene_.blocks),
                  .histories_run = stage.kind == StageKind::kDynamic,
                  .implicit = stage.implicit,
                  .from_rest = stage.from_rest,
@@ -589,15 +590,17 @@ class StagedRun::Runner {
     if (r.closed_share > kMostClosed)
       throw NumericalError(
           fmt::format("step {} at t = {:.9g} s: {}", state.step, state.time, result_.closed_row));
+    result_.loose_steps += r.loose;
     if (!r.failed) return;
     ++result_.failed_steps;
     if (scene_.model.solver.stop_on_failure) {
       throw NumericalError(fmt::format(
           "step {} at t = {:.9g} s: the contact equations were not solved; error {:.3g} m after {}, "
           "allowed {:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a "
-          "wider solver.tolerance may help; solver.on_failure = \"continue\" counts such steps instead of "
+          "wider solver.{} may help; solver.on_failure = \"continue\" counts such steps instead of "
           "stopping",
-          state.step, state.time, r.error.worst, attempts_text(r.attempts), settings_.tolerance, r.worst));
+          state.step, state.time, r.error.worst, attempts_text(r.attempts), settings_.limit, r.worst,
+          scene_.model.contact.law == ContactLaw::kExact ? "limit" : "tolerance"));
     }
   }
 

@@ -38,6 +38,7 @@ struct RunResult {
 
   std::vector<StageResult> stages;
   int64_t steps = 0, failed_steps = 0, second_solver_steps = 0, iterations = 0;
+  int64_t loose_steps = 0;                             // above solver.tolerance, within solver.limit
   std::array<int64_t, kSolverName.size()> steps_by{};  // by the solver whose result stands
   int most_contacts = 0, most_iterations = 0, candidate_rebuilds = 0;
   double worst_error = 0, worst_error_time = 0;  // [m], [s]

@@ -29,7 +29,8 @@ RestWatch StepsFromRest::begin(double length) {
 }
 
 // Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
-// they went; where that does not help, it was not solved or they go too far it is taken with half the length (theory 4.23).
+// they went; where that does not help, it was not solved to the tolerance or they go too far it is taken with half the length
+// (theory 4.23). The shortest may be loose: by then all solvers have tried.
 std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double begin, double first,
                                               StepSettings& settings, double& advance) {
   const double shortest = first / kMostShortened;
@@ -47,13 +48,14 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     const Approach approach =
         approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
     way_ = longest_way(length);
-    if (!report.failed && !is_far(approach) && approach.of_margin <= 1) {
+    const bool solved = !report.failed && !(report.loose && length > shortest);
+    if (solved && !is_far(approach) && approach.of_margin <= 1) {
       state_.rest.length = length;
       state_.rest.gone += way_;
       state_.rest.whole = !halved ? state_.rest.whole + 1 : length < first ? 0 : kAfterHalving;
       return report;
     }
-    looked = !report.failed && !is_far(approach) && !looked;
+    looked = solved && !is_far(approach) && !looked;
     if (!looked && length <= shortest) {
       if (stage.may_follow) {
         why_not_ = report.failed ? "a step from rest was not solved" : way_text(approach);

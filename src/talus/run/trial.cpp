@@ -48,6 +48,7 @@ std::vector<StepCost> time_steps(const PreparedRun& run, double seconds, int thr
     SolverInput& solver = scene.model.solver;
     solver.max_sweeps = std::min(solver.max_sweeps, most_sweeps(scene.blocks.count));
     solver.second_solver = solver.stop_on_failure = false;
+    solver.limit = solver.tolerance;  // what so few sweeps leave is no loose step
     const std::vector<StagePlan> plans(run.plans.begin(),
                                        run.plans.begin() + static_cast<std::ptrdiff_t>(k) + 1);
     Stopwatch watch(seconds / static_cast<double>(stages));

@@ -17,7 +17,8 @@ struct StepSettings {
   double damping_mass = 0;       // [1/s]
   double damping_stiffness = 0;  // [s]
   double damping_local = 0;      // [-]
-  double tolerance = 0;          // largest contact error of a step [m]
+  double tolerance = 0;          // contact error that the solvers aim at [m]
+  double limit = 0;              // largest that a step may keep, where that is more [m]
   double sharper = 1;            // share of it to which steps are solved where that takes few sweeps more
   bool histories_run = true;     // false: their clock stands still (static stages)
   bool implicit = false;         // block-implicit elasticity (theory 4.9)
@@ -41,7 +42,8 @@ struct StepReport {
   SolveReport solve;
   ContactError error;
   std::string worst;    // name of the row with the worst error
-  bool failed = false;  // error above the tolerance
+  bool failed = false;  // error above the limit
+  bool loose = false;   // above the tolerance, within the limit
   Attempts attempts;
   double closed_share = 0;  // largest overlap of a contact, as share of the thinner block there
   int closed_row = -1;      // its row

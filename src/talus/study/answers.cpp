@@ -87,12 +87,26 @@ Numbers numbers_of(const json& summary) {
 Numbers possible_numbers(const std::vector<std::string>& columns, const std::vector<std::string>& stages,
                          const std::vector<std::string>& sets) {
   Numbers out;
-  for (const char* name :
-       {"joints.time", "joints.points", "joints.intact", "joints.slipped", "joints.open",
-        "joints.slip_largest", "joints.opening_largest", "joints.slip_times_length", "joints.broken_length",
-        "joints.slipped_joints", "joints.residual_slip_largest", "moved.blocks", "moved.area", "blocks.all",
-        "contacts.bond_faces", "contacts.bond_faces_broken", "energy_closure", "solver.failed_steps",
-        "solver.contact_error_worst"})
+  for (const char* name : {"joints.time",
+                           "joints.points",
+                           "joints.intact",
+                           "joints.slipped",
+                           "joints.open",
+                           "joints.slip_largest",
+                           "joints.opening_largest",
+                           "joints.slip_times_length",
+                           "joints.broken_length",
+                           "joints.slipped_joints",
+                           "joints.residual_slip_largest",
+                           "moved.blocks",
+                           "moved.area",
+                           "blocks.all",
+                           "contacts.bond_faces",
+                           "contacts.bond_faces_broken",
+                           "energy_closure",
+                           "solver.failed_steps",
+                           "solver.loose_steps",
+                           "solver.contact_error_worst"})
     out[name] = 1;
   for (const std::string& set : sets)
     for (const char* what : {"joints.slip_largest_by_set.", "joints.broken_length_by_set."})

@@ -71,6 +71,7 @@ TEST_CASE("defaults are those the schema publishes") {
   CHECK(m.plane == Plane::kStrain);
   CHECK(m.gravity == Vec2{0, 0});
   CHECK(m.solver.tolerance == 1e-8);
+  CHECK(m.solver.limit == 1e-5);
   CHECK(m.stages[0].damping_local == 0.8);
   CHECK(std::isnan(m.stages[0].time_step));
   CHECK(m.stages[0].safety == 0.8);

@@ -6,6 +6,7 @@
 
 #include "support/told.h"
 #include "talus/base/error.h"
+#include "talus/model/read_model.h"
 #include "talus/run/run.h"
 
 namespace test_wrong_input {
@@ -69,6 +70,33 @@ TEST_CASE("wrong input: what cannot be read is not said to be missing") {
     check_message(refusal(text), {"error: syntax:", "1 error; nothing was run"});
   check_message(refusal(kSound, {"joint.fase.friction_angle=20"}),
                 {"the file has no [joint.fase]", "1 error; nothing was run"});
+}
+
+TEST_CASE("wrong input: what a step may keep is at least what its solvers aim at") {
+  const auto said = [](const std::string& solver) {
+    return refusal(replaced("[[monitor]]", "[solver]\n" + solver + "\n[[monitor]]"));
+  };
+  check_message(
+      said("tolerance = 1e-7\nlimit = 1e-9"),
+      {"model.toml:28:1: error: solver.limit: 1e-09 is not allowed; must be at least solver.tolerance, 1e-07",
+       "give a larger limit or a smaller tolerance", "1 error; nothing was run"});
+  check_message(said("limit = 0"),
+                {"model.toml:27:9: error: solver.limit: 0 is not allowed; must be > 0 and <= 0.01"});
+  CHECK(said("tolerance = 1e-7\nlimit = 1e-7") == "");
+  check_message(
+      refusal(replaced("joint = \"face\"", "joint = \"face\"\nlaw = \"smoothed\""), {"solver.limit=1e-4"}),
+      {"error: solver.limit: is of the exact law", "leave it out, or use contact.law = \"exact\""});
+  check_message(refusal(kSound, {"model.formulation=as_printed", "solver.limit=1e-4"}),
+                {"error: solver.limit: is of the exact law"});
+
+  // where none is given a tolerance above the usual limit is the limit, and smoothed steps keep nothing
+  const auto limit = [](const std::vector<std::string>& overrides) {
+    Findings findings("model.toml", kSound);
+    return read_model("model.toml", kSound, overrides, findings).solver.limit;
+  };
+  CHECK(limit({"solver.tolerance=1e-4"}) == 1e-4);
+  CHECK(limit({"solver.tolerance=1e-12"}) == 1e-5);
+  CHECK(limit({"contact.law=\"smoothed\""}) == 1e-8);
 }
 
 TEST_CASE("wrong input: each kind has its message") {

@@ -215,13 +215,13 @@ poisson = 0.25
                        InputError);
 }
 
-TEST_CASE("a step that misses the tolerance ends the run or is counted, as the policy says") {
+TEST_CASE("a step that misses the limit ends the run or is counted, as the policy says") {
   const std::string text = thrown(
       "[solver]\nmax_iterations=1\ntolerance=1e-14\n[[block]]\nname='c'\npolygon=[[1,0.1],[2,0],[2,1],[1,1.1]"
       "]\nmaterial='m'\nkind='rigid'\n"
       "[[stage]]\nname='s'\nkind='dynamic'\nduration=0.5\ntime_step=0.01\n");
   Findings findings("m", text);
-  PreparedRun p = prepare_run("m", text, {"solver.tolerance=1e-300"}, findings);
+  PreparedRun p = prepare_run("m", text, {"solver.tolerance=1e-300", "solver.limit=1e-300"}, findings);
   State state = start_state(p.scene);
   MemoryObserver observer(p.scene, nullptr);
   const RunResult stopped = run_stages(p.scene, p.plans, state, observer);
@@ -229,13 +229,17 @@ TEST_CASE("a step that misses the tolerance ends the run or is counted, as the p
   CHECK(stopped.failure.find("1 iteration of newton, ") != std::string::npos);
   CHECK(stopped.failure.find(" of pivoting, allowed") != std::string::npos);
   CHECK(stopped.failure.find("contact ") != std::string::npos);  // the row is named
+  CHECK(stopped.failure.find("a wider solver.limit may help") != std::string::npos);
+  CHECK(stopped.loose_steps == 0);
 
-  PreparedRun q = prepare_run("m", text, {"solver.tolerance=1e-300", "solver.on_failure=continue"}, findings);
+  PreparedRun q = prepare_run(
+      "m", text, {"solver.tolerance=1e-300", "solver.limit=1e-300", "solver.on_failure=continue"}, findings);
   State again = start_state(q.scene);
   MemoryObserver watcher(q.scene, nullptr);
   const RunResult counted = run_stages(q.scene, q.plans, again, watcher);
   CHECK(counted.failure == "");
   CHECK(counted.failed_steps > 0);
+  CHECK(counted.loose_steps == 0);
 }
 
 TEST_CASE("the predicted output size is that of the run within a third") {

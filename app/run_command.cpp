@@ -178,8 +178,9 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
                       "\n"));
   if (args.profile) say(out, profile_text(result.profile, result.threads));
   if (!result.failure.empty())
-    throw NumericalError(fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure,
-                                     name, left_text(recorder->left(), model.file, name)));
+    throw Error(result.mechanism ? kExitMechanism : kExitNumerical,
+                fmt::format("{}\nresults up to then are in {}; to look at them:\n{}", result.failure, name,
+                            left_text(recorder->left(), model.file, name)));
   if (result.interrupted) return kExitSignal + run.signal;
   const auto audit = recorder->audit();
   return audit && !audit->valid() ? kExitNotValid : kExitOk;

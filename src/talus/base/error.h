@@ -16,6 +16,7 @@ enum ExitCode : int {
   kExitInput = 3,      // the model file
   kExitFile = 4,       // a file or disk
   kExitNumerical = 5,  // no convergence, non-finite numbers, an inverted block
+  kExitMechanism = 6,  // a static stage finds no balance: something slides
   kExitResources = 7,  // no memory, or no threads
   kExitNotValid = 8,   // the run ended, and the audit says that its results are not valid
   kExitDiffers = 9,    // two results are further apart than they may be (talus compare)

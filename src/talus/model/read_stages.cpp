@@ -74,7 +74,7 @@ class StageReader : private SectionReader {
                                                           "damping_stiffness", "damping_local"};
     const auto integration = f.get<std::string>("integration");
     s.from_rest_auto = integration == "auto" && s.kind == StageKind::kStatic && !any_given(f, of_motion) &&
-                       !f.given("elasticity") && !f.given("time_step");
+                       f.get<std::string>("elasticity") != "explicit" && !f.given("time_step");
     if (integration != "implicit") return;
     if (s.kind == StageKind::kDynamic)
       error(f, "integration", "is \"implicit\", which knows no inertia: it is for static stages",

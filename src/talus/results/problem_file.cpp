@@ -142,7 +142,7 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
     SolverSet solvers;
     Profile profile;
     const StepProblem problem{mobility, rate, dt, {}, replay.rows, after, profile, tile};
-    replay.solved = solve_step(model, kinds, tolerance, 1, false, Workers(), solvers, problem, guess);
+    replay.solved = solve_step(model, kinds, tolerance, 0, 1, false, Workers(), solvers, problem, guess);
   } catch (const std::exception& e) {
     throw FileError(
         fmt::format("{}: is no step written by talus run --dump-step: {}", file.string(), e.what()));

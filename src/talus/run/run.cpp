@@ -18,6 +18,7 @@
 #include "talus/penalty/penalty_settings.h"
 #include "talus/penalty/penalty_step.h"
 #include "talus/run/check_monitors.h"
+#include "talus/run/mechanism.h"
 #include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
 #include "talus/run/steps_from_rest.h"
@@ -52,8 +53,12 @@ constexpr double kSolverShare = 0.02;
 // Steps from rest within which a stage finds its balance, if there is one near: those of 51,000 blocks took 89.
 constexpr int64_t kMostFromRest = 300;
 
-// How far blocks go in them, as share of their size, on the way to a balance that is near.
-constexpr double kFarFromRest = 0.5;
+// How far blocks go in them, as share of their size, on the way to a balance that is near; and how far what slides goes before
+// it is called a mechanism: it may come to lie on something yet.
+constexpr double kFarFromRest = 0.5, kMechanismWay = 1.5;
+
+// Of the area of all blocks that can move: what is less is no mechanism of the whole, and is followed.
+constexpr double kMechanismShare = 0.01;
 
 }  // namespace
 
@@ -242,12 +247,24 @@ class StagedRun::Runner {
   }
 
   // Whether steps from rest have said all they can say, and blocks are followed as they move. Tells why.
-  bool gives_up_rest(const StageInput& stage, const StageResult& out, std::string& because) const {
+  // A mechanism ends the run.
+  bool gives_up_rest(const StageInput& stage, const StageResult& out, std::string& because) {
+    if (!stage.from_rest) return false;
+    if (state_.rest.gone > kFarFromRest) {
+      const Mechanism m = find_mechanism(scene_, state_);
+      const bool of_all = m.slides && m.share >= kMechanismShare;
+      if (of_all && state_.rest.gone > kMechanismWay) {
+        result_.mechanism = result_.no_rest = true;
+        throw NumericalError(fmt::format(
+            "static stage \"{}\" finds no balance: a mechanism. {}. {} steps from rest; blocks_end.svg shows it, "
+            "stage.{}.integration = \"dynamic\" follows it",
+            stage.name, m.text(scene_, state_), out.steps, stage.name));
+      }
+      if (stage.may_follow && !of_all) return because = "no balance near: " + m.text(scene_, state_), true;
+    }
     if (!stage.may_follow) return false;
     if (out.steps >= kMostFromRest)
       because = fmt::format("no balance in {} steps from rest", out.steps);
-    else if (state_.rest.gone > kFarFromRest)
-      because = fmt::format("no balance near: a block has gone {:.2g} times its size", state_.rest.gone);
     else if (state_.time >= out.begin + stage.duration)
       because = fmt::format("no balance in {:g} s of steps from rest", stage.duration);
     return !because.empty();

@@ -50,7 +50,8 @@ struct RunResult {
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;
   bool interrupted = false;
-  bool no_rest = false;  // a static stage ended without it
+  bool no_rest = false;    // a static stage ended without it
+  bool mechanism = false;  // as something slides
   // of conventional DDA: stiffness of its normal springs [N/m], steps cut into parts, parts in all, deepest penetration [m],
   // largest pivot of its matrix over the smallest
   double penalty = 0;

@@ -357,6 +357,8 @@ class Search {
     trial.closure = run.closure();
     if (watch.failed()) {
       trial.outcome = "displacement limit";
+    } else if (run.mechanism) {
+      trial.outcome = "mechanism";
     } else if (run.failure.empty() && !run.interrupted) {
       trial.outcome = "at rest", trial.stands = true;
     } else if (!run.no_rest) {

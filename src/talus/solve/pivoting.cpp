@@ -309,7 +309,8 @@ SolveReport Pivoting::solve(const StepProblem& problem, const SolverGoal& goal, 
     const ContactProblem equations = build_problem(problem.mobility, problem.rows, points, problem.rate_free);
     Island island(equations);
     bool better = false;
-    if (island.live() <= kMostPivotRows) {
+    const bool may_stay = before <= goal.limit;
+    if (island.live() <= (may_stay ? kMostPivotRowsLoose : kMostPivotRows)) {
       std::vector<Impulse> kept;
       Eigen::VectorXd p(equations.size());
       for (size_t i = 0; i < points.size(); ++i) {

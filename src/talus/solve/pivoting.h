@@ -11,6 +11,9 @@ namespace talus {
 /// kept (25 MB), and a change of one row passes over them (some 3 ms; hundreds of changes are usual).
 inline constexpr size_t kMostPivotRows = 1000;
 
+/// The same where what is left may stay as it is (SolverGoal::limit): some 20 ms.
+inline constexpr size_t kMostPivotRowsLoose = 200;
+
 class Pivoting : public Solver {
  public:
   /// Solves the islands whose error is more than enough; those with more rows than kMostPivotRows stay as they are, as do

@@ -140,7 +140,7 @@ SolverKind chosen_solver(const Model& model, size_t points, const RowKinds& kind
 }
 
 // Theory 5.7.
-Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, double sharper,
+Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, double limit, double sharper,
                   bool keep_guess, const Workers& workers, SolverSet& solvers, const StepProblem& problem,
                   std::vector<Impulse>& guess) {
   TALUS_ASSERT(tolerance > 0 && sharper > 0 && sharper <= 1);
@@ -156,8 +156,8 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   const bool again = options.second_solver && !smoothed && !shorter &&
                      problem.rows.points.size() <= entry(second).most_points;
   const SolverEntry& last = *std::ranges::find_if(kSolvers, &SolverEntry::last);
-  const bool to_the_last = options.second_solver && !smoothed && !shorter && first != last.kind &&
-                           problem.rows.points.size() <= last.most_points;
+  const bool to_the_last = options.second_solver && !smoothed && (!kinds.from_rest || kinds.by_all) &&
+                           first != last.kind && problem.rows.points.size() <= last.most_points;
   TALUS_ASSERT(!smoothed || entry(first).smoothed);
   guess.clear();
   if (again || to_the_last || keep_guess) guess = problem.rows.impulse;
@@ -177,7 +177,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     SolverInput limits = options;
     limits.max_sweeps = sweeps;
     SolverGoal goal = goal_of(kind, kinds, tolerance, sharper);
-    goal.worth = worth;
+    goal.worth = worth, goal.limit = limit;
     now.method = kind;
     now.report = solvers.of(kind).solve(problem, goal, limits, workers);
     attempts.add(kind, now.report.iterations);

@@ -74,9 +74,10 @@ struct Solved {
 /// best so far for as many as the model allows; last, pivoting. The best stays, and is what the judge of the problem was asked last.
 /// @param kinds      of the rows: they say by which share of the tolerance solvers stop earlier than the judge
 /// @param tolerance  largest contact error [m]
+/// @param limit      what is less may stay where it would be dear to mend [m]
 /// @param sharper    share of it to which steps are solved where that takes few sweeps more
 /// @param guess      gets the first guess; empty when it is not wanted and no second solver may need it
-Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, double sharper,
+Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, double limit, double sharper,
                   bool keep_guess, const Workers& workers, SolverSet& solvers, const StepProblem& problem,
                   std::vector<Impulse>& guess);
 

@@ -76,8 +76,8 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
   for (StageInput& stage : scene.model.stages) {
-    if (!stage.elasticity_auto) continue;
-    stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
+    if (stage.elasticity_auto)
+      stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
     if (!stage.from_rest_auto || !scene.by_patches()) continue;
     stage.may_follow = true, stage.follow_implicit = stage.implicit;
     stage.go_from_rest();

@@ -106,7 +106,7 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
                             settings.near_expected ? &work.rate_expected : nullptr};
   RowKinds kinds = row_kinds(scene, work);
   kinds.by_all = settings.by_all;
-  const Solved solved = solve_step(scene.model, kinds, settings.tolerance, settings.sharper,
+  const Solved solved = solve_step(scene.model, kinds, settings.tolerance, settings.limit, settings.sharper,
                                    settings.keep_guess, work.workers, work.solvers, problem, work.guess);
   report.method = solved.method, report.solve = solved.report;
   report.error = solved.error;

@@ -152,7 +152,7 @@ TEST_CASE("pivoting solves contacts of 80 degrees that neither sweeps nor Newton
     std::vector<Impulse> guess;
     Profile profile;
     const StepProblem step{problem.mobility, problem.free, 1, {}, rows, rate, profile};
-    const Solved solved = solve_step(model, {}, 1e-9, 1, false, Workers(), solvers, step, guess);
+    const Solved solved = solve_step(model, {}, 1e-9, 0, 1, false, Workers(), solvers, step, guess);
     CHECK_FALSE(solved.failed);
     bool asked = false;
     for (size_t k = 0; k < solved.attempts.count; ++k)

@@ -1,0 +1,72 @@
+#include "talus/run/mechanism.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+
+// What goes less far than this share of the farthest way is carried along, or gives.
+constexpr double kGoes = 0.1;
+
+// What the others bear of a mechanism that does not fall, as share of its weight or, without gravity, of all forces.
+constexpr double kBorne = 0.01;
+
+}  // namespace
+
+Mechanism find_mechanism(const Scene& scene, const State& state) {
+  Mechanism m;
+  const BlockSet& blocks = scene.blocks;
+  double farthest = 0, all = 0;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (!blocks.moves_freely(i)) continue;
+    all += blocks.size[k] * blocks.size[k];
+    if (const double way = norm(state.rate[k].a); way > farthest) farthest = way, m.farthest = i;
+  }
+  if (m.farthest < 0) return m;
+  m.direction = state.rate[static_cast<size_t>(m.farthest)].a / farthest;
+  const auto goes = [&](int i) {
+    return blocks.moves_freely(i) && norm(state.rate[static_cast<size_t>(i)].a) >= kGoes * farthest;
+  };
+  double weight = 0;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (!goes(i)) continue;
+    ++m.blocks, m.area += blocks.size[k] * blocks.size[k];
+    weight += blocks.mass[k] * norm(scene.model.gravity);
+  }
+  m.share = m.area / all;
+  double borne = 0, forces = 0;
+  for (const Patch& p : state.patches) {
+    const double force = std::hypot(p.force[0][0] + p.force[1][0], p.force[0][1] + p.force[1][1]);
+    forces += force;
+    if (!(force > 0) || goes(p.block_a) == goes(p.block_b)) continue;
+    borne += force;
+    if (p.joint < 0) continue;
+    const std::string& name = scene.model.joints[static_cast<size_t>(p.joint)].name;
+    if (std::find(m.joints.begin(), m.joints.end(), name) == m.joints.end()) m.joints.push_back(name);
+  }
+  m.slides = borne > kBorne * (weight > 0 ? weight : forces);
+  std::sort(m.joints.begin(), m.joints.end());
+  return m;
+}
+
+std::string Mechanism::text(const Scene& scene, const State& state) const {
+  const auto k = static_cast<size_t>(farthest);
+  const Vec2 at = scene.blocks.centroid[k] + state.displacement[k];
+  std::string on;
+  if (slides && !joints.empty())
+    on = fmt::format(", on joint{} \"{}\"", joints.size() == 1 ? "" : "s", fmt::join(joints, "\", \""));
+  return fmt::format(
+      "{} block{}, {:.3g} m2 ({:.2g} % of what can move), {}{}; farthest \"{}\" at ({:.4g}, {:.4g}), along ({:.2f}, {:.2f})",
+      blocks, blocks == 1 ? "" : "s", area, 100 * share,
+      slides ? (blocks == 1 ? "slides" : "slide") : (blocks == 1 ? "falls" : "fall"), on,
+      scene.blocks.name[k], at.x, at.y, direction.x, direction.y);
+}
+
+}  // namespace talus

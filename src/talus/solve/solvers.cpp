@@ -215,7 +215,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   if (best.solved.failed && to_the_last) attempt(last.kind, few, true);
   if (!best_stands) {
     problem.rows.impulse = std::move(best.impulse);
-    problem.rate = std::move(best.rate);
+    problem.rate = best.rate;  // not moved: views of it (Python) stay where they are
     now = best.solved;
     take(judge());
   }

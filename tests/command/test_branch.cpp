@@ -141,8 +141,9 @@ TEST_CASE(
   refused(replaced(kShakenBricks, "2500", "2600"), at_rest, "material.rock.density: 2600, was 2500");
   refused(replaced(kShakenBricks, "\"20 kPa\"", "\"10 kPa\""), at_rest,
           "joint.face.cohesion: '10 kPa', was '20 kPa'");
-  refused(replaced(kShakenBricks, "name = \"rest\"\nkind = \"static\"\nduration = \"1 s\"",
-                   "name = \"rest\"\nkind = \"static\"\nduration = \"2 s\""),
+  refused(replaced(kShakenBricks,
+                   "name = \"rest\"\nkind = \"static\"\nintegration = \"dynamic\"\nduration = \"1 s\"",
+                   "name = \"rest\"\nkind = \"static\"\nintegration = \"dynamic\"\nduration = \"2 s\""),
           at_rest, "stage.rest.duration");
   refused(replaced(kShakenBricks, "\"10 ms\", 1]", "\"20 ms\", 1]"), at_rest, "stage.dig.relaxation");
   refused(replaced(kShakenBricks, "name = \"dig\"", "name = \"digs\""), at_rest,

@@ -81,9 +81,9 @@ TEST_CASE("command run --from: every saved state leads to the same bits") {
 TEST_CASE("command run --from: the same bits from within static stages whose steps begin at rest") {
   Folder folder;
   std::string text = kModel;
-  const std::string found = "kind = \"static\"\n", more = "integration = \"implicit\"\n";
-  for (size_t at = 0; (at = text.find(found, at)) != std::string::npos; at += found.size() + more.size())
-    text.insert(at, more);
+  const std::string found = "integration = \"dynamic\"\n", other = "integration = \"implicit\"\n";
+  for (size_t at = 0; (at = text.find(found, at)) != std::string::npos; at += other.size())
+    text.replace(at, found.size(), other);
   const auto replace = [&text](const std::string& from, const std::string& to) {
     text.replace(text.find(from), from.size(), to);
   };

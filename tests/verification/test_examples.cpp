@@ -334,7 +334,7 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
   // no formula: what the example's README quotes
   check_close("blast_hole velocity past 4 m [m/s]", near, 0.2647, 1e-2, 1e-3);
   check_close("blast_hole velocity past 12 m [m/s]", far, 0.1268, 1e-2, 1e-3);
-  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 184, 2e-2, 1e-12);
+  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 190, 2e-2, 1e-12);
   check_below("blast_hole energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
@@ -371,12 +371,12 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   // by 4 %, another state of rest before by 2 %; other compilers may too. Five tolerances from 1e-9 to 1e-8
   // gave 0.359 to 0.396 m for the crest and 0.384 to 0.517 m for the slip of the loosest joint, other last bits
   // 0.509 and 0.646 m: no trend, so these two are asked for within such a scatter
-  check_close("shaken_slope largest velocity of the base [m/s]", base, 0.338, 1e-2, 2e-3);
-  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.472, 5e-2, 1e-2);
+  check_close("shaken_slope largest velocity of the base [m/s]", base, 0.347, 1e-2, 2e-3);
+  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.425, 5e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.332, 1e-1, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.527, 1e-1, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
-              (behind_end - behind_start - base_end + base_start).x, -0.0511, 1e-1, 6e-2);
+              (behind_end - behind_start - base_end + base_start).x, -0.0730, 1e-1, 6e-2);
   check_close("shaken_slope largest slip between neighbours [m]", slip, 0.344, 2.7e-1, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
@@ -386,10 +386,10 @@ TEST_SUITE_END();
 TEST_CASE("example bolted_slope: the bolts hold what would slide") {
   const CaseResult r = run_example("bolted_slope");
   const auto& slip = r.column("head.displacement_x [m]");
-  check_close("bolted_slope slip of the slab [m]", slip.back(), -0.503e-3, 5e-2, 5e-2);
-  check_close("bolted_slope tension of the anchor [N]", r.column("toe.axial_force [N]").back(), 53.0e3, 2e-2,
+  check_close("bolted_slope slip of the slab [m]", slip.back(), -0.490e-3, 5e-2, 5e-2);
+  check_close("bolted_slope tension of the anchor [N]", r.column("toe.axial_force [N]").back(), 51.8e3, 2e-2,
               2e-2);
-  check_close("bolted_slope tension of a grouted bar [N]", r.column("row.axial_force [N]").back(), 57.7e3,
+  check_close("bolted_slope tension of a grouted bar [N]", r.column("row.axial_force [N]").back(), 56.2e3,
               5e-2, 5e-2);
   CHECK(r.column("toe.ruptured").back() + r.column("row.ruptured").back() == 0);
   // the last half second is two periods of the shaking or more: no creep

@@ -183,14 +183,15 @@ struct HeldPoint {
 
 /// How a static stage comes to rest, looked at every 250 steps.
 struct RestWatch {
-  int64_t steps = 0;   // since the stage began
-  double best = 0;     // least of the measure of rest (theory.md 4.8) since the last look; 0: none
-  double before = 0;   // the same between the last two looks
-  double sharper = 1;  // share of the solver's tolerance to which steps are solved
-  int stuck = 0;       // looks in a row that stall or, at the sharpest, are without any progress
-  double length = 0;   // of the next step of a stage from rest [s]
-  int whole = 0;       // such steps in a row that were not halved
-  double gone = 0;     // no block has gone further in them, as share of its size
+  int64_t steps = 0;     // since the stage began
+  double best = 0;       // least of the measure of rest (theory.md 4.8) since the last look; 0: none
+  double before = 0;     // the same between the last two looks
+  double sharper = 1;    // share of the solver's tolerance to which steps are solved
+  int stuck = 0;         // looks in a row that stall or, at the sharpest, are without any progress
+  double length = 0;     // of the next step of a stage from rest [s]
+  int whole = 0;         // such steps in a row that were not halved
+  double gone = 0;       // no block has gone further in them, as share of its size
+  double gone_many = 0;  // and blocks of a hundredth of the area no less far
 };
 
 /// What an implicit step leaves out of balance, and how it moved (of conventional DDA).

@@ -109,9 +109,9 @@ void each_field(Is<Bolt> auto& b, auto&& f) {
 }
 
 void each_field(Is<RestWatch> auto& r, auto&& f) {
-  auto& [steps, best, before, sharper, stuck, length, whole, gone] = r;
+  auto& [steps, best, before, sharper, stuck, length, whole, gone, gone_many] = r;
   f("steps", steps), f("best", best), f("before", before), f("sharper", sharper), f("stuck", stuck);
-  f("length", length), f("whole", whole), f("gone", gone);
+  f("length", length), f("whole", whole), f("gone", gone), f("gone_many", gone_many);
 }
 
 void each_field(Is<StepJudged> auto& j, auto&& f) {

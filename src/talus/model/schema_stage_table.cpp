@@ -55,7 +55,7 @@ SectionSpec stage_section() {
         .type = K::kChoice,
         .required = true,
         .choices = {"static", "dynamic"},
-        .doc = "`dynamic`: in true time for `duration`. `static`: damped until at rest, at most for "
+        .doc = "`dynamic`: in true time for `duration`. `static`: until at rest, at most for "
                "`duration`."},
        {.name = "duration",
         .dimension = D::kTime,
@@ -82,8 +82,10 @@ SectionSpec stage_section() {
             "Static stages. `dynamic`: they move, damped, until at rest. `implicit`: steps of backward Euler "
             "(theory 4.23), each from rest to what is nearly the balance of its loads, that grow from "
             "`time_step` (\"auto\": 20 ms) to 64 times that, and are halved where one fails; `relaxation` is "
-            "then, unless given, over the first eight. `auto`: implicit with 1000 blocks or more and joints "
-            "that have stiffness, unless time step, elasticity or damping are given."},
+            "then, unless given, over the first eight. What slides on by one and a half of its size, and is a "
+            "hundredth of all that can move, is a mechanism and ends the run (exit code 6). `auto`: implicit, "
+            "and what has no balance near and is no mechanism is followed by damped motion; dynamic where a "
+            "time step, explicit elasticity, damping, `safety` or `moment_clamp` say how blocks shall move."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

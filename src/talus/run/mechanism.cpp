@@ -5,34 +5,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 namespace talus {
 
 namespace {
 
-// What goes less far than this share of the farthest way is carried along, or gives.
+// What goes less far than this share of the others, each by its size, is carried along, or gives.
 constexpr double kGoes = 0.1;
+
+// What is so much slower than the fastest, each by its size, stands beside it.
+constexpr double kStands = 0.01;
 
 // What the others bear of a mechanism that does not fall, as share of its weight or, without gravity, of all forces.
 constexpr double kBorne = 0.01;
 
 }  // namespace
 
+double pace_of_many(const BlockSet& blocks, const State& state) {
+  std::vector<std::pair<double, double>> pace;  // and area
+  double all = 0;
+  for (int i = 0; i < blocks.count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (!blocks.moves_freely(i)) continue;
+    const double area = blocks.size[k] * blocks.size[k];
+    all += area, pace.emplace_back(norm(state.rate[k].a) / blocks.size[k], area);
+  }
+  std::sort(pace.begin(), pace.end(), std::greater<>());
+  double faster = 0;
+  for (const auto& [p, area] : pace)
+    if (faster += area; faster >= kMechanismShare * all) return p;
+  return 0;
+}
+
 Mechanism find_mechanism(const Scene& scene, const State& state) {
   Mechanism m;
   const BlockSet& blocks = scene.blocks;
+  double fastest = 0;
+  for (int i = 0; i < blocks.count; ++i)
+    if (blocks.moves_freely(i))
+      fastest =
+          std::max(fastest, norm(state.rate[static_cast<size_t>(i)].a) / blocks.size[static_cast<size_t>(i)]);
+  // beside a crumb that goes by itself the others stand
+  const double many = pace_of_many(blocks, state),
+               least = kGoes * (many >= kStands * fastest ? many : fastest);
+  const auto goes = [&](int i) {
+    const auto k = static_cast<size_t>(i);
+    return blocks.moves_freely(i) && norm(state.rate[k].a) > 0 &&
+           norm(state.rate[k].a) >= least * blocks.size[k];
+  };
   double farthest = 0, all = 0;
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
     all += blocks.size[k] * blocks.size[k];
-    if (const double way = norm(state.rate[k].a); way > farthest) farthest = way, m.farthest = i;
+    if (const double way = norm(state.rate[k].a); goes(i) && way > farthest) farthest = way, m.farthest = i;
   }
   if (m.farthest < 0) return m;
   m.direction = state.rate[static_cast<size_t>(m.farthest)].a / farthest;
-  const auto goes = [&](int i) {
-    return blocks.moves_freely(i) && norm(state.rate[static_cast<size_t>(i)].a) >= kGoes * farthest;
-  };
   double weight = 0;
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
@@ -63,7 +94,7 @@ std::string Mechanism::text(const Scene& scene, const State& state) const {
   if (slides && !joints.empty())
     on = fmt::format(", on joint{} \"{}\"", joints.size() == 1 ? "" : "s", fmt::join(joints, "\", \""));
   return fmt::format(
-      "{} block{}, {:.3g} m2 ({:.2g} % of what can move), {}{}; farthest \"{}\" at ({:.4g}, {:.4g}), along ({:.2f}, {:.2f})",
+      "{} block{}, {:.3g} m2 ({:.3g} % of what can move), {}{}; farthest \"{}\" at ({:.4g}, {:.4g}), along ({:.2f}, {:.2f})",
       blocks, blocks == 1 ? "" : "s", area, 100 * share,
       slides ? (blocks == 1 ? "slides" : "slide") : (blocks == 1 ? "falls" : "fall"), on,
       scene.blocks.name[k], at.x, at.y, direction.x, direction.y);

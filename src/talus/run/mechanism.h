@@ -7,6 +7,12 @@
 
 namespace talus {
 
+/// Of all blocks that can move those of this share of their area are a mechanism of the whole; less is a crumb.
+inline constexpr double kMechanismShare = 0.01;
+
+/// Blocks of that share of the area go at least so fast, as share of their size [1/s].
+double pace_of_many(const BlockSet& blocks, const State& state);
+
 /// The blocks that went on together in a step from rest, and what they slid on.
 struct Mechanism {
   int blocks = 0;

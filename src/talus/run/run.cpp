@@ -57,9 +57,6 @@ constexpr int64_t kMostFromRest = 300;
 // it is called a mechanism: it may come to lie on something yet.
 constexpr double kFarFromRest = 0.5, kMechanismWay = 1.5;
 
-// Of the area of all blocks that can move: what is less is no mechanism of the whole, and is followed.
-constexpr double kMechanismShare = 0.01;
-
 }  // namespace
 
 class StagedRun::Runner {
@@ -252,15 +249,16 @@ class StagedRun::Runner {
     if (!stage.from_rest) return false;
     if (state_.rest.gone > kFarFromRest) {
       const Mechanism m = find_mechanism(scene_, state_);
-      const bool of_all = m.slides && m.share >= kMechanismShare;
-      if (of_all && state_.rest.gone > kMechanismWay) {
+      if (m.slides && state_.rest.gone_many > kMechanismWay) {
         result_.mechanism = result_.no_rest = true;
         throw NumericalError(fmt::format(
             "static stage \"{}\" finds no balance: a mechanism. {}. {} steps from rest; blocks_end.svg shows it, "
             "stage.{}.integration = \"dynamic\" follows it",
             stage.name, m.text(scene_, state_), out.steps, stage.name));
       }
-      if (stage.may_follow && !of_all) return because = "no balance near: " + m.text(scene_, state_), true;
+      // what slides may come to lie on something: not what falls, or is a crumb
+      if (stage.may_follow && !(m.slides && state_.rest.gone_many > 0.5 * state_.rest.gone))
+        return because = "no balance near: " + m.text(scene_, state_), true;
     }
     if (!stage.may_follow) return false;
     if (out.steps >= kMostFromRest)

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "talus/base/error.h"
+#include "talus/run/mechanism.h"
 #include "talus/run/plan.h"
 
 namespace talus {
@@ -51,7 +52,7 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     const bool solved = !report.failed && !(report.loose && length > shortest);
     if (solved && !is_far(approach) && approach.of_margin <= 1) {
       state_.rest.length = length;
-      state_.rest.gone += way_;
+      state_.rest.gone += way_, state_.rest.gone_many += length * pace_of_many(scene_.blocks, state_);
       state_.rest.whole = !halved ? state_.rest.whole + 1 : length < first ? 0 : kAfterHalving;
       return report;
     }

@@ -1,0 +1,192 @@
+// Static stages that have no balance near: mechanisms, what falls, and the damped motion that follows (theory 4.23).
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "talus/base/random.h"
+#include "talus/model/read_model.h"
+#include "talus/run/run.h"
+
+namespace test_no_balance {
+
+using namespace talus;
+
+namespace {
+
+struct Ended {
+  PreparedRun prepared;
+  State state;
+  RunResult result;
+};
+
+class Silent : public Observer {
+ public:
+  void at(const Instant&) override {}
+};
+
+PreparedRun prepared(const std::string& text) {
+  Findings findings("m.toml", text);
+  return prepare_run("m.toml", text, {}, findings);
+}
+
+Ended run(const std::string& text) {
+  Ended e{prepared(text), {}, {}};
+  e.state = start_state(e.prepared.scene);
+  Silent silent;
+  e.result = run_stages(e.prepared.scene, e.prepared.plans, e.state, silent);
+  return e;
+}
+
+std::string head(double friction, bool elastic, bool gravity = true) {
+  return fmt::format(
+      "talus = 1\n[model]\ngravity = [0, {}]\n[material.m]\ndensity = 2600\nyoung = \"30 GPa\"\npoisson = 0.2\n"
+      "[joint.plane]\nfriction_angle = \"{:.17g} deg\"\n{}[contact]\njoint = \"plane\"\n",
+      gravity ? -9.81 : 0, friction,
+      elastic ? "normal_stiffness = \"20 GPa/m\"\nshear_stiffness = \"10 GPa/m\"\n" : "");
+}
+
+std::string block(const std::string& name, const std::string& polygon, const std::string& kind) {
+  return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n", name,
+                     polygon, kind);
+}
+
+std::string static_stage(double duration = 5) {
+  return fmt::format("[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = {}\n", duration);
+}
+
+// A wedge on a plane of this dip.
+std::string wedge(double dip, double friction, const std::string& kind, bool elastic) {
+  const double angle = dip * 3.14159265358979323846 / 180, l = 40 * std::cos(angle), h = 40 * std::sin(angle);
+  return head(friction, elastic) +
+         block("base", fmt::format("[[-{0}, -{1}], [{0}, -{1}], [{0}, {1}]]", l, h), "fixed") +
+         block("wedge", fmt::format("[[0, 0], [{0}, {1}], [{2}, {1}]]", l, h, 0.5 * l), kind) +
+         static_stage();
+}
+
+}  // namespace
+
+TEST_CASE(
+    "no balance: of random wedges on a plane those above their friction are mechanisms, the others rest") {
+  Random random(7);
+  for (int i = 0; i < 24; ++i) {
+    const double dip = 20 + 40 * random.uniform();
+    const bool slides = i % 2 == 0, elastic = i % 4 < 2;
+    const std::string kind = i % 8 < 4 ? "rigid" : "deformable";
+    CAPTURE(i);
+    CAPTURE(dip);
+    const double radians = dip * 3.14159265358979323846 / 180;
+    const double friction = std::atan(std::tan(radians) * (slides ? 0.98 : 1.02)) / radians * dip;
+    const Ended e = run(wedge(dip, friction, kind, elastic));
+    CHECK(e.result.mechanism == slides);
+    CHECK(e.result.stages[0].at_rest == !slides);
+    CHECK(e.result.steps <= (slides ? 300 : 12));
+    if (!slides) continue;
+    CHECK(e.result.failure.find("\"wedge\"") != std::string::npos);
+    CHECK(e.result.failure.find("on joint \"plane\"") != std::string::npos);
+    CHECK(e.result.failure.find("100 %") != std::string::npos);
+    // along the plane
+    const Vec2 d = e.state.displacement[1];
+    CHECK(std::atan2(-d.y, -d.x) == doctest::Approx(radians).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("no balance: a stone that falls is followed, and comes to rest where it lands") {
+  for (const bool elastic : {false, true})
+    for (const std::string kind : {"rigid", "deformable"}) {
+      CAPTURE(elastic);
+      CAPTURE(kind);
+      const Ended e =
+          run(head(30, elastic) + block("floor", "[[-2, -1], [2, -1], [2, 0], [-2, 0]]", "fixed") +
+              block("stone", "[[0, 0.9], [1, 0.9], [1, 1.9], [0, 1.9]]", kind) + static_stage(20));
+      const StageResult& s = e.result.stages[0];
+      CHECK(!e.result.mechanism);
+      CHECK(s.at_rest);
+      CHECK(s.followed());
+      CHECK(s.followed_because.find("1 block, 1 m2 (100 % of what can move), falls") != std::string::npos);
+      CHECK(e.state.displacement[1].y == doctest::Approx(-0.9).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("no balance: a crumb that slides beside a standing block is no mechanism") {
+  const Ended e = run(head(20, true) +
+                      block("base", "[[-5, -1], [6, -1], [6, 0], [1.5, 4.5], [1.5, 0], [-5, 0]]", "fixed") +
+                      block("tower", "[[-4, 0], [-2, 0], [-2, 3], [-4, 3]]", "rigid") +
+                      block("crumb", "[[2.5, 3.5], [2.6, 3.4], [2.65, 3.5]]", "rigid") + static_stage(1));
+  CHECK(!e.result.mechanism);
+  CHECK(e.result.stages[0].followed());
+  CHECK(e.result.stages[0].followed_because.find("slides, on joint \"plane\"; farthest \"crumb\"") !=
+        std::string::npos);
+}
+
+TEST_CASE("no balance: a run that is taken up in the motion that follows has the same bits") {
+  const std::string text = head(30, false) + block("floor", "[[-2, -1], [2, -1], [2, 0], [-2, 0]]", "fixed") +
+                           block("stone", "[[0, 0.9], [1, 0.9], [1, 1.9], [0, 1.9]]", "rigid") +
+                           static_stage(20);
+  const Ended whole = run(text);
+  PreparedRun one = prepared(text), two = prepared(text);
+  State state = start_state(one.scene);
+  Silent silent;
+  Standing standing;
+  {
+    StagedRun first(one.scene, one.plans, state, silent);
+    CHECK(first.advance({.steps = 60}));
+    standing = first.standing();
+  }
+  REQUIRE(standing.result.stages[0].followed());
+  const RunResult end = continue_stages(two.scene, two.plans, standing, state, silent);
+  CHECK(end.stages[0].at_rest);
+  CHECK(end.steps == whole.result.steps);
+  CHECK(state.displacement[1] == whole.state.displacement[1]);
+  CHECK(state.time == whole.state.time);
+}
+
+TEST_CASE("no balance: a stage that says how its blocks move is not taken from rest") {
+  const std::string model = wedge(30, 40, "deformable", true);
+  const auto from_rest = [&](const std::string& more) {
+    return prepared(model + more).scene.model.stages[0].from_rest;
+  };
+  CHECK(from_rest(""));
+  CHECK(from_rest("elasticity = \"implicit\"\n"));
+  for (const std::string more : {"integration = \"dynamic\"\n", "elasticity = \"explicit\"\n",
+                                 "damping_local = 0.5\n", "time_step = \"0.1 ms\"\n", "safety = 0.5\n"})
+    CHECK(!from_rest(more));
+}
+
+// Sag of two voussoirs of 5 x 0.5 m between abutments, that bear by opposite corners: force F along their diagonal d strains
+// them by F d/(E V) along it, and 2 F sin(its angle) is the weight of one.
+static double sag_by_hand(double weight) {
+  const double young = 2e9, volume = 2.5, d0 = std::hypot(5.0, 0.5);
+  double low = 0, high = 0.2;
+  for (int i = 0; i < 60; ++i) {
+    const double u = 0.5 * (low + high), d = std::hypot(5, 0.5 - u);
+    const double force = young * volume * (d0 - d) / (d0 * d0);
+    (2 * force * (0.5 - u) / d < weight ? low : high) = u;
+  }
+  return low;
+}
+
+TEST_CASE("no balance: two voussoirs sag as von Mises' truss does, whatever the step") {
+  const double weight = 2500 * 36.402807117194286 * 2.5;
+  for (const double step : {1e-3, 5e-3, 2e-2}) {
+    CAPTURE(step);
+    const Ended e = run(
+        "talus = 1\n[model]\nplane = \"stress\"\ngravity = [0, -36.402807117194286]\n[material.m]\ndensity = 2500\n"
+        "young = \"2 GPa\"\npoisson = 0\n[joint.j]\nfriction_angle = \"45 deg\"\n[contact]\njoint = \"j\"\n" +
+        block("left", "[[-6, -1], [-5, -1], [-5, 1.5], [-6, 1.5]]", "fixed") +
+        block("right", "[[5, -1], [6, -1], [6, 1.5], [5, 1.5]]", "fixed") +
+        block("a", "[[-5, 0], [0, 0], [0, 0.5], [-5, 0.5]]", "deformable") +
+        block("b", "[[0, 0], [5, 0], [5, 0.5], [0, 0.5]]", "deformable") +
+        "[[support]]\nname = \"lf\"\npoint = [-5, 0]\nblock = \"a\"\nx = \"free\"\n"
+        "[[support]]\nname = \"rf\"\npoint = [5, 0]\nblock = \"b\"\nx = \"free\"\n" +
+        static_stage(60) + fmt::format("integration = \"implicit\"\ntime_step = {}\n", step));
+    REQUIRE(e.result.stages[0].at_rest);
+    // the top of a at midspan: its centroid and what it has turned and strained by
+    const Vec2 arm{2.499, 0.249};
+    const double sag = -(e.state.displacement[2] + e.state.strain_part[2] * arm).y;
+    CHECK(sag == doctest::Approx(sag_by_hand(weight)).epsilon(5e-3));
+  }
+}
+
+}  // namespace test_no_balance

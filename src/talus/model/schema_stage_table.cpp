@@ -85,7 +85,8 @@ SectionSpec stage_section() {
             "then, unless given, over the first eight. What slides on by one and a half of its size, and is a "
             "hundredth of all that can move, is a mechanism and ends the run (exit code 6). `auto`: implicit, "
             "and what has no balance near and is no mechanism is followed by damped motion; dynamic where a "
-            "time step, explicit elasticity, damping, `safety` or `moment_clamp` say how blocks shall move."},
+            "time step, explicit elasticity, damping, `safety` or `moment_clamp` say how blocks shall move, "
+            "and where joints without stiffness have cohesion or tensile strength."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "support/closing_jaws.h"
 #include "support/command.h"
@@ -13,6 +14,7 @@
 #include "support/shaken_bricks.h"
 #include "talus/base/clock.h"
 #include "talus/base/random.h"
+#include "talus/base/text_file.h"
 #include "talus/output/archive.h"
 
 namespace test_saved_state {
@@ -172,6 +174,36 @@ TEST_CASE("command run: killed at fifty random moments, results can be read and 
   CHECK(gone_on >= 10);
   CHECK(ended >= 1);
   MESSAGE(kills, " kills, ", gone_on, " runs went on from a saved state, ", ended, " came to their end");
+}
+
+TEST_CASE("command run: a wedge that slides is a mechanism, and a stone that falls is followed") {
+  const auto model = [](const std::string& stone) {
+    return "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\n"
+           "[joint.plane]\nfriction_angle = \"30 deg\"\n[contact]\njoint = \"plane\"\n"
+           "[[block]]\nname = \"base\"\npolygon = [[-9, -9], [9, -9], [9, 9]]\nmaterial = \"m\"\nkind = "
+           "\"fixed\"\n[[block]]\nname = \"stone\"\npolygon = " +
+           stone +
+           "\nmaterial = \"m\"\nkind = \"rigid\"\n"
+           "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1\n";
+  };
+  Folder folder;
+  write_model(folder, model("[[0, 0], [4, 4], [2, 4]]"));
+  const Outcome o = shell(folder, "$talus run model.toml -o out");
+  INFO(o.text);
+  CHECK(o.code == 6);
+  has(o.text,
+      "static stage \"rest\" finds no balance: a mechanism. 1 block, 4 m2 (100 % of what can move), slides, on joint \"plane\"; farthest \"stone\"");
+  has(o.text, "along (-0.71, -0.71)");
+  CHECK(fs::exists(folder / "out/blocks_end.svg"));
+  write_model(folder, model("[[0, 2], [1, 2], [1, 3], [0, 3]]"));
+  const Outcome falls = shell(folder, "$talus run model.toml -o falls");
+  INFO(falls.text);
+  CHECK(falls.code == 5);  // in a second it does not come to rest
+  has(falls.text, "no balance near: 1 block, 1 m2 (100 % of what can move), falls; farthest \"stone\"");
+  has(falls.text, "followed by damped motion");
+  const auto summary = nlohmann::json::parse(read_text_file(folder / "falls/summary.json"));
+  CHECK(summary["stages"][0]["steps_from_rest"] > 1);
+  CHECK(summary["stages"][0]["followed_from [s]"] > 0);
 }
 
 TEST_CASE("command run: a run that fails leaves its last good state, from which it comes to the same end") {

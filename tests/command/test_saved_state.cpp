@@ -206,6 +206,30 @@ TEST_CASE("command run: a wedge that slides is a mechanism, and a stone that fal
   CHECK(summary["stages"][0]["followed_from [s]"] > 0);
 }
 
+TEST_CASE(
+    "command run --from: the same bits from within the motion that follows steps from rest, and from behind it") {
+  Folder folder;
+  write_model(
+      folder,
+      "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\nyoung = \"30 GPa\"\n"
+      "poisson = 0\n[joint.j]\nfriction_angle = \"30 deg\"\nnormal_stiffness = \"20 GPa/m\"\n"
+      "shear_stiffness = \"20 GPa/m\"\n[joint.hard]\nfriction_angle = \"30 deg\"\n[contact]\njoint = \"j\"\n"
+      "[[contact_pair]]\nbetween = [\"floor\", \"second\"]\njoint = \"hard\"\n"
+      "[[block]]\nname = \"floor\"\npolygon = [[-1, -1], [1, -1], [1, 0], [-1, 0]]\nmaterial = \"m\"\n"
+      "kind = \"fixed\"\n[[block]]\nname = \"stone\"\npolygon = [[0, 0.09], [0.1, 0.09], [0.1, 0.19], [0, "
+      "0.19]]\nmaterial = \"m\"\n[[block]]\nname = \"second\"\npolygon = [[-0.4, 0], [-0.3, 0], [-0.3, 0.1], "
+      "[-0.4, 0.1]]\nmaterial = \"m\"\n"
+      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 0.6\nunbalanced = 1e-3\n"
+      "[[stage]]\nname = \"after\"\nkind = \"dynamic\"\nduration = 0.02\ntime_step = 1e-3\nelasticity = "
+      "\"implicit\"\n[output]\nsave_interval = \"20 ms\"\n");
+  const auto whole = goes_on_from_each_state(folder);
+  const auto summary = nlohmann::json::parse(read_text_file(folder / "whole/summary.json"));
+  const auto& stage = summary["stages"][0];
+  CHECK(stage["followed_because"] != "");
+  // of more steps than its way from rest could have had, which are 64 to 20 ms
+  CHECK(stage["steps"].get<int>() - stage["steps_from_rest"].get<int>() > 64 * 30);
+}
+
 TEST_CASE("command run: a run that fails leaves its last good state, from which it comes to the same end") {
   Folder folder;
   write_model(folder, closing_jaws(0.1));

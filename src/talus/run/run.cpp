@@ -194,6 +194,10 @@ class StagedRun::Runner {
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     settle_in(scene_.model.stages[static_cast<size_t>(index)]);
+    // hard contacts give by the shortest step of what has been
+    for (size_t i = 0; i < result_.stages.size(); ++i)
+      if (result_.stages[i].followed())
+        scene_.give.shortest_step = std::min(scene_.give.shortest_step, plans_[i].dt_follow);
     if (result_.stages.back().followed()) go_by_motion();
     if (!from.between) enter_steps(index);
   }
@@ -243,8 +247,8 @@ class StagedRun::Runner {
     advance_ = plan.dt;
   }
 
-  // Whether steps from rest have said all they can say, and blocks are followed as they move. Tells why.
-  // A mechanism ends the run.
+  // Whether steps from rest have said all they can say, and blocks are followed as they move; tells why. A mechanism ends the
+  // run.
   bool gives_up_rest(const StageInput& stage, const StageResult& out, std::string& because) {
     if (!stage.from_rest) return false;
     if (state_.rest.gone > kFarFromRest) {
@@ -257,7 +261,7 @@ class StagedRun::Runner {
             stage.name, m.text(scene_, state_), out.steps, stage.name));
       }
       // what slides may come to lie on something: not what falls, or is a crumb
-      if (stage.may_follow && !(m.slides && state_.rest.gone_many > 0.5 * state_.rest.gone))
+      if (stage.may_follow && !(m.slides && m.share >= kMechanismShare))
         return because = "no balance near: " + m.text(scene_, state_), true;
     }
     if (!stage.may_follow) return false;

@@ -92,7 +92,7 @@ class Watch : public Observer {
   }
   // What steps from rest have not held within the limit has failed, wherever it may come to rest then.
   void stage_is_followed(const Scene&, int, const StagePlan&, const std::string&) override {
-    fell_ = beyond_;
+    fell_ = fell_ || beyond_;
   }
   bool stop() override { return failed(); }
 

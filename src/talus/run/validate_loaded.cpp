@@ -142,6 +142,7 @@ void judge_pairs(const Standing& standing, const State& state, const Scene& scen
 
 void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResult& now, const State& state) {
   if (now.followed()) {
+    promise_loaded(stage.may_follow, "it is followed by damped motion in a stage that is not");
     const double dt = plan.dt_follow,
                  time = now.followed_from + dt * static_cast<double>(now.steps - now.steps_from_rest);
     promise_loaded(
@@ -180,7 +181,9 @@ void judge_standing(const Standing& standing, const State& state, const Prepared
   }
   const StagePlan& plan = prepared.plans[stages.size() - 1];
   const StageResult& now = stages.back();
-  promise_loaded(now.steps <= plan.steps, "its steps are not those of the model");
+  promise_loaded(now.steps_from_rest >= 0 && now.steps_from_rest <= now.steps &&
+                     now.steps - now.steps_from_rest <= (now.followed() ? plan.steps_follow : plan.steps),
+                 "its steps are not those of the model");
   judge_clock(scene.model.stages[stages.size() - 1], plan, now, state);
   const RunResult& r = standing.result;
   for (const int64_t count : {r.steps, r.failed_steps, r.loose_steps, r.second_solver_steps, r.iterations})

@@ -163,6 +163,121 @@ TEST_CASE("no balance: a stage that says how its blocks move is not taken from r
     CHECK(!from_rest(more));
 }
 
+// A block of 1 m on a plane of 45 deg without friction, with so far to go before a stop.
+static Ended slide_to_stop(double way) {
+  const auto at = [](double s, double n) {  // along the plane upwards, across it
+    const double c = std::sqrt(0.5);
+    return fmt::format("[{:.17g}, {:.17g}]", c * (s - n), c * (s + n));
+  };
+  const auto box = [&](double from, double to, double low, double high) {
+    return fmt::format("[{}, {}, {}, {}]", at(from, low), at(to, low), at(to, high), at(from, high));
+  };
+  return run(head(0, true) + block("plane", box(-5, 5, -1, 0), "fixed") +
+             block("stop", box(-way - 1, -way, 0, 1), "fixed") + block("slider", box(0, 1, 0, 1), "rigid") +
+             static_stage(20));
+}
+
+TEST_CASE(
+    "no balance: what slides less than one and a half of its size may come to lie, further is a mechanism") {
+  const Ended near = slide_to_stop(1), far = slide_to_stop(2.5);
+  CHECK(!near.result.mechanism);
+  CHECK(near.result.stages[0].at_rest);
+  CHECK(!near.result.stages[0].followed());
+  CHECK(far.result.mechanism);
+}
+
+TEST_CASE(
+    "no balance: what falls by less than half its size lands in steps from rest, further it is followed") {
+  for (const double gap : {0.3, 0.8}) {
+    CAPTURE(gap);
+    const Ended e =
+        run(head(30, true) + block("floor", "[[-2, -1], [2, -1], [2, 0], [-2, 0]]", "fixed") +
+            block("stone", fmt::format("[[0, {0}], [1, {0}], [1, {1}], [0, {1}]]", gap, 1 + gap), "rigid") +
+            static_stage(20));
+    CHECK(e.result.stages[0].at_rest);
+    CHECK(e.result.stages[0].followed() == (gap > 0.5));
+  }
+}
+
+TEST_CASE("no balance: a hundredth of the area that can move is a mechanism, less is a crumb") {
+  for (const double share : {0.007, 0.015}) {
+    CAPTURE(share);
+    const double side = std::sqrt(share / (1 - share) * 36);
+    const Ended e =
+        run(head(0, true) + block("base", "[[-9, -9], [9, -9], [9, 9]]", "fixed") +
+            block("ledge", "[[-20, -9], [-10, -9], [-10, 0], [-20, 0]]", "fixed") +
+            block("stands", "[[-19, 0], [-13, 0], [-13, 6], [-19, 6]]", "rigid") +
+            block("slides",
+                  fmt::format("[[0, 0], [{0:.17g}, {0:.17g}], [0, {1:.17g}], [{2:.17g}, {0:.17g}]]",
+                              side * std::sqrt(0.5), side * std::sqrt(2.0), -side * std::sqrt(0.5)),
+                  "rigid") +
+            static_stage(5));
+    CHECK(e.result.mechanism == (share > 0.01));
+    CHECK(e.result.stages[0].followed() == (share < 0.01));
+  }
+}
+
+TEST_CASE("no balance: who goes with whom, and what slides and what falls") {
+  // blocks of 1 m on planes without friction and with some: paces g sin and so on
+  const auto two = [](double ratio) {
+    const double friction =
+        std::atan(1 - ratio) * 180 / 3.14159265358979323846;  // of the second one on 45 deg
+    return run(
+        head(0, true) +
+        fmt::format("[joint.rough]\nfriction_angle = \"{:.17g} deg\"\nnormal_stiffness = \"20 GPa/m\"\n"
+                    "shear_stiffness = \"10 GPa/m\"\n[[contact_pair]]\nbetween = [\"other\", "
+                    "\"second\"]\njoint = \"rough\"\n",
+                    friction) +
+        block("base", "[[-9, -9], [9, -9], [9, 9]]", "fixed") +
+        block("other", "[[21, -9], [39, -9], [39, 9]]", "fixed") +
+        block("first", "[[0, 0], [1, 1], [0, 2], [-1, 1]]", "rigid") +
+        block("second", "[[30, 0], [31, 1], [30, 2], [29, 1]]", "rigid") + static_stage(5));
+  };
+  CHECK(two(0.15).result.failure.find(" 2 blocks") != std::string::npos);
+  CHECK(two(0.07).result.failure.find(" 1 block,") != std::string::npos);
+  // a plane that bears so much of the weight
+  const auto steep = [](double borne) {
+    const double x = borne / std::sqrt(1 - borne * borne);  // to 1 m of height
+    return run(head(0, true) +
+               block("wall",
+                     fmt::format("[[{0:.17g}, -20], [30, -20], [30, 20], [{1:.17g}, 20]]", -20 * x, 20 * x),
+                     "fixed") +
+               block("slab", fmt::format("[[{0:.17g}, -5], [{1:.17g}, 5], [-3, 5], [-3, -5]]", -5 * x, 5 * x),
+                     "rigid") +
+               static_stage(3));
+  };
+  CHECK(steep(0.015).result.mechanism);
+  CHECK(!steep(0.007).result.mechanism);
+  CHECK(steep(0.007).result.stages[0].followed_because.find("falls") != std::string::npos);
+}
+
+TEST_CASE("no balance: a crumb is named alone where the others are a hundred times slower by their size") {
+  for (const double ratio : {0.015, 0.007}) {
+    CAPTURE(ratio);
+    // the crumb of 0.1 m falls, the block of 2 m slides with this share of its pace
+    const double pull = ratio * 20,
+                 friction = std::atan(1 - pull * std::sqrt(2.0)) * 180 / 3.14159265358979323846;
+    const Ended e = run(
+        head(friction, true) + block("base", "[[-9, -9], [9, -9], [9, 9]]", "fixed") +
+        block("slides",
+              "[[0, 0], [1.41421356237, 1.41421356237], [0, 2.82842712475], [-1.41421356237, 1.41421356237]]",
+              "rigid") +
+        block("crumb", "[[-12, 9], [-11.9, 9], [-11.9, 9.1], [-12, 9.1]]", "rigid") + static_stage(5));
+    const std::string text = e.result.failure + e.result.stages[0].followed_because;
+    CHECK((text.find(" 2 blocks") != std::string::npos) == (ratio > 0.01));
+    CHECK((text.find(" 1 block,") != std::string::npos) == (ratio < 0.01));
+  }
+}
+
+TEST_CASE("no balance: after 300 steps from rest a stage is followed, whatever it is short of") {
+  std::string text = wedge(30, 40, "rigid", true);
+  text += "unbalanced = 1e-300\n";
+  text.replace(text.find("duration = 5"), 12, "duration = 20");
+  const Ended e = run(text);
+  CHECK(e.result.stages[0].steps_from_rest == 300);
+  CHECK(e.result.stages[0].followed_because == "no balance in 300 steps from rest");
+}
+
 // Sag of two voussoirs of 5 x 0.5 m between abutments, that bear by opposite corners: force F along their diagonal d strains
 // them by F d/(E V) along it, and 2 F sin(its angle) is the weight of one.
 static double sag_by_hand(double weight) {

@@ -6,7 +6,6 @@
 #include "talus/contact/bonds.h"
 #include "talus/contact/contact_give.h"
 #include "talus/contact/outlines.h"
-#include "talus/contact/overlap.h"
 #include "talus/contact/pairs.h"
 
 namespace talus {
@@ -35,6 +34,9 @@ class PatchSearch {
     Mat2 back;       // F inverted
     double reach;    // from its centroid, at most [m]
     double turning;  // speed of its corners beside that of the centroid, at most [m/s]
+    Vec2 way;        // its motion in the step to come: a place x from its centroid by way + turn x [m]
+    Mat2 turn;
+    double turns;  // norm of that
   };
   std::vector<BlockNow> now_;  // [blocks]
   struct Changed {
@@ -44,7 +46,7 @@ class PatchSearch {
   };
   std::vector<Changed> changed_;
 
-  void place_parts(const PatchWorld& world, const std::vector<BlockRate>& before, const Workers& workers,
+  void place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                    const State& state);
   void put_together(State& state);
   friend class PairSearch;

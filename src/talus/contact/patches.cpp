@@ -93,25 +93,20 @@ class PairSearch {
     return p.joint < 0 ? 0 : w_.laws[static_cast<size_t>(p.joint)].rise(p.slip[end]);
   }
 
-  PartNow part_now(int part, int block, int other, std::vector<SideRole>& roles) const {
+  PartNow part_now(int part, int other, std::vector<SideRole>& roles) const {
     const Outlines& o = w_.outlines;
     const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
                n = static_cast<size_t>(o.corners_of(part));
     roles.clear();
-    for (size_t k = 0; k < n && !o.plain[static_cast<size_t>(part)]; ++k) {
-      const PartSide& side = o.side[begin + k];
-      if (side.edge >= 0 && side.face < 0) continue;
-      if (side.edge >= 0 && state_.face[static_cast<size_t>(side.face)].broken) continue;
-      roles.resize(n, SideRole::kOut);
-      roles[k] = side.edge < 0 ? SideRole::kCut : role_of_face(side.face, block, other);
-    }
+    for (size_t k = 0; k < n && !search_.bare_[static_cast<size_t>(part)]; ++k)
+      roles.push_back(role_of(search_.tied_to_[begin + k], other));
     return {{search_.corner_.data() + begin, n}, {search_.along_.data() + begin, n}, roles};
   }
 
-  SideRole role_of_face(int face, int block, int other) const {
-    const BondFace& f = w_.bonds.faces[static_cast<size_t>(face)];
-    if (!w_.blocks.interact(f.block_a, f.block_b)) return SideRole::kOut;
-    return (f.block_a == block ? f.block_b : f.block_a) == other ? SideRole::kTiedHere : SideRole::kTied;
+  static SideRole role_of(int tied_to, int other) {
+    if (tied_to == PatchSearch::kFree) return SideRole::kOut;
+    if (tied_to == PatchSearch::kCut) return SideRole::kCut;
+    return tied_to == other ? SideRole::kTiedHere : SideRole::kTied;
   }
 
   // Whether a side of a part goes on in line with the next or the one before.
@@ -130,18 +125,19 @@ class PairSearch {
     const auto face = [&](int part, size_t k) {
       return o.side[static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]) + k].face;
     };
-    for (size_t k = 0; k < a.role.size(); ++k)
+    for (size_t k = 0; k < a.role.size(); ++k) {
+      if (a.role[k] != SideRole::kTiedHere) continue;
       for (size_t m = 0; m < b.role.size(); ++m)
-        if (a.role[k] == SideRole::kTiedHere && b.role[m] == SideRole::kTiedHere &&
-            face(p, k) == face(q, m) && (!goes_on(p, a, k) || !goes_on(q, b, m)))
+        if (b.role[m] == SideRole::kTiedHere && face(p, k) == face(q, m) &&
+            (!goes_on(p, a, k) || !goes_on(q, b, m)))
           return true;
+    }
     return false;
   }
 
   void look_at_parts(int p, int q, std::vector<Patch>& out) {
-    const PartNow a = part_now(p, pair_->a, pair_->b, roles_a_),
-                  b = part_now(q, pair_->b, pair_->a, roles_b_);
-    if (tied_along_side(p, a, q, b)) return;
+    const PartNow a = part_now(p, pair_->b, roles_a_), b = part_now(q, pair_->a, roles_b_);
+    if (pair_->face >= 0 && tied_along_side(p, a, q, b)) return;
     const Patch* before = nullptr;  // of several, which ties leave, the largest
     bool several = false;
     for (const Patch& known : known_) {
@@ -477,12 +473,22 @@ class PairSearch {
   std::vector<std::pair<int, double>> shares_;
 };
 
+// PatchSearch::tied_to_
+int PatchSearch::tied_to(const PatchWorld& world, const State& state, int block, const PartSide& side) {
+  if (side.edge < 0) return kCut;
+  if (side.face < 0 || state.face[static_cast<size_t>(side.face)].broken) return kFree;
+  const BondFace& f = world.bonds.faces[static_cast<size_t>(side.face)];
+  if (!world.blocks.interact(f.block_a, f.block_b)) return kFree;
+  return f.block_a == block ? f.block_b : f.block_a;
+}
+
 // Parts as they lie, from the centroid of their block.
 void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                               const State& state) {
   const Outlines& o = world.outlines;
   const BlockSet& blocks = world.blocks;
-  corner_.resize(o.corner.size()), along_.resize(o.corner.size());
+  corner_.resize(o.corner.size()), along_.resize(o.corner.size()), tied_to_.resize(o.corner.size());
+  bare_.resize(o.plain.size());
   now_.resize(state.strain_part.size());
   workers.for_chunks(static_cast<size_t>(blocks.count), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -497,17 +503,27 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
                  ahead.clock.dt * v.a,
                  turn,
                  norm(turn)};
-      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p) {
-        const auto first = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p)]),
-                   last = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p) + 1]);
-        for (size_t k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
-        for (size_t k = first; k < last; ++k) {
-          const Vec2 side = o.corner[k + 1 == last ? first : k + 1] - o.corner[k], now = side + h * side;
-          along_[k] = now / norm(now);
-        }
-      }
+      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p)
+        place_part(world, state, i, static_cast<size_t>(p));
     }
   });
+}
+
+void PatchSearch::place_part(const PatchWorld& world, const State& state, size_t block, size_t part) {
+  const Outlines& o = world.outlines;
+  const Mat2& h = state.strain_part[block];
+  const auto first = static_cast<size_t>(o.corner_begin[part]),
+             last = static_cast<size_t>(o.corner_begin[part + 1]);
+  for (size_t k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
+  for (size_t k = first; k < last; ++k) {
+    const Vec2 side = o.corner[k + 1 == last ? first : k + 1] - o.corner[k], now = side + h * side;
+    along_[k] = now / norm(now);
+  }
+  bare_[part] = true;
+  for (size_t k = first; k < last && !o.plain[part]; ++k) {
+    tied_to_[k] = tied_to(world, state, static_cast<int>(block), o.side[k]);
+    bare_[part] = bare_[part] && tied_to_[k] == kFree;
+  }
 }
 
 int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,

@@ -39,6 +39,10 @@ class PatchSearch {
     double turns;  // norm of that
   };
   std::vector<BlockNow> now_;  // [blocks]
+  // Of each side the block that an intact face ties it to, or one of these; of parts that are not bare.
+  static constexpr int kFree = -1, kCut = -2;
+  std::vector<int> tied_to_;
+  std::vector<char> bare_;  // [parts] whether all sides are free
   struct Changed {
     std::vector<std::pair<size_t, int>> pair;  // and how many it has now
     std::vector<Patch> patch;
@@ -48,6 +52,8 @@ class PatchSearch {
 
   void place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                    const State& state);
+  static int tied_to(const PatchWorld& world, const State& state, int block, const PartSide& side);
+  void place_part(const PatchWorld& world, const State& state, size_t block, size_t part);
   void put_together(State& state);
   friend class PairSearch;
 };

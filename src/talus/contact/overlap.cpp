@@ -435,7 +435,28 @@ bool PartsMeeting::measure_overlap() {
   return is_strip_ ? sum_up() : measure_cells();
 }
 
+// Whether all that the two may have in common is nearer to a side that a third block ties than to any way out, as
+// take_nearest() finds of most overlaps at glued crossings: told by the other part's corners, without the overlap.
+bool PartsMeeting::left_to_bonds(bool of_b) const {
+  const PartNow& own = part(of_b);
+  double tied = kAll, out = kAll;
+  for (size_t k = 0; k < own.role.size(); ++k) {
+    if (own.role[k] == SideRole::kCut) continue;
+    double least = kAll, most = -kAll;
+    for (size_t i = 0; i < part(!of_b).size(); ++i) {
+      const double depth = depth_of(of_b, k, corner(!of_b, i));
+      least = std::min(least, depth), most = std::max(most, depth);
+    }
+    if (own.role[k] == SideRole::kTied)
+      tied = std::min(tied, most);
+    else
+      out = std::min(out, least);
+  }
+  return out > tied;
+}
+
 bool PartsMeeting::measure_cells() {
+  if (left_to_bonds(false) || left_to_bonds(true)) return false;
   clip();
   size_t main_a = 0, main_b = 0;
   if (region_.empty() || !take_nearest(false, near_a_, main_a) || !take_nearest(true, near_b_, main_b))

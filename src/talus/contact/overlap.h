@@ -157,6 +157,7 @@ class PartsMeeting {
                     Polygon& out) const;
   SideCell cell(bool of_b, int side, double area, Vec2 first) const;
   void cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& out);
+  bool left_to_bonds(bool of_b) const;
   bool any_tied() const;
   void nested_cells();
   bool measure_cells();

@@ -175,36 +175,35 @@ void add_patch_rows(const PatchWorld& world, const ContactGive& give, const Stat
 }
 
 // Eq. 4.7.
-void remember_patches(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
-                      const std::vector<BlockRate>& before, const StepClock& clock, State& state) {
+void remember_patch(const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                    const std::vector<ContactPlace>& place, const std::vector<BlockRate>& before,
+                    const StepClock& clock, State& state) {
   const RowRange all = rows.range(Family::kContact);
-  TALUS_ASSERT(all.size() == 2 * state.patches.size() && place.size() == all.size());
-  for (size_t r = range.begin; r < range.end; ++r) {
-    const PointRows& p = rows.points[r];
-    const Impulse& impulse = rows.impulse[r];
-    const size_t end = (r - all.begin) % 2;
-    const ContactPlace& at = place[r - all.begin];
-    Patch& c = state.patches[(r - all.begin) / 2];
-    const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
-    const double u = relative_velocity(p, state.rate)[1];
-    if (slid) {
-      // the law holds at a place between the two ends of the step; what is left of the step goes on from there
-      const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
-      const double until = p.is_soft(1) ? clock.dt / clock.position_factor() *
-                                              (u - clock.old_share() * relative_velocity(p, before)[1])
-                                        : clock.dt * u;
-      if (held) {
-        const double gone = c.stretch[end] + until - elastic;
-        c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
-      }
-      c.stretch[end] = held ? elastic + clock.dt * u - until : 0;
-    } else {
-      c.stretch[end] += clock.dt * u;
+  TALUS_ASSERT(all.size() == 2 * state.patches.size() && place.size() == all.size() && r >= all.begin &&
+               r < all.end);
+  const PointRows& p = rows.points[r];
+  const Impulse& impulse = rows.impulse[r];
+  const size_t end = (r - all.begin) % 2;
+  const ContactPlace& at = place[r - all.begin];
+  Patch& c = state.patches[(r - all.begin) / 2];
+  const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
+  if (slid) {
+    // the law holds at a place between the two ends of the step; what is left of the step goes on from there
+    const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
+    const double until = p.is_soft(1) ? clock.dt / clock.position_factor() *
+                                            (u[1] - clock.old_share() * relative_velocity(p, before)[1])
+                                      : clock.dt * u[1];
+    if (held) {
+      const double gone = c.stretch[end] + until - elastic;
+      c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
     }
-    c.touched = c.touched || held;
-    c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
-    push_out(c.closure[end], at.size, c.allowed[end]);
+    c.stretch[end] = held ? elastic + clock.dt * u[1] - until : 0;
+  } else {
+    c.stretch[end] += clock.dt * u[1];
   }
+  c.touched = c.touched || held;
+  c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
+  push_out(c.closure[end], at.size, c.allowed[end]);
 }
 
 }  // namespace talus

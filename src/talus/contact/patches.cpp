@@ -473,7 +473,7 @@ class PairSearch {
   std::vector<std::pair<int, double>> shares_;
 };
 
-// PatchSearch::tied_to_
+// Whom a side is tied to now, for tied_to_.
 int PatchSearch::tied_to(const PatchWorld& world, const State& state, int block, const PartSide& side) {
   if (side.edge < 0) return kCut;
   if (side.face < 0 || state.face[static_cast<size_t>(side.face)].broken) return kFree;

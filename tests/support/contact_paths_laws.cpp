@@ -110,7 +110,9 @@ class PatchForces : public ContactForces {
       state_.rate[i] = {per * (to[i].displacement - from[i].displacement),
                         per * rotation_minus_identity(to[i].turn - from[i].turn)};
     const std::vector<BlockRate> still(path_->blocks.size());
-    remember_patches(rows_, rows_.range(Family::kContact), place_, still, kClock, state_);
+    for (size_t r = rows_.range(Family::kContact).begin; r < rows_.range(Family::kContact).end; ++r)
+      remember_patch(rows_, r, relative_velocity(rows_.points[r], state_.rate), place_, still, kClock,
+                     state_);
   }
 
   PathForces summed() const {

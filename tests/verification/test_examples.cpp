@@ -234,9 +234,10 @@ TEST_CASE("example pile: no stone inside another, comes to rest, the same bits t
       }
     });
     // not yet: a corner that comes over another one within a step is not always foreseen; it keeps what it has gone in by
-    // for a while (theory 3.3): up to 0.1 % of a stone (docs/limits.md)
-    check_below("pile deepest overlap / (slop + tolerance + arc of the step)", beyond, 10, 0.9);
-    check_below("pile deepest overlap at a frame / stated slop", at_frame, 10, 0.9);
+    // for a while (theory 3.3). One run is a sample: with gravity that differs in the tenth digit the first is 7 to 27, the
+    // second 0.5 to 37, 0.01 to 0.8 % of a stone (docs/limits.md)
+    check_below("pile deepest overlap / (slop + tolerance + arc of the step)", beyond, 40, 0.9);
+    check_below("pile deepest overlap at a frame / stated slop", at_frame, 40, 0.9);
     check_below("pile kinetic energy at the end / energy of the fall",
                 r.run.energy.kinetic / r.run.energy.gravity, 1e-6, 1e-9);
     check_below("pile energy left over / largest term", r.run.closure(), 1e-2, 1e-3);

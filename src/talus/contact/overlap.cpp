@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
+// One of two numbers without a branch: which one it is hangs on the last digits, and a wrong guess costs more than both.
+size_t pick(bool first, size_t one, size_t two) { return two ^ ((one ^ two) & -static_cast<size_t>(first)); }
+
 // What of a convex polygon has value(corner) >= 0, the value being linear.
 template <class F>
 void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
@@ -32,48 +35,41 @@ void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
 
 }  // namespace
 
-// How far the nearest corner of the other part is before a side. No corner ends the loop: what a wrong guess of a branch costs
-// is more than all of it.
-double PartsMeeting::gap_before(bool of_b, size_t side) const {
-  const PartNow& own = part(of_b);
-  const Vec2 along = own.along[side], from = of_b ? own.corner[side] + shift_ : own.corner[side] - shift_;
-  double gap = kAll;
-  for (const Vec2 x : part(!of_b).corner) gap = std::min(gap, -cross(along, x - from));
-  return gap;
+// All sides of a part with how far the nearest corner of the other one is before each. No corner ends the loop: what a wrong
+// guess of a branch costs is more than all of it.
+PartsMeeting::Way* PartsMeeting::write_sides(bool of_b, Way* out) const {
+  const std::span<const Vec2> own = part(of_b).corner, along = part(of_b).along, other = part(!of_b).corner;
+  const Vec2 shift = shift_from(of_b);
+  for (size_t k = 0; k < own.size(); ++k) {
+    double furthest = -kAll;  // behind it, from the other part's origin
+    for (const Vec2 x : other) furthest = std::max(furthest, cross(along[k], x));
+    *out++ = {of_b, k, cross(along[k], own[k] - shift) - furthest};
+  }
+  return out;
 }
 
 // Convex parts overlap unless a side of one has all of the other before it. What is behind the widest way out by more than
 // the step can change is no way.
 void PartsMeeting::find_ways(double margin, double rounding) {
-  ways_.clear();
   met_.kind = PartsMet::kFar;
-  const size_t nb = b_.size(), n = nb + a_.size();
-  side_gap_.resize(n), near_side_.resize(n);
-  double widest = -kAll;  // of ways out
-  for (size_t k = 0; k < n; ++k) {
-    const bool of_b = k < nb;
-    const size_t side = of_b ? k : k - nb;
-    const double gap = side_gap_[k] = gap_before(of_b, side);
-    if (gap > margin) return;
-    if (part(of_b).role_of(side) == SideRole::kOut) widest = std::max(widest, gap);
-  }
-  size_t near = 0;
-  for (size_t k = 0; k < n; ++k)
-    near_side_[near] = k, near += static_cast<size_t>(side_gap_[k] >= std::min(0.0, widest - behind_));
-  bool apart = false, blocked = false;
-  for (size_t i = 0; i < near; ++i) {
-    const bool of_b = near_side_[i] < nb;
-    const size_t side = of_b ? near_side_[i] : near_side_[i] - nb;
-    const double gap = side_gap_[near_side_[i]];
-    const SideRole role = part(of_b).role_of(side);
-    if (role == SideRole::kOut && gap < widest - behind_) continue;
-    if (role != SideRole::kCut) ways_.push_back({of_b, side, gap});
-    if (role == SideRole::kOut)
-      apart = apart || gap >= -rounding;
+  sides_.resize(part_[0].size() + part_[1].size());
+  write_sides(false, write_sides(true, sides_.data()));
+  double widest_out = -kAll, widest_shut = -kAll;
+  for (const Way& w : sides_)
+    if (role_of(w) == SideRole::kOut)
+      widest_out = std::max(widest_out, w.gap);
     else
-      blocked = blocked || gap > 0;
+      widest_shut = std::max(widest_shut, w.gap);
+  if (widest_out > margin || widest_shut > 0) return;
+  const double least = widest_out - behind_;
+  size_t count = 0;
+  for (const Way& w : sides_) {
+    const SideRole role = role_of(w);
+    const bool near = w.gap >= (role == SideRole::kOut ? least : std::min(0.0, least));
+    sides_[count] = w, count += static_cast<size_t>(near && role != SideRole::kCut);
   }
-  if (!blocked && !ways_.empty()) met_.kind = apart ? PartsMet::kApart : PartsMet::kOverlap;
+  ways_ = {sides_.data(), count};
+  if (count > 0) met_.kind = widest_out >= -rounding ? PartsMet::kApart : PartsMet::kOverlap;
 }
 
 // Parts that are apart meet along the way along which they are furthest apart, or least in each other, at the end of
@@ -142,20 +138,23 @@ double PartsMeeting::side_length(bool of_b, size_t side) const {
 }
 
 // Where a place of the other part is going to be at the end of the step, seen from the origin of one.
-Vec2 PartsMeeting::then_at(bool of_b, Vec2 seen) const {
+Vec2 PartsMeeting::then_at(bool of_b, Vec2 place) const {
   const PartMotion &own = motion_[of_b], &other = motion_[!of_b];
-  const Vec2 x = of_b ? seen + shift_ : seen - shift_;
-  return seen + ((other.way + other.turn * x) - (own.way + own.turn * seen));
+  const Vec2 seen = place + shift_from(of_b);
+  return seen + ((other.way + other.turn * place) - (own.way + own.turn * seen));
 }
 
 // How far the nearest corner of the other part is going to be before a side at the end of the step: one of those that
-// are not further now than the two move.
+// are not further now than the two move. What then_at() adds to a distance is linear in the place.
 double PartsMeeting::then_before(const Way& w) const {
-  const Vec2 out = turn_right(part(w.of_b).along[w.side]), from = part(w.of_b).corner[w.side];
+  const PartMotion &own = motion_[w.of_b], &other = motion_[!w.of_b];
+  const Vec2 out = turn_right(part(w.of_b).along[w.side]), shift = shift_from(w.of_b);
+  const double at_origin = dot(out, shift - part(w.of_b).corner[w.side]);
+  const double comes = dot(out, other.way - own.way - own.turn * shift);
+  const Vec2 per_place = transpose(other.turn - own.turn) * out;
   double least = kAll;
   for (const Vec2 x : part(!w.of_b).corner) {
-    const Vec2 seen = w.of_b ? x - shift_ : x + shift_;  // from the origin of the part with the side
-    const double now = dot(out, seen - from), then = dot(out, then_at(w.of_b, seen) - from);
+    const double now = at_origin + dot(out, x), then = now + comes + dot(per_place, x);
     least = std::min(least, now - w.gap > behind_ ? kAll : then);
   }
   return least;
@@ -172,7 +171,7 @@ bool PartsMeeting::stands_at(const Way& w) const {
   const Vec2 along = part(w.of_b).along[w.side], from = part(w.of_b).corner[w.side];
   const double past = std::max(0.0, -w.then) + rounding_;
   for (const Vec2 now : part(!w.of_b).corner) {
-    const Vec2 x = then_at(w.of_b, w.of_b ? now - shift_ : now + shift_);
+    const Vec2 x = then_at(w.of_b, now);
     const double s = dot(along, x - from);
     if (dot(turn_right(along), x - from) <= w.then + rounding_ && s >= -past &&
         s <= side_length(w.of_b, w.side) + past)
@@ -188,7 +187,7 @@ bool PartsMeeting::pushed_off(const Way& w, Vec2 force) const {
   const double towards = dot(along, w.of_b ? -force : force), length = side_length(w.of_b, w.side);
   const double past = std::max(0.0, -w.then) + rounding_;
   for (const Vec2 now : part(!w.of_b).corner) {
-    const Vec2 x = then_at(w.of_b, w.of_b ? now - shift_ : now + shift_);
+    const Vec2 x = then_at(w.of_b, now);
     const double s = dot(along, x - from);
     if (dot(turn_right(along), x - from) <= w.then + rounding_ &&
         ((towards > 0 && s >= length - past) || (towards < 0 && s <= past)))
@@ -216,20 +215,20 @@ size_t PartsMeeting::facing_side(bool of_b, const Way& way, Vec2 direction) cons
   const PartNow& own = part(of_b);
   size_t nearest = 0;
   double most = -kAll;
-  for (size_t k = 0; k < own.size(); ++k)
-    if (const double depth = depth_of(!of_b, way.side, corner(of_b, k)); depth > most)
-      most = depth, nearest = k;
+  for (size_t k = 0; k < own.size(); ++k) {
+    const double depth = depth_of(!of_b, way.side, corner(of_b, k));
+    nearest = pick(depth > most, k, nearest), most = std::max(most, depth);
+  }
   const size_t before = nearest == 0 ? own.size() - 1 : nearest - 1;
-  return dot(turn_right(own.along[before]), direction) < dot(turn_right(own.along[nearest]), direction)
-             ? before
-             : nearest;
+  return pick(dot(turn_right(own.along[before]), direction) < dot(turn_right(own.along[nearest]), direction),
+              before, nearest);
 }
 
 void PartsMeeting::clip() {
-  region_.assign(a_.corner.begin(), a_.corner.end());
-  for (size_t j = 0; j < b_.size() && !region_.empty(); ++j) {
+  region_.assign(part_[0].corner.begin(), part_[0].corner.end());
+  for (size_t j = 0; j < part_[1].size() && !region_.empty(); ++j) {
     const auto below = [&](Vec2 x) { return depth_of(true, j, x) < 0; };
-    if (std::none_of(a_.corner.begin(), a_.corner.end(), below)) continue;
+    if (std::none_of(part_[0].corner.begin(), part_[0].corner.end(), below)) continue;
     keep(
         region_, [&](Vec2 x) { return depth_of(true, j, x); }, work_);
     region_.swap(work_);
@@ -323,17 +322,17 @@ bool PartsMeeting::any_tied() const {
     return std::any_of(sides.begin(), sides.end(),
                        [&](int k) { return p.role_of(static_cast<size_t>(k)) == SideRole::kTiedHere; });
   };
-  return tied(a_, near_a_) || tied(b_, near_b_);
+  return tied(part_[0], near_a_) || tied(part_[1], near_b_);
 }
 
 // Cells of both, each cut by those of the other: what is nearest to a tie of the two bears nothing.
 void PartsMeeting::nested_cells() {
   corners_.clear();
   for (size_t i = 0; i < near_a_.size(); ++i) {
-    if (a_.role_of(static_cast<size_t>(near_a_[i])) == SideRole::kTiedHere) continue;
+    if (part_[0].role_of(static_cast<size_t>(near_a_[i])) == SideRole::kTiedHere) continue;
     keep_nearest(false, near_a_, i, region_, cell_);
     for (size_t j = 0; j < near_b_.size() && !cell_.empty(); ++j) {
-      if (b_.role_of(static_cast<size_t>(near_b_[j])) == SideRole::kTiedHere) continue;
+      if (part_[1].role_of(static_cast<size_t>(near_b_[j])) == SideRole::kTiedHere) continue;
       keep_nearest(true, near_b_, j, cell_, cell_of_cell_);
       const Moments m = moments(cell_of_cell_);
       if (!(m.area > 0)) continue;
@@ -413,7 +412,7 @@ bool PartsMeeting::sum_up() {
 
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
                                    double rounding, LookFirst first) {
-  a_ = a, b_ = b, shift_ = shift, rounding_ = rounding, behind_ = first.behind;
+  part_[0] = a, part_[1] = b, origin_[1] = shift, rounding_ = rounding, behind_ = first.behind;
   is_strip_ = first.strip && first.way > 0 && static_cast<size_t>(first.way) <= b.size() &&
               measure_strip(true, static_cast<size_t>(first.way) - 1);
   if (is_strip_)
@@ -436,7 +435,28 @@ bool PartsMeeting::measure_overlap() {
   return is_strip_ ? sum_up() : measure_cells();
 }
 
+// Whether all that the two may have in common is nearer to a side that a third block ties than to any way out, as
+// take_nearest() finds of most overlaps at glued crossings: told by the other part's corners, without the overlap.
+bool PartsMeeting::left_to_bonds(bool of_b) const {
+  const PartNow& own = part(of_b);
+  double tied = kAll, out = kAll;
+  for (size_t k = 0; k < own.role.size(); ++k) {
+    if (own.role[k] == SideRole::kCut) continue;
+    double least = kAll, most = -kAll;
+    for (size_t i = 0; i < part(!of_b).size(); ++i) {
+      const double depth = depth_of(of_b, k, corner(!of_b, i));
+      least = std::min(least, depth), most = std::max(most, depth);
+    }
+    if (own.role[k] == SideRole::kTied)
+      tied = std::min(tied, most);
+    else
+      out = std::min(out, least);
+  }
+  return out > tied;
+}
+
 bool PartsMeeting::measure_cells() {
+  if (left_to_bonds(false) || left_to_bonds(true)) return false;
   clip();
   size_t main_a = 0, main_b = 0;
   if (region_.empty() || !take_nearest(false, near_a_, main_a) || !take_nearest(true, near_b_, main_b))
@@ -529,7 +549,42 @@ bool PartsMeeting::see_gaps() {
   return true;
 }
 
-bool PartsMeeting::face_ends(double reach) {
+// The two ends where the faces are one side each over all that they have in common, and the gap widens beyond either end
+// by more than along these: closed form of what ends_along_faces() finds.
+bool PartsMeeting::ends_of_sides(Gap& low, Gap& high) const {
+  const Vec2 n = met_.normal, t = turn_right(n);
+  const size_t side[2]{static_cast<size_t>(met_.side_a), static_cast<size_t>(met_.side_b)};
+  const auto seen = [&](bool of_b, size_t k) {
+    const Vec2 place = corner(of_b, k);
+    return Seen{dot(t, place), dot(n, place)};
+  };
+  // along the tangent a's face goes on counter-clockwise, b's comes back
+  const size_t next[2]{after(side[0], part_[0].size()), after(side[1], part_[1].size())};
+  const Seen from[2]{seen(false, side[0]), seen(true, next[1])},
+      to[2]{seen(false, next[0]), seen(true, side[1])};
+  const double length[2]{to[0].s - from[0].s, to[1].s - from[1].s};
+  low.s = std::max(from[0].s, from[1].s), high.s = std::min(to[0].s, to[1].s);
+  const double common = high.s - low.s;
+  if (!(std::min({length[0], length[1], common}) > rounding_)) return false;
+  const double slope[2]{(to[0].n - from[0].n) / length[0], (to[1].n - from[1].n) / length[1]};
+  for (Gap* end : {&low, &high}) {
+    end->a = from[0].n + (end->s - from[0].s) * slope[0];
+    end->g = end->a - (from[1].n + (end->s - from[1].s) * slope[1]);
+  }
+  const double least = std::abs(high.g - low.g) / common + kOneSide;
+  const auto widens = [&](bool up) {
+    const bool of_b = up ? to[1].s < to[0].s : from[1].s > from[0].s;  // whose side ends there
+    const bool forward = of_b != up;
+    const PartNow& own = part(of_b);
+    const Vec2 beyond = forward ? own.along[next[of_b]] : -own.along[ahead_of(side[of_b], own.size())];
+    const double on = (up ? 1 : -1) * dot(t, beyond);
+    const double wider = (of_b ? -1 : 1) * (dot(n, beyond) - (up ? on : -on) * slope[!of_b]);
+    return on <= 0 || wider > least * on;
+  };
+  return widens(false) && widens(true);
+}
+
+bool PartsMeeting::ends_along_faces(Gap& low, Gap& high) {
   if (!see_gaps()) return false;
   // the gap is convex along the tangent: on from the smallest along the flatter side
   size_t at = 0;
@@ -553,19 +608,25 @@ bool PartsMeeting::face_ends(double reach) {
   const double flat = std::max(0.0, std::min(on, back));
   const size_t far = go_on(at, up, flat);
   // where the side is level the corner of the smallest gap may be any on it
-  Gap one = gaps_[flat <= kOneSide ? go_on(at, !up, 0) : at], two = gaps_[far];
-  if (one.g > two.g) std::swap(one, two);
-  if (two.g - one.g > reach) {
-    const double share = reach / (two.g - one.g);
+  low = gaps_[flat <= kOneSide ? go_on(at, !up, 0) : at], high = gaps_[far];
+  if (low.s > high.s) std::swap(low, high);
+  return low.s < high.s;
+}
+
+bool PartsMeeting::face_ends(double reach) {
+  Gap low, high;
+  if (!ends_of_sides(low, high) && !ends_along_faces(low, high)) return false;
+  if (const double more = high.g - low.g; std::abs(more) > reach) {
+    const Gap& one = more > 0 ? low : high;
+    Gap& two = more > 0 ? high : low;
+    const double share = reach / std::abs(more);
     two = {one.s + share * (two.s - one.s), one.g + reach, one.a + share * (two.a - one.a)};
+    if (!(low.s < high.s)) return false;
   }
-  if (one.s > two.s) std::swap(one, two);
-  if (!(one.s < two.s)) return false;
   const Vec2 n = met_.normal, t = turn_right(n);
-  const auto place = [&](const Gap& x) { return x.s * t + x.a * n; };
-  met_.begin = place(one), met_.end = place(two);
-  met_.closure[0] = -one.g, met_.closure[1] = -two.g;
-  met_.across[0] = one.g, met_.across[1] = two.g;
+  met_.begin = low.s * t + low.a * n, met_.end = high.s * t + high.a * n;
+  met_.closure[0] = -low.g, met_.closure[1] = -high.g;
+  met_.across[0] = low.g, met_.across[1] = high.g;
   return true;
 }
 

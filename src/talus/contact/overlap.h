@@ -23,6 +23,10 @@ enum class SideRole : char {
   kTiedHere  // tied to the other part's block: what is nearest to it is left to the tie
 };
 
+/// The place after k, and the one before it, of n that go round.
+inline size_t after(size_t k, size_t n) { return k + 1 == n ? 0 : k + 1; }
+inline size_t ahead_of(size_t k, size_t n) { return k == 0 ? n - 1 : k - 1; }
+
 /// A convex part as it lies now, in any frame.
 struct PartNow {
   std::span<const Vec2> corner;    // counter-clockwise [m]
@@ -135,8 +139,15 @@ class PartsMeeting {
     int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
   };
 
+  struct Gap {
+    double s, g, a;  // along the tangent, how wide, where a's face is along the normal [m]
+  };
+  struct Seen {
+    double s, n;  // along the tangent and the normal [m]
+  };
+
   void find_ways(double margin, double rounding);
-  double gap_before(bool of_b, size_t side) const;
+  Way* write_sides(bool of_b, Way* out) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {
@@ -146,6 +157,7 @@ class PartsMeeting {
                     Polygon& out) const;
   SideCell cell(bool of_b, int side, double area, Vec2 first) const;
   void cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& out);
+  bool left_to_bonds(bool of_b) const;
   bool any_tied() const;
   void nested_cells();
   bool measure_cells();
@@ -158,7 +170,7 @@ class PartsMeeting {
   void put_with_neighbours(size_t cell);
   bool share_a_place(size_t cell, size_t other) const;
   bool sum_up();
-  Vec2 then_at(bool of_b, Vec2 seen) const;
+  Vec2 then_at(bool of_b, Vec2 place) const;
   double then_before(const Way& w) const;
   double side_length(bool of_b, size_t side) const;
   bool in_line(const Way& one, const Way& two) const;
@@ -168,14 +180,19 @@ class PartsMeeting {
   size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
   void see_face(bool of_b);
   bool see_gaps();
-  const PartNow& part(bool of_b) const { return of_b ? b_ : a_; }
-  Vec2 corner(bool of_b, size_t k) const { return of_b ? b_.corner[k] + shift_ : a_.corner[k]; }
+  bool ends_of_sides(Gap& low, Gap& high) const;
+  bool ends_along_faces(Gap& low, Gap& high);
+  // which of the two it is goes into addresses: no branch on it could be foretold
+  const PartNow& part(bool of_b) const { return part_[of_b]; }
+  SideRole role_of(const Way& w) const { return part(w.of_b).role_of(w.side); }
+  Vec2 corner(bool of_b, size_t k) const { return part_[of_b].corner[k] + origin_[of_b]; }
+  /// Of the other part's origin, seen from that of one.
+  Vec2 shift_from(bool of_b) const { return origin_[!of_b] - origin_[of_b]; }
 
-  PartNow a_, b_;
-  Vec2 shift_;
-  std::vector<double> side_gap_;   // before each side, those of b first [m]
-  std::vector<size_t> near_side_;  // which of them are not too far behind
-  std::vector<Way> ways_;
+  PartNow part_[2];           // a and b
+  Vec2 origin_[2];            // of their places, seen from that of a
+  std::vector<Way> sides_;    // of b, of a; then what of them are ways
+  std::span<Way> ways_;       // those that are not too far behind
   Polygon region_, bearing_;  // the overlap; the corners of what of it bears
   mutable Polygon work_;
   Polygon cell_, cell_of_cell_;
@@ -190,13 +207,7 @@ class PartsMeeting {
   Polygon corners_;
   size_t next_piece_ = 0;
   mutable std::vector<double> low_, high_, middle_;
-  struct Gap {
-    double s, g, a;  // along the tangent, how wide, where a's face is along the normal [m]
-  };
   std::vector<Gap> gaps_;
-  struct Seen {
-    double s, n;  // along the tangent and the normal [m]
-  };
   std::vector<Seen> seen_, face_[2];  // all corners of a part; those of a and b that face the other
   PartMotion motion_[2];              // of a and b
   // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those

@@ -8,13 +8,6 @@
 
 namespace talus {
 
-namespace {
-
-size_t after(size_t k, size_t n) { return k + 1 == n ? 0 : k + 1; }
-size_t ahead_of(size_t k, size_t n) { return k == 0 ? n - 1 : k - 1; }
-
-}  // namespace
-
 // The side of a part that faces a side of the other the most.
 size_t PartsMeeting::facing(bool of_b, size_t side) const {
   const PartNow& own = part(of_b);
@@ -29,8 +22,8 @@ size_t PartsMeeting::facing(bool of_b, size_t side) const {
 // The end of a strip along the side of b (`high`) or before it: the part that ends there, and the two corners of the
 // overlap. False: its next side does not cross the other's face.
 bool PartsMeeting::take_end(bool high) {
-  const size_t i = strip_.side[0], j = strip_.side[1], na = a_.size(), nb = b_.size();
-  const Vec2 u = b_.along[j];
+  const size_t i = strip_.side[0], j = strip_.side[1], na = part_[0].size(), nb = part_[1].size();
+  const Vec2 u = part_[1].along[j];
   StripEnd& end = strip_.end[high];
   // along an outline a's face runs against b's
   end.side[0] = high ? ahead_of(i, na) : after(i, na), end.side[1] = high ? after(j, nb) : ahead_of(j, nb);

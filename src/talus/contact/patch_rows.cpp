@@ -38,12 +38,14 @@ class PatchRows {
   }
 
   void add(const ContactPair& pair) const {
+    const double give = give_ > 0 && pair.count > 0 ? std::min(give_, least_give_ * yield(pair)) : 0;
     for (int k = 0; k < pair.count; ++k) {
       const auto i = static_cast<size_t>(pair.begin + k);
       std::array<std::array<double, 2>, 2> u{};
-      for (const size_t end : {0U, 1U}) write(pair, i, end, u[end]);
+      for (const size_t end : {0U, 1U}) write(pair, i, end, give, u[end]);
       const size_t r = first_ + 2 * i;
       PointRows &one = rows_.points[r], &two = rows_.points[r + 1];
+      if (!one.is_soft() && !two.is_soft()) continue;
       if (one.partner >= 0) {
         guess_compliant({&one, &two}, u, {&rows_.impulse[r], &rows_.impulse[r + 1]});
       } else {
@@ -58,7 +60,8 @@ class PatchRows {
     return std::min(w_.blocks.size[static_cast<size_t>(pair.a)], w_.blocks.size[static_cast<size_t>(pair.b)]);
   }
 
-  void write(const ContactPair& pair, size_t i, size_t end, std::array<double, 2>& u) const {
+  // `give`: compliance where contacts give. `u`: gets the relative velocity half a step ago where the joint asks for it.
+  void write(const ContactPair& pair, size_t i, size_t end, double give, std::array<double, 2>& u) const {
     const Patch& c = state_.patches[i];
     const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
     const JointLaw& law = c.joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.joint)];
@@ -76,13 +79,13 @@ class PatchRows {
     // what a broken face keeps while it is in touch
     if (was_face(pair, c) && -c.closure[end] <= noticeable(w_.blocks, a, b))
       bound(bears.over(half_area * clock_.dt_kick), p);
-    const bool soft = law.is_soft(0), springs = law.is_soft(), gives = give_ > 0 && !(soft && law.is_soft(1));
+    const bool soft = law.is_soft(0), springs = law.is_soft(), gives = give > 0 && !(soft && law.is_soft(1));
     const double gap = soft ? -c.closure[end] : c.allowed[end] - c.closure[end];
     p.row[0].bias = soft || gives ? gap / clock_.dt : hard_gap_bias(gap, slop, clock_.dt);
     p.row[1].bias =
         (law.is_soft(1) || gives ? c.stretch[end] : beyond_slop(c.stretch[end], slop)) / clock_.dt;
     bool rebounds = false;
-    u = relative_velocity(p, before_);
+    if (springs || law.restitution() >= 0) u = relative_velocity(p, before_);
     if (law.restitution() >= 0 && gap + clock_.dt * u[0] <= 0 && u[0] < 0) {
       rebounds = true;
       p.row[0].bias = std::min(p.row[0].bias, law.restitution() * u[0]);
@@ -90,7 +93,7 @@ class PatchRows {
     if (gives) {
       p.gives = {!soft && !rebounds, !law.is_soft(1)};
       for (size_t row = 0; row < 2; ++row)
-        if (p.gives[row]) p.row[row].compliance = std::min(give_, least_give_ * yield(pair));
+        if (p.gives[row]) p.row[row].compliance = give;
     }
     if (springs) {
       p.partner = static_cast<int>(end == 0 ? r + 1 : r - 1);
@@ -172,36 +175,35 @@ void add_patch_rows(const PatchWorld& world, const ContactGive& give, const Stat
 }
 
 // Eq. 4.7.
-void remember_patches(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
-                      const std::vector<BlockRate>& before, const StepClock& clock, State& state) {
+void remember_patch(const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                    const std::vector<ContactPlace>& place, const std::vector<BlockRate>& before,
+                    const StepClock& clock, State& state) {
   const RowRange all = rows.range(Family::kContact);
-  TALUS_ASSERT(all.size() == 2 * state.patches.size() && place.size() == all.size());
-  for (size_t r = range.begin; r < range.end; ++r) {
-    const PointRows& p = rows.points[r];
-    const Impulse& impulse = rows.impulse[r];
-    const size_t end = (r - all.begin) % 2;
-    const ContactPlace& at = place[r - all.begin];
-    Patch& c = state.patches[(r - all.begin) / 2];
-    const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
-    const double u = relative_velocity(p, state.rate)[1];
-    if (slid) {
-      // the law holds at a place between the two ends of the step; what is left of the step goes on from there
-      const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
-      const double until = p.is_soft(1) ? clock.dt / clock.position_factor() *
-                                              (u - clock.old_share() * relative_velocity(p, before)[1])
-                                        : clock.dt * u;
-      if (held) {
-        const double gone = c.stretch[end] + until - elastic;
-        c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
-      }
-      c.stretch[end] = held ? elastic + clock.dt * u - until : 0;
-    } else {
-      c.stretch[end] += clock.dt * u;
+  TALUS_ASSERT(all.size() == 2 * state.patches.size() && place.size() == all.size() && r >= all.begin &&
+               r < all.end);
+  const PointRows& p = rows.points[r];
+  const Impulse& impulse = rows.impulse[r];
+  const size_t end = (r - all.begin) % 2;
+  const ContactPlace& at = place[r - all.begin];
+  Patch& c = state.patches[(r - all.begin) / 2];
+  const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
+  if (slid) {
+    // the law holds at a place between the two ends of the step; what is left of the step goes on from there
+    const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
+    const double until = p.is_soft(1) ? clock.dt / clock.position_factor() *
+                                            (u[1] - clock.old_share() * relative_velocity(p, before)[1])
+                                      : clock.dt * u[1];
+    if (held) {
+      const double gone = c.stretch[end] + until - elastic;
+      c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
     }
-    c.touched = c.touched || held;
-    c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
-    push_out(c.closure[end], at.size, c.allowed[end]);
+    c.stretch[end] = held ? elastic + clock.dt * u[1] - until : 0;
+  } else {
+    c.stretch[end] += clock.dt * u[1];
   }
+  c.touched = c.touched || held;
+  c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
+  push_out(c.closure[end], at.size, c.allowed[end]);
 }
 
 }  // namespace talus

@@ -17,10 +17,11 @@ void add_patch_rows(const PatchWorld& world, const ContactGive& give, const Stat
                     const std::vector<BlockRate>& before, const StepClock& clock, const Workers& workers,
                     RowSet& rows, std::vector<ContactPlace>& place);
 
-/// Stores forces, elastic slip at the end of the step and slip of the patches of some rows in the state.
+/// Stores force, elastic slip at the end of the step and slip of the end of a patch that row r stands for in the state.
+/// @param u       its relative velocity after the kick [m/s]
 /// @param before  rates half a step ago
-/// @pre  state.rate are the rates after the kick
-void remember_patches(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
-                      const std::vector<BlockRate>& before, const StepClock& clock, State& state);
+void remember_patch(const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                    const std::vector<ContactPlace>& place, const std::vector<BlockRate>& before,
+                    const StepClock& clock, State& state);
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 
 #include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
+#include "talus/contact/overlap.h"
 
 namespace talus {
 
@@ -28,7 +29,10 @@ class PairSearch {
   PairSearch(const PatchWorld& world, const LookAhead& ahead, const PatchSearch& search, const State& state)
       : w_(world), ahead_(ahead), search_(search), state_(state) {
     all_laws_elastic_ = is_elastic(w_.layout.default_joint);
-    for (const JointLaw& law : w_.laws) all_laws_elastic_ = all_laws_elastic_ && law.is_soft(0);
+    for (const JointLaw& law : w_.laws) {
+      all_laws_elastic_ = all_laws_elastic_ && law.is_soft(0);
+      any_rises_ = any_rises_ || law.dilates();
+    }
   }
 
   // The patches of a pair, in the order of their parts; returns how far ahead they were sought [m].
@@ -42,7 +46,8 @@ class PairSearch {
     size_ = std::min(w_.blocks.size[a], w_.blocks.size[b]);
     approach_ = ahead_.clock.dt * approach_speed(a, b);
     highest_ = 0;
-    for (const Patch& p : known_) highest_ = std::max({highest_, rise(p, 0), rise(p, 1)});
+    for (const Patch& p : any_rises_ ? known_ : std::span<const Patch>{})
+      highest_ = std::max({highest_, rise(p, 0), rise(p, 1)});
     rounding_ = kRounding * (norm(shift_) + w_.blocks.radius[a] + w_.blocks.radius[b]);
     margin_ = std::max(kMarginShare * size_, 2 * approach_ + 2 * highest_);
     const Outlines& o = w_.outlines;
@@ -66,19 +71,16 @@ class PairSearch {
 
   // By how much a way must be behind another to stay so in this step: twice what any place of one block moves at most as the
   // other one sees it.
-  double behind(const std::array<PartMotion, 2>& of, Vec2 shift) const {
-    const double across = norm(shift) + search_.now_[static_cast<size_t>(pair_->a)].reach +
-                          search_.now_[static_cast<size_t>(pair_->b)].reach;
-    return 2 * (norm(of[0].way - of[1].way) + (norm(of[0].turn) + norm(of[1].turn)) * across) +
+  double behind(Vec2 shift) const {
+    const auto &a = search_.now_[static_cast<size_t>(pair_->a)],
+               &b = search_.now_[static_cast<size_t>(pair_->b)];
+    return 2 * (norm(a.way - b.way) + (a.turns + b.turns) * (norm(shift) + a.reach + b.reach)) +
            kLevel * size_;
   }
 
-  std::array<PartMotion, 2> motions() const { return {motion(pair_->a), motion(pair_->b)}; }
   PartMotion motion(int block) const {
-    const auto k = static_cast<size_t>(block);
-    const BlockRate& v = ahead_.before[k];
-    const bool deforms = w_.blocks.kind[k] == BlockKind::kDeformable;  // G acts on the reference arm
-    return {ahead_.clock.dt * v.a, ahead_.clock.dt * (deforms ? v.G * search_.now_[k].back : v.G)};
+    const auto& now = search_.now_[static_cast<size_t>(block)];
+    return {now.way, now.turn};
   }
 
   // On block a [N].
@@ -91,25 +93,20 @@ class PairSearch {
     return p.joint < 0 ? 0 : w_.laws[static_cast<size_t>(p.joint)].rise(p.slip[end]);
   }
 
-  PartNow part_now(int part, int block, int other, std::vector<SideRole>& roles) const {
+  PartNow part_now(int part, int other, std::vector<SideRole>& roles) const {
     const Outlines& o = w_.outlines;
     const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
                n = static_cast<size_t>(o.corners_of(part));
     roles.clear();
-    for (size_t k = 0; k < n && !o.plain[static_cast<size_t>(part)]; ++k) {
-      const PartSide& side = o.side[begin + k];
-      if (side.edge >= 0 && side.face < 0) continue;
-      if (side.edge >= 0 && state_.face[static_cast<size_t>(side.face)].broken) continue;
-      roles.resize(n, SideRole::kOut);
-      roles[k] = side.edge < 0 ? SideRole::kCut : role_of_face(side.face, block, other);
-    }
+    for (size_t k = 0; k < n && !search_.bare_[static_cast<size_t>(part)]; ++k)
+      roles.push_back(role_of(search_.tied_to_[begin + k], other));
     return {{search_.corner_.data() + begin, n}, {search_.along_.data() + begin, n}, roles};
   }
 
-  SideRole role_of_face(int face, int block, int other) const {
-    const BondFace& f = w_.bonds.faces[static_cast<size_t>(face)];
-    if (!w_.blocks.interact(f.block_a, f.block_b)) return SideRole::kOut;
-    return (f.block_a == block ? f.block_b : f.block_a) == other ? SideRole::kTiedHere : SideRole::kTied;
+  static SideRole role_of(int tied_to, int other) {
+    if (tied_to == PatchSearch::kFree) return SideRole::kOut;
+    if (tied_to == PatchSearch::kCut) return SideRole::kCut;
+    return tied_to == other ? SideRole::kTiedHere : SideRole::kTied;
   }
 
   // Whether a side of a part goes on in line with the next or the one before.
@@ -128,18 +125,19 @@ class PairSearch {
     const auto face = [&](int part, size_t k) {
       return o.side[static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]) + k].face;
     };
-    for (size_t k = 0; k < a.role.size(); ++k)
+    for (size_t k = 0; k < a.role.size(); ++k) {
+      if (a.role[k] != SideRole::kTiedHere) continue;
       for (size_t m = 0; m < b.role.size(); ++m)
-        if (a.role[k] == SideRole::kTiedHere && b.role[m] == SideRole::kTiedHere &&
-            face(p, k) == face(q, m) && (!goes_on(p, a, k) || !goes_on(q, b, m)))
+        if (b.role[m] == SideRole::kTiedHere && face(p, k) == face(q, m) &&
+            (!goes_on(p, a, k) || !goes_on(q, b, m)))
           return true;
+    }
     return false;
   }
 
   void look_at_parts(int p, int q, std::vector<Patch>& out) {
-    const PartNow a = part_now(p, pair_->a, pair_->b, roles_a_),
-                  b = part_now(q, pair_->b, pair_->a, roles_b_);
-    if (tied_along_side(p, a, q, b)) return;
+    const PartNow a = part_now(p, pair_->b, roles_a_), b = part_now(q, pair_->a, roles_b_);
+    if (pair_->face >= 0 && tied_along_side(p, a, q, b)) return;
     const Patch* before = nullptr;  // of several, which ties leave, the largest
     bool several = false;
     for (const Patch& known : known_) {
@@ -153,16 +151,13 @@ class PairSearch {
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
     const bool measured = elastic_ && before && before->overlaps;
     LookFirst first{.way = before ? before->way : 0, .strip = measured};
-    std::array<PartMotion, 2> moves;
-    if (!measured) moves = motions(), first.behind = behind(moves, shift);
+    if (!measured) first.behind = behind(shift);
     const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, first);
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
-    if (met.kind == PartsMet::kApart || !elastic_) {
-      if (measured) moves = motions();
-      meeting_.choose_way(moves[0], moves[1],
+    if (met.kind == PartsMet::kApart || !elastic_)
+      meeting_.choose_way(motion(pair_->a), motion(pair_->b),
                           {before ? before->way : 0, kLevel * size_, before ? force_of(*before) : Vec2{}});
-    }
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     const bool overlaps = met.kind == PartsMet::kOverlap;
@@ -345,8 +340,9 @@ class PairSearch {
 
   // Slip is of all of a joint: beyond the ends of the old chord it is that of the end.
   static void take_slip(const Patch& old, double s0, double s1, Patch& patch) {
+    const double per = s1 > s0 ? 1 / (s1 - s0) : 0;
     for (size_t end = 0; end < 2; ++end) {
-      const double z = s1 > s0 ? std::clamp((static_cast<double>(end) - s0) / (s1 - s0), 0.0, 1.0) : 0;
+      const double z = std::min(std::max((static_cast<double>(end) - s0) * per, 0.0), 1.0);
       patch.slip[end] = (1 - z) * old.slip[0] + z * old.slip[1];
       patch.slip_signed[end] = (1 - z) * old.slip_signed[0] + z * old.slip_signed[1];
     }
@@ -470,41 +466,70 @@ class PairSearch {
   const ContactPair* pair_ = nullptr;
   Vec2 shift_;
   bool all_laws_elastic_ = false, elastic_ = false;  // all joints, those of this pair
+  bool any_rises_ = false;                           // some joint does
   std::span<const Patch> known_;
   double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
   std::vector<SideRole> roles_a_, roles_b_;
   std::vector<std::pair<int, double>> shares_;
 };
 
+// Whom a side is tied to now, for tied_to_.
+int PatchSearch::tied_to(const PatchWorld& world, const State& state, int block, const PartSide& side) {
+  if (side.edge < 0) return kCut;
+  if (side.face < 0 || state.face[static_cast<size_t>(side.face)].broken) return kFree;
+  const BondFace& f = world.bonds.faces[static_cast<size_t>(side.face)];
+  if (!world.blocks.interact(f.block_a, f.block_b)) return kFree;
+  return f.block_a == block ? f.block_b : f.block_a;
+}
+
 // Parts as they lie, from the centroid of their block.
-void PatchSearch::place_parts(const PatchWorld& world, const std::vector<BlockRate>& before,
-                              const Workers& workers, const State& state) {
+void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
+                              const State& state) {
   const Outlines& o = world.outlines;
-  corner_.resize(o.corner.size()), along_.resize(o.corner.size());
+  const BlockSet& blocks = world.blocks;
+  corner_.resize(o.corner.size()), along_.resize(o.corner.size()), tied_to_.resize(o.corner.size());
+  bare_.resize(o.plain.size());
   now_.resize(state.strain_part.size());
-  workers.for_chunks(static_cast<size_t>(world.blocks.count), 1024, [&](size_t begin, size_t end) {
+  workers.for_chunks(static_cast<size_t>(blocks.count), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Mat2& h = state.strain_part[i];
-      const Mat2 turned = kIdentity + h;
-      now_[i] = {inverse(turned), norm(turned) * world.blocks.radius[i],
-                 turning_speed(world.blocks, before, i)};
-      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p) {
-        const auto first = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p)]),
-                   last = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p) + 1]);
-        for (size_t k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
-        for (size_t k = first; k < last; ++k) {
-          const Vec2 side = o.corner[k + 1 == last ? first : k + 1] - o.corner[k], now = side + h * side;
-          along_[k] = now / norm(now);
-        }
-      }
+      const Mat2 turned = kIdentity + h, back = inverse(turned);
+      const BlockRate& v = ahead.before[i];
+      // G of a deformable block acts on the reference arm
+      const Mat2 turn = ahead.clock.dt * (blocks.kind[i] == BlockKind::kDeformable ? v.G * back : v.G);
+      now_[i] = {back,
+                 norm(turned) * blocks.radius[i],
+                 turning_speed(blocks, ahead.before, i),
+                 ahead.clock.dt * v.a,
+                 turn,
+                 norm(turn)};
+      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p)
+        place_part(world, state, i, static_cast<size_t>(p));
     }
   });
+}
+
+void PatchSearch::place_part(const PatchWorld& world, const State& state, size_t block, size_t part) {
+  const Outlines& o = world.outlines;
+  const Mat2& h = state.strain_part[block];
+  const auto first = static_cast<size_t>(o.corner_begin[part]),
+             last = static_cast<size_t>(o.corner_begin[part + 1]);
+  for (size_t k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
+  for (size_t k = first; k < last; ++k) {
+    const Vec2 side = o.corner[k + 1 == last ? first : k + 1] - o.corner[k], now = side + h * side;
+    along_[k] = now / norm(now);
+  }
+  bare_[part] = true;
+  for (size_t k = first; k < last && !o.plain[part]; ++k) {
+    tied_to_[k] = tied_to(world, state, static_cast<int>(block), o.side[k]);
+    bare_[part] = bare_[part] && tied_to_[k] == kFree;
+  }
 }
 
 int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                         State& state) {
   TALUS_ASSERT(world.outlines.part_begin.size() == static_cast<size_t>(world.blocks.count) + 1);
-  place_parts(world, ahead.before, workers, state);
+  place_parts(world, ahead, workers, state);
   const size_t n = state.pairs.size();
   changed_.resize((n + kPatchGrain - 1) / kPatchGrain);
   workers.for_chunks(n, kPatchGrain, [&](size_t begin, size_t end) {

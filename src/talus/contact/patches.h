@@ -6,7 +6,6 @@
 #include "talus/contact/bonds.h"
 #include "talus/contact/contact_give.h"
 #include "talus/contact/outlines.h"
-#include "talus/contact/overlap.h"
 #include "talus/contact/pairs.h"
 
 namespace talus {
@@ -35,8 +34,15 @@ class PatchSearch {
     Mat2 back;       // F inverted
     double reach;    // from its centroid, at most [m]
     double turning;  // speed of its corners beside that of the centroid, at most [m/s]
+    Vec2 way;        // its motion in the step to come: a place x from its centroid by way + turn x [m]
+    Mat2 turn;
+    double turns;  // norm of that
   };
   std::vector<BlockNow> now_;  // [blocks]
+  // Of each side the block that an intact face ties it to, or one of these; of parts that are not bare.
+  static constexpr int kFree = -1, kCut = -2;
+  std::vector<int> tied_to_;
+  std::vector<char> bare_;  // [parts] whether all sides are free
   struct Changed {
     std::vector<std::pair<size_t, int>> pair;  // and how many it has now
     std::vector<Patch> patch;
@@ -44,8 +50,10 @@ class PatchSearch {
   };
   std::vector<Changed> changed_;
 
-  void place_parts(const PatchWorld& world, const std::vector<BlockRate>& before, const Workers& workers,
+  void place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                    const State& state);
+  static int tied_to(const PatchWorld& world, const State& state, int block, const PartSide& side);
+  void place_part(const PatchWorld& world, const State& state, size_t block, size_t part);
   void put_together(State& state);
   friend class PairSearch;
 };

@@ -125,12 +125,14 @@ RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
   const RowRange contacts = work.rows.range(Family::kContact);
   return work.workers.sum_chunks<RowSums>(
       work.rows.size(), kChunkOfRows, [&](size_t begin, size_t end, RowSums& s) {
-        for (size_t r = begin; r < end; ++r) tally_row(blocks, work, state, r, s);
+        for (size_t r = begin; r < end; ++r) {
+          const std::array<double, 2> u = relative_velocity(work.rows.points[r], state.rate);
+          tally_row(blocks, work, r, u, s);
+          if (scene.by_patches() && r >= contacts.begin && r < contacts.end)
+            remember_patch(work.rows, r, u, work.places, work.rate_before, work.clock, state);
+        }
         const RowRange here{std::max(begin, contacts.begin), std::min(end, contacts.end)};
-        if (here.begin >= here.end) return;
-        if (scene.by_patches())
-          remember_patches(work.rows, here, work.places, work.rate_before, work.clock, state);
-        else
+        if (!scene.by_patches() && here.begin < here.end)
           remember_corners(work.rows, here, work.places, work.clock, state);
       });
 }

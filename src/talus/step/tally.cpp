@@ -125,7 +125,8 @@ RowSums& RowSums::operator+=(const RowSums& o) {
 }
 
 // Theory 8.
-void tally_row(const BlockSet& blocks, const StepWork& step, const State& state, size_t r, RowSums& s) {
+void tally_row(const BlockSet& blocks, const StepWork& step, size_t r, const std::array<double, 2>& u,
+               RowSums& s) {
   const PointRows& p = step.rows.points[r];
   const Impulse& impulse = step.rows.impulse[r];
   const RowOwner owner = step.rows.owner[r];
@@ -137,11 +138,11 @@ void tally_row(const BlockSet& blocks, const StepWork& step, const State& state,
   for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
     if (block >= 0 && blocks.kind[static_cast<size_t>(block)] == BlockKind::kDriven)
       s.on_driven.emplace_back(block, impulse_on(p, impulse, sign));
-  const auto u0 = relative_velocity(p, step.rate_before), u1 = relative_velocity(p, state.rate);
+  const auto u0 = relative_velocity(p, step.rate_before);
   const std::array<Cause, 2> cause = causes_of(owner.family, p, impulse);
   for (size_t k = 0; k < 2; ++k) {
     s.work.before[cause[k]] += 0.5 * impulse[k] * u0[k];
-    s.work.after[cause[k]] += 0.5 * impulse[k] * u1[k];
+    s.work.after[cause[k]] += 0.5 * impulse[k] * u[k];
   }
   s.closed += contact || (is_joint(owner.family) && p.is_soft());
 }

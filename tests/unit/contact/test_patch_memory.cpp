@@ -64,7 +64,9 @@ class PutBlocks {
         state_.rate[i] = {(to[i].way - pose_[i].way) / kClock.dt,
                           (1 / kClock.dt) * turn_between(pose_[i].turn, to[i].turn)};
       solve();  // slip is what the end of the step leaves of it
-      remember_patches(rows_, rows_.range(Family::kContact), place_, still, kClock, state_);
+      for (size_t r = rows_.range(Family::kContact).begin; r < rows_.range(Family::kContact).end; ++r)
+        remember_patch(rows_, r, relative_velocity(rows_.points[r], state_.rate), place_, still, kClock,
+                       state_);
     }
     for (size_t i = 0; i < to.size(); ++i) {
       state_.displacement[i] = to[i].way, state_.angle[i] = to[i].turn;

@@ -34,6 +34,7 @@ struct SolverGoal {
   double wanted = 0, enough = 0;
   bool early = false;  // just reached will do: ask the judge as soon as it is likely
   int worth = 0;       // sweeps give up where more than so many are still to be expected; 0: never
+  double solved = 0;   // above `enough`: what counts as solved where no more can be had
   double limit = 0;    // what is less may stay where it would be dear to mend [m]
   SolverGoal(double both) : wanted(both), enough(both) {}
   SolverGoal(double wanted_, double enough_, bool early_ = false)

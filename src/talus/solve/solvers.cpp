@@ -151,8 +151,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   const SolverKind first = chosen_solver(model, problem.rows.points.size(), kinds),
                    second = entry(first).mended;
   // a shorter step from rest costs less than thousands of sweeps
-  const bool shorter = kinds.from_rest && !kinds.by_all && first == SolverKind::kPrimalNewton &&
-                       problem.rows.points.size() >= kFewestPrimal;
+  const bool shorter = kinds.from_rest && !kinds.by_all && first == SolverKind::kPrimalNewton;
   const bool again = options.second_solver && !smoothed && !shorter &&
                      problem.rows.points.size() <= entry(second).most_points;
   const SolverEntry& last = *std::ranges::find_if(kSolvers, &SolverEntry::last);
@@ -177,7 +176,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     SolverInput limits = options;
     limits.max_sweeps = sweeps;
     SolverGoal goal = goal_of(kind, kinds, tolerance, sharper);
-    goal.worth = worth, goal.limit = limit;
+    goal.worth = worth, goal.limit = limit, goal.solved = tolerance;
     now.method = kind;
     now.report = solvers.of(kind).solve(problem, goal, limits, workers);
     attempts.add(kind, now.report.iterations);
@@ -207,6 +206,9 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
   };
   if (gave_up && !std::isnan(now.error.worst)) attempt(SolverKind::kPrimalNewton, few, false);
   if (best.solved.failed && again) attempt(second, few, entry(first).far_off);
+  // friction that goes in circles comes to an end where its bounds are held
+  if (best.solved.failed && again && !gave_up && first != SolverKind::kPrimalNewton)
+    attempt(SolverKind::kPrimalNewton, few, false);
   if (best.solved.failed && (gave_up || few < options.max_sweeps))
     for (const SolverEntry& e : kSolvers)
       if (e.goes_on && best.solved.failed) attempt(e.kind, options.max_sweeps, false);

@@ -10,7 +10,7 @@ namespace {
 
 // Rows that do not give at all get the share 1 / kStiff of their influence, or of what the stiffest other row of a block
 // gives where that is less, about a centre that follows the impulse: what they settle at is exact.
-constexpr double kStiff = 1e7;
+constexpr double kStiff = 1e4;
 
 constexpr size_t kChunkOfFaces = 512, kChunkOfBlocks = 512;
 
@@ -384,8 +384,8 @@ void VelocityEquations::push_face(const Face& face, const std::vector<double>& v
     const size_t i = index(face, e);
     const PointRows& p = problem_.rows.points[i];
     for (size_t k = 0; k < 2; ++k) {
-      C[k][e][e] = p.row[k].compliance + prox_[i][k];
-      if (count > 1) C[k][e][1 - e] = p.cross(static_cast<int>(k));
+      C[k][e][e] = soft_ * p.row[k].compliance + prox_[i][k];
+      if (count > 1) C[k][e][1 - e] = soft_ * p.cross(static_cast<int>(k));
       q[k][e] = along(i, k, v) + bias_[i][k] - prox_[i][k] * centre_[i][k];
     }
     bounds[e] = bounds_of(p, 0, 0);
@@ -398,12 +398,16 @@ void VelocityEquations::push_face(const Face& face, const std::vector<double>& v
     n = standing(face, 0, bounds), t = standing(face, 1, cone);
   }
   if (!keep || !with_free(C[0], q[0], bounds, count, n)) n = within_bounds(C[0], q[0], bounds, count);
-  for (size_t e = 0; e < count; ++e) bounds[e] = bounds_of(problem_.rows.points[index(face, e)], 1, n.p[e]);
+  for (size_t e = 0; e < count; ++e) {
+    const size_t i = index(face, e);
+    bounds[e] = bounds_of(problem_.rows.points[i], 1, pressed_.empty() ? n.p[e] : pressed_[i]);
+  }
   if (!keep || !with_free(C[1], q[1], bounds, count, t)) t = within_bounds(C[1], q[1], bounds, count);
   for (size_t e = 0; e < count; ++e) problem_.rows.impulse[index(face, e)] = {n.p[e], t.p[e]};
   if (!tangent) return;
   invert_free(C[0], n.at, count, tangent->n);
   invert_free(C[1], t.at, count, tangent->t);
+  if (!pressed_.empty()) return;
   // a sliding end follows its normal impulse, and a partner that sticks yields to it
   for (size_t e = 0; e < count; ++e) {
     if (t.at[e] == 0 || bounds[e].upper <= 0 || std::isinf(bounds[e].upper)) continue;

@@ -39,6 +39,11 @@ class VelocityEquations {
   std::vector<double> residual(const std::vector<double>& v, std::vector<FaceTangent>* tangent,
                                bool keep = false);
 
+  // Friction's bounds are those of these normal impulses of the rows, not their own, and what gives does by so many times as
+  // much, until let_go(): F is the gradient of a convex function.
+  void hold(std::vector<double> pressed, double soft) { pressed_ = std::move(pressed), soft_ = soft; }
+  void let_go() { pressed_.clear(), soft_ = 1; }
+
   // How far velocities move in the step while the impulses stand [m].
   double reach(const std::vector<double>& F) const;
 
@@ -133,6 +138,8 @@ class VelocityEquations {
   std::vector<std::array<int, 2>> pairs_;
   std::vector<Rows> row_;
   std::vector<std::array<double, 2>> prox_, centre_, bias_;  // of each point
+  std::vector<double> pressed_;  // of each point while bounds are held; else empty
+  double soft_ = 1;
 };
 
 }  // namespace talus

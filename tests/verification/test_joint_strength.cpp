@@ -65,9 +65,10 @@ TEST_CASE("cohesion holds a face up to c A + mu N, then residual strength slides
     const CaseResult r = run_case(shear_text(joint, "time = [0, 0.5, 1.1]\nvalue = [0, 0.5e-3, 2.3e-3]"));
     const auto& shear = r.column("face.force_x");
     const std::string what = soft ? "soft joint, " : "hard joint, ";
-    // a soft joint is read at the steps: 1 to 3 um of 5e8 N/m, before the limit, and beyond it not at all
+    // what gives is read at the steps: before the limit, and beyond it not at all. A soft joint by 1 to 3 um of 5e8 N/m; a hard
+    // one gives by 1e-5 of its length (theory 4.22), so that a step of the drive is some 80 N
     check_close(what + "largest shear c A + mu N [N]", largest(shear),
-                50e3 * kArea + std::tan(radians(40)) * kWeight, soft ? 2e-2 : 1e-4, soft ? 1e-2 : 1e-9);
+                50e3 * kArea + std::tan(radians(40)) * kWeight, soft ? 2e-2 : 5e-3, soft ? 1e-2 : 1e-9);
     check_close(what + "shear after c_r A + mu_r N [N]", std::abs(shear.back()),
                 8e3 * kArea + std::tan(radians(25)) * kWeight, soft ? 1e-3 : 1e-6, 1e-9);
     CHECK(r.run.broken_faces == 1);
@@ -163,7 +164,8 @@ TEST_CASE("residual friction alone: a face without cohesion weakens at its first
       run_case(shear_text("friction_angle = \"45 deg\"\nresidual_friction_angle = \"20 deg\"",
                           "time = [0, 0.5, 1.1]\nvalue = [0, 0.5e-3, 2.3e-3]"));
   const auto& shear = r.column("face.force_x");
-  check_close("largest shear mu N [N]", largest(shear), std::tan(radians(45)) * kWeight, 1e-4, 1e-9);
+  // as above, some 80 N before the limit
+  check_close("largest shear mu N [N]", largest(shear), std::tan(radians(45)) * kWeight, 8e-3, 1e-9);
   check_close("shear after mu_r N [N]", std::abs(shear.back()), std::tan(radians(20)) * kWeight, 1e-6, 1e-9);
   CHECK(r.run.broken_faces == 1);
   check_energy(r);

@@ -229,8 +229,8 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
 
 // Theory 3.5, 4.6.
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
-                   const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
-                   const Workers& workers, RowSet& rows) {
+                   const ContactGive& give, const State& state, const std::vector<BlockRate>& before,
+                   const StepClock& clock, const Workers& workers, RowSet& rows) {
   TALUS_ASSERT(state.face.size() == bonds.faces.size() && state.bond_force.size() == 2 * bonds.faces.size());
   TALUS_ASSERT(rows.size() == 0 && before.size() == static_cast<size_t>(blocks.count));
   const auto holds = [&](size_t f) {
@@ -269,6 +269,10 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
           add_compliance(law, half_area, true, clock, u[end], p);
           p.partner = static_cast<int>(end == 0 ? at + 1 : at);
         }
+        const double most = give.row_compliance(blocks, face.block_a, face.block_b, clock);
+        p.gives = {most > 0 && !law.is_soft(0), most > 0 && !law.is_soft(1)};
+        for (size_t row = 0; row < 2; ++row)
+          if (p.gives[row]) p.row[row].compliance = most;
       }
       // the two tangential rows of a face between rigid blocks say the same: from equal guesses they stay
       // equal. Where a block deforms, unequal ones belong to a balance that must not be disturbed

@@ -8,6 +8,7 @@
 #include "talus/base/parallel.h"
 #include "talus/blocks/state.h"
 #include "talus/contact/compliance.h"
+#include "talus/contact/contact_give.h"
 #include "talus/model/joint_law.h"
 #include "talus/rows/rows.h"
 
@@ -46,10 +47,11 @@ std::vector<BondFace> shared_faces(const Layout& layout, const BlockSet& blocks)
 bool is_tied(const BondSet& bonds, const State& state, int a, int b);
 
 /// Rows of all intact faces (two points each), with the first guess from the last step.
+/// @param give    of faces that may break and whose joint has no stiffness: what hard contacts give
 /// @param before  rates half a step ago
 void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vector<JointLaw>& laws,
-                   const State& state, const std::vector<BlockRate>& before, const StepClock& clock,
-                   const Workers& workers, RowSet& rows);
+                   const ContactGive& give, const State& state, const std::vector<BlockRate>& before,
+                   const StepClock& clock, const Workers& workers, RowSet& rows);
 
 /// After the solution: forces, and the slip of points that slide at the limit of an elastic shear.
 void remember_bonds(const BlockSet& blocks, const BondSet& bonds, const RowSet& rows, const StepClock& clock,

@@ -82,6 +82,16 @@ double ContactGive::per_force(double thickness) const {
   return stress > 0 ? 2 * kGiveClosure / (stress * thickness) : 0;
 }
 
+double ContactGive::row_compliance(const BlockSet& blocks, int a, int b, const StepClock& clock) const {
+  const double one = clock.dt * clock.dt_kick, give = per_force(blocks.thickness) / one;
+  if (give == 0) return 0;
+  double yield = 0;  // about what two blocks yield at a corner, together [1/kg]
+  for (const int block : {a, b})
+    if (blocks.moves_freely(block)) yield += kYield / blocks.mass[static_cast<size_t>(block)];
+  const double shortest = shortest_step > 0 ? shortest_step * shortest_step : clock.dt * clock.dt;
+  return std::min(give, shortest / one / kLeastYield * yield);
+}
+
 ContactGive contact_give(const Model& model, const Layout& layout, const BlockSet& blocks) {
   ContactGive give;
   if (model.contact.law != ContactLaw::kExact || !model.contact.give) return give;

@@ -4,6 +4,7 @@
 
 #include "talus/blocks/state.h"
 #include "talus/model/joint_law.h"
+#include "talus/rows/step_clock.h"
 
 namespace talus {
 
@@ -27,6 +28,9 @@ struct ContactGive {
 
   /// Displacement of one contact point under a force, along the normal and along the tangent, at most [m/N].
   double per_force(double thickness) const;
+
+  /// The same as compliance of a row between two blocks: no more than kLeastYield of them allows [1/kg].
+  double row_compliance(const BlockSet& blocks, int a, int b, const StepClock& clock) const;
 };
 
 /// By the largest stress that the model gives to be foreseen: of the ground, of its weight and of accelerations

@@ -26,10 +26,7 @@ class PatchRows {
         state_(state),
         before_(before),
         clock_(clock),
-        give_(give.per_force(world.blocks.thickness) / (clock.dt * clock.dt_kick)),
-        least_give_(give.shortest_step > 0
-                        ? give.shortest_step * give.shortest_step / (clock.dt * clock.dt_kick) / kLeastYield
-                        : clock.dt / clock.dt_kick / kLeastYield),
+        give_(give),
         first_(first),
         rows_(rows),
         place_(place) {
@@ -38,7 +35,7 @@ class PatchRows {
   }
 
   void add(const ContactPair& pair) const {
-    const double give = give_ > 0 && pair.count > 0 ? std::min(give_, least_give_ * yield(pair)) : 0;
+    const double give = pair.count > 0 ? give_.row_compliance(w_.blocks, pair.a, pair.b, clock_) : 0;
     for (int k = 0; k < pair.count; ++k) {
       const auto i = static_cast<size_t>(pair.begin + k);
       std::array<std::array<double, 2>, 2> u{};
@@ -130,14 +127,6 @@ class PatchRows {
     return false;
   }
 
-  // About what two blocks yield at a corner, together [1/kg].
-  double yield(const ContactPair& pair) const {
-    double sum = 0;
-    for (const int block : {pair.a, pair.b})
-      if (w_.blocks.moves_freely(block)) sum += kYield / w_.blocks.mass[static_cast<size_t>(block)];
-    return sum;
-  }
-
   // Overlap as share of the mean thickness, along the normal, of the thinner block.
   double closed_part(const Patch& c, size_t end) const {
     double share = 0;
@@ -152,8 +141,7 @@ class PatchRows {
   const State& state_;
   const std::vector<BlockRate>& before_;
   const StepClock& clock_;
-  const double give_;        // compliance of hard contacts [1/kg]
-  const double least_give_;  // which need not be larger than this share of what their blocks yield
+  const ContactGive& give_;
   const size_t first_;
   RowSet& rows_;
   std::vector<ContactPlace>& place_;

@@ -66,7 +66,7 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   RowSet& rows = work.rows;
   rows.restart();
   work.profile.go_on_with(Profile::kRows);
-  add_bond_rows(blocks, scene.bonds, scene.laws, state, before, clock, work.workers, rows);
+  add_bond_rows(blocks, scene.bonds, scene.laws, scene.give, state, before, clock, work.workers, rows);
   if (scene.by_patches())
     add_patch_rows(patch_world(scene), scene.give, state, before, clock, work.workers, rows, work.places);
   else

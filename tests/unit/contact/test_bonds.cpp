@@ -252,7 +252,7 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     state.bond_force[1] = {5, 7};
     const double dt = 1e-4, dt_kick = 5e-5;
     RowSet rows;
-    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {dt, dt_kick, 0.2},
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), {}, state, state.rate, {dt, dt_kick, 0.2},
                   Workers(1), rows);
     REQUIRE(rows.size() == 2);
     for (const int end : {0, 1}) {
@@ -278,7 +278,7 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
     CHECK(rows.impulse[1][1] == relative(7 * dt_kick, 1e-14));
     state.face[0].broken = true;
     rows = {};
-    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {dt, dt_kick, 0.2},
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), {}, state, state.rate, {dt, dt_kick, 0.2},
                   Workers(1), rows);
     CHECK(rows.points.empty());
   }
@@ -297,7 +297,7 @@ TEST_CASE(
     state.rate[0].a = {push, 0.003};
     state.rate[1].G = {1e-3, 2e-3, -1e-3, 5e-4};  // the two ends move differently
     RowSet rows;
-    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, {1e-4, 9e-5, 0.2},
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), {}, state, state.rate, {1e-4, 9e-5, 0.2},
                   Workers(1), rows);
     REQUIRE(rows.points.size() == 2);
     for (size_t r = 0; r < 2; ++r) {
@@ -330,7 +330,8 @@ TEST_CASE("an end that slides at the limit of an elastic face keeps its slip and
   RowSet rows;
   const auto make_rows = [&] {
     rows = {};
-    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), state, state.rate, timing, Workers(1), rows);
+    add_bond_rows(s.blocks, s.bonds, joint_laws(s.model.joints), {}, state, state.rate, timing, Workers(1),
+                  rows);
   };
   make_rows();
   REQUIRE(rows.points.size() == 2);

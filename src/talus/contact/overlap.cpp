@@ -58,18 +58,35 @@ void PartsMeeting::find_ways(double margin, double rounding) {
   for (const Way& w : sides_)
     if (role_of(w) == SideRole::kOut)
       widest_out = std::max(widest_out, w.gap);
-    else
-      widest_shut = std::max(widest_shut, w.gap);
+    else if (w.gap > 0 && !goes_on_free(w))
+      widest_shut = w.gap;
   if (widest_out > margin || widest_shut > 0) return;
   const double least = widest_out - behind_;
   size_t count = 0;
   for (const Way& w : sides_) {
     const SideRole role = role_of(w);
     const bool near = w.gap >= (role == SideRole::kOut ? least : std::min(0.0, least));
-    sides_[count] = w, count += static_cast<size_t>(near && role != SideRole::kCut);
+    sides_[count] = w;
+    count +=
+        static_cast<size_t>(near && role != SideRole::kCut && (role == SideRole::kOut || !goes_on_free(w)));
   }
   ways_ = {sides_.data(), count};
   if (count > 0) met_.kind = widest_out >= -rounding ? PartsMet::kApart : PartsMet::kOverlap;
+}
+
+// Whether a side that a third block ties goes on in its line as a way out: where a tie ends within a side, what is before the
+// one is before the other.
+bool PartsMeeting::goes_on_free(const Way& w) const {
+  if (role_of(w) != SideRole::kTied) return false;
+  const PartNow& own = part(w.of_b);
+  const size_t n = own.size();
+  for (const size_t step : {size_t{1}, n - 1})
+    for (size_t next = (w.side + step) % n; next != w.side; next = (next + step) % n) {
+      const Vec2 one = own.along[w.side], two = own.along[next];
+      if (std::abs(cross(one, two)) > kOneSide || dot(one, two) < 0) break;
+      if (own.role_of(next) == SideRole::kOut) return true;
+    }
+  return false;
 }
 
 // Parts that are apart meet along the way along which they are furthest apart, or least in each other, at the end of

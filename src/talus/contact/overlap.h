@@ -159,6 +159,7 @@ class PartsMeeting {
   void cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& out);
   bool left_to_bonds(bool of_b) const;
   bool any_tied() const;
+  bool goes_on_free(const Way& w) const;
   void nested_cells();
   bool measure_cells();
   size_t facing(bool of_b, size_t side) const;

@@ -19,6 +19,9 @@ class LivePage : public Observer {
                          const std::string& why) override {
     next_.stage_is_followed(scene, stage, plan, why);
   }
+  void blocks_are_left_out(const Scene& scene, int stage, const std::string& who) override {
+    next_.blocks_are_left_out(scene, stage, who);
+  }
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     next_.stage_begins(scene, stage, plan);
   }

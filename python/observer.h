@@ -22,6 +22,9 @@ class PyObserver : public Observer {
                          const std::string& why) override {
     if (next_) next_->stage_is_followed(scene, stage, plan, why);
   }
+  void blocks_are_left_out(const Scene& scene, int stage, const std::string& who) override {
+    if (next_) next_->blocks_are_left_out(scene, stage, who);
+  }
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
     if (next_) next_->stage_begins(scene, stage, plan);
   }

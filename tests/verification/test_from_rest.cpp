@@ -137,7 +137,8 @@ TEST_CASE("from rest: a pebble that falls is no rest, however large the forces b
       "friction_angle = \"30 deg\"\nnormal_stiffness = \"40 GPa/m\"\nshear_stiffness = \"40 GPa/m\"",
       "[[block]]\nname = \"pebble\"\npolygon = [[1.5, 0.5], [1.503, 0.5], [1.503, 0.503], [1.5, 0.503]]\n"
       "material = \"m\"\n[[load]]\nname = \"top\"\nedge = [[0, 8], [1, 8]]\npressure = \"100 MPa\"\n"
-      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\nintegration = \"implicit\"\n");
+      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\nintegration = \"implicit\"\n"
+      "strict_rest = true\n");
   const CaseResult r = run_case(text + "[[monitor]]\nname = \"pebble\"\npoint = [1.5015, 0.5015]\n");
   CHECK(r.run.stages[0].at_rest);
   check_close("from rest, fall of a pebble beside large forces [m]", r.column("pebble.displacement_y").back(),

@@ -1,6 +1,7 @@
 #pragma once
 // Everything that a step changes. Copying a State is a checkpoint.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -256,6 +257,9 @@ struct State {
   double energy_start = 0;     // kinetic + strain - gravity work at the start [J]
   double largest_kinetic = 0;  // since the start of the stage [J]
   RestWatch rest;
+  std::vector<int>
+      left_out;  // blocks that fall or slide and that the rest of a stage does not wait for, in order
+  bool is_left_out(int block) const { return std::binary_search(left_out.begin(), left_out.end(), block); }
 };
 
 /// T0 of block i [Pa].

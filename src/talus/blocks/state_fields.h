@@ -125,7 +125,7 @@ void each_field(Is<State> auto& s, auto&& f) {
          face, supports, boundaries, ties, bolts, column_displacement, column_rate, candidates, pairs,
          contacts, followed, patches, initial_stress, kept_force, relaxed, displacement_start,
          strain_part_start, carried_stress, acceleration, rate_old, judged, strain_work, work, energy_start,
-         largest_kinetic, rest] = s;
+         largest_kinetic, rest, left_out] = s;
   f("time", time), f("step", step), f("history_time", history_time), f("dt_before", dt_before);
   f("displacement", displacement), f("strain_part", strain_part), f("angle", angle), f("rate", rate);
   f("row_force", row_force), f("bond_force", bond_force), f("face", face);
@@ -138,6 +138,7 @@ void each_field(Is<State> auto& s, auto&& f) {
   f("carried_stress", carried_stress), f("acceleration", acceleration), f("rate_old", rate_old);
   f("judged", judged), f("strain_work", strain_work), f("work", work);
   f("energy_start", energy_start), f("largest_kinetic", largest_kinetic), f("rest", rest);
+  f("left_out", left_out);
 }
 
 }  // namespace talus

@@ -216,6 +216,7 @@ struct StageInput {
   bool moment_clamp = false;
   bool from_rest = false;        // static: backward Euler, every step from rest (theory 4.23)
   bool from_rest_auto = false;   // that unless it says how blocks shall move (set by build_scene)
+  bool strict_rest = false;      // crumbs that fall or slide are waited for
   bool may_follow = false;       // what does not come to rest in steps from rest is followed by damped motion
   bool follow_implicit = false;  // `implicit` of that
   bool implicit = false;         // block-implicit elasticity

@@ -52,6 +52,7 @@ class StageReader : private SectionReader {
     s.damping_stiffness = f.get("damping_stiffness", 0.0);
     s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? kStaticDamping : 0.0);
     s.unbalanced = f.get("unbalanced", s.unbalanced);
+    s.strict_rest = f.get("strict_rest", false);
     s.excavate = f.get<std::vector<std::string>>("excavate");
     s.relaxation = f.get<std::vector<Vec2>>("relaxation");
     read_integration(f, s);
@@ -63,6 +64,8 @@ class StageReader : private SectionReader {
     s.where_relaxation = f.where("relaxation");
     if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
       findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
+    if (s.kind == StageKind::kDynamic && f.given("strict_rest"))
+      findings_.error(f.where("strict_rest"), f.path_of("strict_rest"), "is only for static stages");
     check_step(f, s);
     check_excavation(f, s);
     model_.stages.push_back(s);

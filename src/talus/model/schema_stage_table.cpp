@@ -134,6 +134,13 @@ SectionSpec stage_section() {
         .doc = "Static stages: at rest when the largest unbalanced force of a block, as share of the mean "
                "force on blocks, and the velocity left, as share of its peak or of what the forces give in "
                "half a step, are below this."},
+       {.name = "strict_rest",
+        .type = K::kBool,
+        .default_text = "false",
+        .doc =
+            "Static stages in steps from rest: true: all blocks have to rest. false: blocks that fall or slide on without an "
+            "end, less than a hundredth of the area in all, are named, and the stage ends when the others rest; "
+            "they go on in the stages after it."},
        {.name = "excavate",
         .type = K::kTexts,
         .refers_to = "block, grid, region or kept opening",

@@ -70,6 +70,13 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
   stage_step_ = 0;
 }
 
+void Progress::blocks_are_left_out(const Scene& scene, int stage, const std::string& who) {
+  next_.blocks_are_left_out(scene, stage, who);
+  finish();
+  say(out_,
+      fmt::format("  {}: not waited for: {}\n", scene.model.stages[static_cast<size_t>(stage)].name, who));
+}
+
 void Progress::stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
                                  const std::string& why) {
   next_.stage_is_followed(scene, stage, plan, why);
@@ -180,6 +187,7 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
           "  at rest         stage \"{}\" after {} steps{}, unbalanced {:.1e}\n", s.name, s.steps,
           s.followed() ? fmt::format(" ({} from rest, then damped motion)", s.steps_from_rest) : "",
           s.unbalanced);
+    if (!s.left_out.empty()) out += fmt::format("  not waited for  stage \"{}\": {}\n", s.name, s.left_out);
   }
   if (r.broken_faces > 0)
     out += fmt::format(

@@ -18,6 +18,7 @@ class Progress : public Observer {
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override;
   void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
                          const std::string& why) override;
+  void blocks_are_left_out(const Scene& scene, int stage, const std::string& who) override;
   void at(const Instant& instant) override;
   bool stop() override { return next_.stop(); }
   bool wants_state() override { return next_.wants_state(); }

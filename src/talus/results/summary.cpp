@@ -188,6 +188,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
       stage["followed_from [s]"] = s.followed_from;
       stage["followed_because"] = s.followed_because;
     }
+    if (!s.left_out.empty()) stage["left_out"] = s.left_out, stage["left_out_share"] = s.left_out_share;
     j["stages"].push_back(stage);
   }
   ordered_json& solver = j["solver"];

@@ -28,6 +28,8 @@ class Observer {
   virtual void stage_begins(const Scene&, int /*stage*/, const StagePlan&) {}
   /// A stage goes on by damped motion, as its steps from rest found no balance.
   virtual void stage_is_followed(const Scene&, int /*stage*/, const StagePlan&, const std::string& /*why*/) {}
+  /// A stage in steps from rest waits for some blocks no longer, as they fall or slide on.
+  virtual void blocks_are_left_out(const Scene&, int /*stage*/, const std::string& /*who*/) {}
   virtual void at(const Instant& instant) = 0;
   /// Shown the instant at which numerical trouble ends the run, after at() and before anything moved on.
   virtual void fails(const Instant& /*instant*/) {}

@@ -30,7 +30,8 @@ double pace_of_many(const BlockSet& blocks, const State& state) {
     const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
     const double area = blocks.size[k] * blocks.size[k];
-    all += area, pace.emplace_back(norm(state.rate[k].a) / blocks.size[k], area);
+    all += area;
+    if (!state.is_left_out(i)) pace.emplace_back(norm(state.rate[k].a) / blocks.size[k], area);
   }
   std::sort(pace.begin(), pace.end(), std::greater<>());
   double faster = 0;
@@ -44,7 +45,7 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
   const BlockSet& blocks = scene.blocks;
   double fastest = 0;
   for (int i = 0; i < blocks.count; ++i)
-    if (blocks.moves_freely(i))
+    if (blocks.moves_freely(i) && !state.is_left_out(i))
       fastest =
           std::max(fastest, norm(state.rate[static_cast<size_t>(i)].a) / blocks.size[static_cast<size_t>(i)]);
   // beside a crumb that goes by itself the others stand
@@ -52,7 +53,7 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
                least = kGoes * (many >= kStands * fastest ? many : fastest);
   const auto goes = [&](int i) {
     const auto k = static_cast<size_t>(i);
-    return blocks.moves_freely(i) && norm(state.rate[k].a) > 0 &&
+    return blocks.moves_freely(i) && !state.is_left_out(i) && norm(state.rate[k].a) > 0 &&
            norm(state.rate[k].a) >= least * blocks.size[k];
   };
   double farthest = 0, all = 0;
@@ -68,6 +69,7 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
   for (int i = 0; i < blocks.count; ++i) {
     const auto k = static_cast<size_t>(i);
     if (!goes(i)) continue;
+    m.members.push_back(i);
     ++m.blocks, m.area += blocks.size[k] * blocks.size[k];
     weight += blocks.mass[k] * norm(scene.model.gravity);
   }

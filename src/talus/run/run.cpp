@@ -227,7 +227,7 @@ class StagedRun::Runner {
   void follow_motion(const std::string& because) {
     StageResult& out = result_.stages.back();
     out.steps_from_rest = out.steps, out.followed_from = state_.time, out.followed_because = because;
-    state_.rest = {};
+    state_.rest = {}, state_.left_out.clear();
     state_.largest_kinetic = 0;
     std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     go_by_motion();
@@ -247,6 +247,22 @@ class StagedRun::Runner {
     advance_ = plan.dt;
   }
 
+  // Crumbs that go on without an end are no matter of the others' rest: named, and waited for no longer.
+  bool leaves_out(const StageInput& stage, const Mechanism& m) {
+    StageResult& out = result_.stages.back();
+    if (stage.strict_rest || m.members.empty() || !(out.left_out_share + m.share < kMechanismShare))
+      return false;
+    out.left_out_share += m.share;
+    const std::string who = m.text(scene_, state_);
+    out.left_out += (out.left_out.empty() ? "" : "; ") + who;
+    std::vector<int>& all = state_.left_out;
+    all.insert(all.end(), m.members.begin(), m.members.end());
+    std::sort(all.begin(), all.end());
+    state_.rest.gone = state_.rest.gone_many = 0;
+    observer_.blocks_are_left_out(scene_, static_cast<int>(result_.stages.size()) - 1, who);
+    return true;
+  }
+
   // Whether steps from rest have said all they can say, and blocks are followed as they move; tells why. A mechanism ends the
   // run.
   bool gives_up_rest(const StageInput& stage, const StageResult& out, std::string& because) {
@@ -260,6 +276,7 @@ class StagedRun::Runner {
             "stage.{}.integration = \"dynamic\" follows it",
             stage.name, m.text(scene_, state_), out.steps, stage.name));
       }
+      if (leaves_out(stage, m)) return false;
       // what slides may come to lie on something: not what falls, or is a crumb
       if (stage.may_follow && !(m.slides && m.share >= kMechanismShare))
         return because = "no balance near: " + m.text(scene_, state_), true;
@@ -552,7 +569,7 @@ class StagedRun::Runner {
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
     if (stage.from_rest && report.broken_faces > 0) return false;
     return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
-           report.speed_left <= stage.unbalanced;
+           (report.speed_left <= stage.unbalanced || !state_.left_out.empty());  // its energy is theirs too
   }
 
   bool is_relaxed(const StageInput& stage, int64_t n) const {

@@ -24,6 +24,9 @@ struct StageResult {
   double followed_from = 0;
   std::string followed_because;  // "": it is not followed
 
+  std::string left_out;       // blocks that were not waited for: who, which way, on what; "": none
+  double left_out_share = 0;  // of the area of all that can move
+
   bool followed() const { return !followed_because.empty(); }
 };
 

@@ -129,6 +129,8 @@ Scene weakened(const PreparedRun& prepared, double factor) {
     if (chosen.empty() || std::find(chosen.begin(), chosen.end(), static_cast<int>(i)) != chosen.end())
       scene.model.joints[i] = reduced(scene.model.joints[i], factor);
   scene.laws = joint_laws(scene.model.joints);
+  // a wedge is a failure, however small
+  for (StageInput& stage : scene.model.stages) stage.strict_rest = true;
   return scene;
 }
 

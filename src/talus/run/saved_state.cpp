@@ -79,10 +79,12 @@ void exchange_standing(auto& x, auto& standing) {
     field("kind", s.kind), field("steps", s.steps), field("begin", s.begin), field("end", s.end);
     field("unbalanced", s.unbalanced), field("at_rest", s.at_rest);
     field("steps_from_rest", s.steps_from_rest), field("followed_from", s.followed_from);
+    field("left_out_share", s.left_out_share);
   });
   for (size_t i = 0; i < r.stages.size(); ++i) {
     x(fmt::format("run.stages.name.{}", i), r.stages[i].name);
     x(fmt::format("run.stages.followed_because.{}", i), r.stages[i].followed_because);
+    x(fmt::format("run.stages.left_out.{}", i), r.stages[i].left_out);
   }
   x("run.steps", r.steps), x("run.failed_steps", r.failed_steps);
   x("run.loose_steps", r.loose_steps);

@@ -101,7 +101,8 @@ bool StepsFromRest::is_far(const Approach& approach) const {
 double StepsFromRest::longest_way(double length) const {
   double most = 0;
   for (size_t k = 0; k < state_.rate.size(); ++k)
-    most = std::max(most, length * norm(state_.rate[k].a) / scene_.blocks.size[k]);
+    if (!state_.is_left_out(static_cast<int>(k)))
+      most = std::max(most, length * norm(state_.rate[k].a) / scene_.blocks.size[k]);
   return most;
 }
 

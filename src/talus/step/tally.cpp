@@ -88,7 +88,8 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
   const BlockForce rows = (1 / kick) * scheme.impulse_for(i, v1 - step.rate_free[i]);
   state.row_force[i] = rows;
   const double unbalanced = force_norm(blocks, i, force + rows);
-  if (unbalanced > s.worst) s.worst = unbalanced, s.worst_block = static_cast<int>(i);
+  if (unbalanced > s.worst && !state.is_left_out(static_cast<int>(i)))
+    s.worst = unbalanced, s.worst_block = static_cast<int>(i);
   const double acting = 0.5 * (force_norm(blocks, i, force) + force_norm(blocks, i, rows));
   s.forces += acting;
   s.nudge += 0.125 * kick * kick * acting * acting / blocks.mass[i];

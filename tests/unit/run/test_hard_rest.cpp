@@ -1,0 +1,67 @@
+// Static stages of rock with hard joints go in steps from rest: friction in turns, faces with strength that close loops
+// (theory 4.22, 4.23, 5.8).
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "talus/model/read_model.h"
+#include "talus/run/run.h"
+
+namespace test_hard_rest {
+
+using namespace talus;
+
+namespace {
+
+class Silent : public Observer {
+ public:
+  void at(const Instant&) override {}
+};
+
+// A slope in two sets of joints; the steeper the friction the more of it sticks.
+std::string slope(double friction, const std::string& strength, double angle) {
+  const std::string law = fmt::format("friction_angle = \"{} deg\"\n{}", friction, strength);
+  return "talus = 1\n[model]\ngravity = [0, -9.81]\n[material.m]\ndensity = 2500\nyoung = \"20 GPa\"\npoisson = 0.25\n"
+         "[joint.a]\n" +
+         law + "[joint.b]\n" + law +
+         "[contact]\njoint = \"b\"\n[[region]]\nname = \"rock\"\n"
+         "polygon = [[0, 0], [40, 0], [40, 25], [22, 25], [14, 8], [0, 8]]\n"
+         "sides = [\"base\", \"right\", \"crest\", \"face\", \"bench\", \"left\"]\nmaterial = \"m\"\njoint = \"b\"\n" +
+         fmt::format(
+             "[[joint_set]]\nname = \"a\"\nangle = \"{} deg\"\nspacing = 4.3\noffset = 0.3\njoint = \"a\"\n",
+             -angle) +
+         fmt::format(
+             "[[joint_set]]\nname = \"b\"\nangle = \"{} deg\"\nspacing = 5.1\noffset = 1.2\njoint = \"b\"\n",
+             90 - angle) +
+         "[[support]]\nname = \"base\"\nalong = \"base\"\n"
+         "[[support]]\nname = \"right\"\nalong = \"right\"\nx = \"fixed\"\ny = \"free\"\n"
+         "[[support]]\nname = \"left\"\nalong = \"left\"\nx = \"fixed\"\ny = \"free\"\n"
+         "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\n";
+}
+
+}  // namespace
+
+TEST_CASE(
+    "hard rock rests in few steps, none of them loose, whatever the friction and the strength of its joints") {
+  for (const std::string strength : {"", "cohesion = 1e6\n", "cohesion = 1e6\ntensile_strength = 1e6\n"})
+    for (const double friction : {30.0, 40.0, 60.0})
+      for (const double angle : {38.0, 52.0}) {
+        if (strength.empty() && friction < 60) continue;  // a plane of 52 deg comes out in the face
+        CAPTURE(strength);
+        CAPTURE(friction);
+        CAPTURE(angle);
+        const std::string text = slope(friction, strength, angle);
+        Findings findings("m.toml", text);
+        PreparedRun prepared = prepare_run("m.toml", text, {}, findings);
+        State state = start_state(prepared.scene);
+        Silent silent;
+        const RunResult r = run_stages(prepared.scene, prepared.plans, state, silent);
+        CHECK(r.failure == "");
+        CHECK(r.stages.at(0).at_rest);
+        CHECK(!r.stages.at(0).followed());
+        CHECK(r.stages.at(0).steps <= 40);
+        CHECK(r.failed_steps + r.loose_steps == 0);
+      }
+}
+
+}  // namespace test_hard_rest

@@ -1,5 +1,5 @@
-// Slopes of rock in three sets of finite joints, hard and with cohesion: equations that are tied crosswise by faces that
-// do not give. A family, judged step by step; most are solved by sweeps, the others by pivoting (theory 5.10).
+// Slopes of rock in three sets of finite joints, hard and with cohesion: equations that are tied crosswise. A family, judged step
+// by step; most are solved by sweeps, the others by friction in turns (theory 5.8) or by pivoting (5.10).
 
 #include "support/run_case.h"
 
@@ -39,15 +39,12 @@ std::string slope(int seed, double spacing) {
 TEST_SUITE_BEGIN("optimised");
 
 TEST_CASE("hard slopes in three sets with cohesion: every step is solved") {
-  int by_pivoting = 0;
   for (const double spacing : {3.0, 4.0, 5.0})
     for (int seed = 1; seed <= 8; ++seed) {
       CAPTURE(spacing);
       CAPTURE(seed);
-      const CaseResult r = run_case(slope(seed, spacing), {"solver.limit=1e-8"});  // no step is loose
-      by_pivoting += r.run.steps_by[static_cast<size_t>(SolverKind::kPivoting)] > 0;
+      run_case(slope(seed, spacing), {"solver.limit=1e-8"});  // no step is loose
     }
-  CHECK(by_pivoting > 4);  // they are what it is for
 }
 
 TEST_SUITE_END();

@@ -35,7 +35,7 @@ constexpr int kPatience = 6, kMostHalved = 8;
 // velocities are found to the share kShare of the error before. Newton's method on the law as it is follows where faces stand
 // as the turn before, or the error has come down to kNearer of what it was when that was tried last.
 constexpr double kSoftest = 1e4, kHarder = 0.1, kShare = 0.03, kNearer = 0.3;
-constexpr int kMostTurns = 60, kMostDown = 100, kMostNear = 8, kMostInTurns = 1000;
+constexpr int kMostTurns = 60, kMostDown = 100, kMostNear = 8;
 
 // Slope along a step that is none, as share of what it begins with; shares of it.
 constexpr double kLevel = 0.1, kFarthest = 64;
@@ -109,7 +109,7 @@ void go(VelocityEquations& equations, double square, const std::vector<double>& 
 }
 
 // Adds the share of the step at which the slope along it has all but gone. With friction's bounds held F is the gradient of
-// a convex function: there always is one. False when the step does not lead down.
+// a convex function: there always is one. False when the step does not lead down. Eq. 5.3a.
 bool go_down(VelocityEquations& equations, const std::vector<double>& step, std::vector<double>& v) {
   const std::vector<double> from = v;
   const auto slope = [&](double share) {
@@ -282,7 +282,7 @@ void Search::by_turns() {
   std::vector<FaceTangent> stands, stood;
   double tried = std::numeric_limits<double>::infinity(), error = best_.worst;
   double soft = known ? 1 : kSoftest;
-  const int most = report_.iterations + kMostInTurns;
+  const int most = report_.iterations + goal_.turns;
   for (int turn = 0; turn < kMostTurns && report_.iterations < most;
        ++turn, soft = std::max(1.0, kHarder * soft)) {
     equations_.hold(pressed, soft);
@@ -329,7 +329,7 @@ SolveReport PrimalNewton::solve(const StepProblem& problem, const SolverGoal& go
   {
     Search search(problem, goal, workers, kept_->factor, report);
     search.by_newton(limits.max_iterations);
-    if (!search.solved()) search.by_turns();
+    if (goal.turns > 0 && !search.solved()) search.by_turns();
   }
 
   return report;

@@ -35,6 +35,7 @@ struct SolverGoal {
   bool early = false;  // just reached will do: ask the judge as soon as it is likely
   int worth = 0;       // sweeps give up where more than so many are still to be expected; 0: never
   double solved = 0;   // above `enough`: what counts as solved where no more can be had
+  int turns = 0;       // factors that turns of friction may take (theory 5.8); 0: none
   double limit = 0;    // what is less may stay where it would be dear to mend [m]
   SolverGoal(double both) : wanted(both), enough(both) {}
   SolverGoal(double wanted_, double enough_, bool early_ = false)

@@ -78,6 +78,15 @@ constexpr int kSweepsBeforeSecond = 500;
 constexpr int kWorthOfFactors = 300;
 constexpr size_t kFewestPrimal = 2000;
 
+// Factors that friction in turns may take, of as many points as a factor costs little; of more it is in proportion, and where
+// a step cannot be shortened sweeps are the better use of time.
+constexpr int kMostInTurns = 1000;
+
+int worth_of_turns(const RowKinds& kinds, size_t points) {
+  if (points <= kFewestPrimal) return kMostInTurns;
+  return kinds.from_rest ? static_cast<int>(kMostInTurns * kFewestPrimal / points) : 0;
+}
+
 // Solvers stop earlier than the judge. Errors left in hard rows are pushed back in the next step, which is
 // work out of nothing, and those in redundant ties add up, until no motion satisfies them all; Newton goes so
 // far at no cost.
@@ -177,6 +186,7 @@ Solved solve_step(const Model& model, const RowKinds& kinds, double tolerance, d
     limits.max_sweeps = sweeps;
     SolverGoal goal = goal_of(kind, kinds, tolerance, sharper);
     goal.worth = worth, goal.limit = limit, goal.solved = tolerance;
+    goal.turns = smoothed ? 0 : worth_of_turns(kinds, problem.rows.points.size());
     now.method = kind;
     now.report = solvers.of(kind).solve(problem, goal, limits, workers);
     attempts.add(kind, now.report.iterations);

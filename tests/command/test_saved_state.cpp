@@ -206,6 +206,36 @@ TEST_CASE("command run: a wedge that slides is a mechanism, and a stone that fal
   CHECK(summary["stages"][0]["followed_from [s]"] > 0);
 }
 
+TEST_CASE(
+    "command run: a crumb that falls is named, not waited for, and a run goes on with the same bits behind it") {
+  Folder folder;
+  write_model(
+      folder,
+      "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\n[joint.j]\n"
+      "friction_angle = \"30 deg\"\nnormal_stiffness = 1e9\nshear_stiffness = 1e9\n[contact]\njoint = \"j\"\n"
+      "[[block]]\nname = \"base\"\npolygon = [[-9, -9], [9, -9], [9, 0], [-9, 0]]\nmaterial = \"m\"\n"
+      "kind = \"fixed\"\n[[block]]\nname = \"tower\"\npolygon = [[-4, 0], [-2, 0], [-2, 3], [-4, 3]]\n"
+      "material = \"m\"\nkind = \"rigid\"\n[[block]]\nname = \"crumb\"\n"
+      "polygon = [[4, 6], [4.1, 6], [4.1, 6.1], [4, 6.1]]\nmaterial = \"m\"\nkind = \"rigid\"\n"
+      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 5\n"
+      "[[stage]]\nname = \"fall\"\nkind = \"dynamic\"\nduration = 0.1\ntime_step = 0.01\n"
+      "[output]\nsave_interval = \"1 ms\"\n");
+  const Outcome o = shell(folder, "$talus run model.toml -o out");
+  INFO(o.text);
+  CHECK(o.code == 0);
+  has(o.text, "rest: not waited for: 1 block, 0.01 m2 (0.166 % of what can move), falls; farthest \"crumb\"");
+  has(o.text, "  not waited for  stage \"rest\": 1 block, 0.01 m2");
+  const auto stage = nlohmann::json::parse(read_text_file(folder / "out/summary.json"))["stages"][0];
+  CHECK(stage["at_rest"] == true);
+  CHECK(stage["left_out_share"].get<double>() == doctest::Approx(0.01 / 6.01));
+  const Outcome waits = shell(folder, "$talus run model.toml -o waits --set stage.rest.strict_rest=true");
+  has(waits.text, "followed by damped motion");
+  const Outcome on = shell(folder, "$talus run model.toml --from out/saved/stage_01.h5 -o on");
+  INFO(on.text);
+  CHECK(on.code == 0);
+  CHECK(read_text_file(folder / "on/blocks_end.svg") == read_text_file(folder / "out/blocks_end.svg"));
+}
+
 TEST_CASE("command run --from: the same bits from within the motion that follows steps from rest") {
   Folder folder;
   write_model(

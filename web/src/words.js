@@ -28,6 +28,7 @@ export function warningsOf(run) {
     out.push(`The energy ledger leaves ${number(100 * s.energy_closure, 3)} % of its largest term unexplained; above 1 % the run is not to be trusted.`);
   for (const stage of s.stages || []) {
     if (stage.kind === "static" && stage.at_rest === false) out.push(`Stage "${stage.name}" did not come to rest.`);
+    if (stage.left_out) out.push(`Stage "${stage.name}" did not wait for what falls or slides: ${stage.left_out}.`);
     if (stage.blocks_clamped > 0)
       out.push(`Stage "${stage.name}": the moments of ${count(stage.blocks_clamped, "block")} were raised, up to ${number(stage.largest_clamp, 3)} times, to allow the time step.`);
   }

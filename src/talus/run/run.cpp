@@ -157,7 +157,7 @@ class StagedRun::Runner {
     enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
-    state_.rest = StepsFromRest::begin(plan.dt);
+    state_.rest = StepsFromRest::begin(plan.dt), state_.left_out.clear();
     if (stage.from_rest) stop_motion(scene_, state_);
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {

@@ -202,6 +202,10 @@ void validate_loaded(const Standing& standing, const State& state, const Prepare
   promise_loaded(state.relaxed <= 1, fmt::format("\"relaxed\" is {}", state.relaxed));
   promise_loaded(state.rest.sharper > 0 && state.rest.sharper <= 1,
                  fmt::format("\"sharper\" is {}", state.rest.sharper));
+  for (size_t i = 0; i < state.left_out.size(); ++i)
+    promise_loaded(state.left_out[i] >= 0 && state.left_out[i] < prepared.scene.blocks.count &&
+                       (i == 0 || state.left_out[i] > state.left_out[i - 1]),
+                   fmt::format("\"left_out\" has {}", state.left_out[i]));
   judge_contacts(state, prepared.scene);
   judge_patches(state, prepared.scene);
   judge_bolts(state, prepared.scene);

@@ -8,9 +8,9 @@ namespace talus {
 
 namespace {
 
-// Rows that do not give at all get the share 1 / kStiff of their influence, or of what the stiffest other row of a block
-// gives where that is less, about a centre that follows the impulse: what they settle at is exact.
-constexpr double kStiff = 1e4;
+// Rows that do not give at all get the share 1 / kStiff of their influence, or 1 / kBeside of what the stiffest other row of a
+// block gives where that is less, about a centre that follows the impulse: what they settle at is exact.
+constexpr double kStiff = 1e7, kBeside = 1e4;
 
 constexpr size_t kChunkOfFaces = 512, kChunkOfBlocks = 512;
 
@@ -349,9 +349,10 @@ void VelocityEquations::add_row(size_t i) {
       for (size_t m = 0; m < 6; ++m)
         for (size_t n = 0; n < 6; ++n) influence += x[m] * inverse_[b][6 * m + n] * x[n];
     }
+    double own = influence / kStiff;
     for (const int b : r.block)
-      if (b >= 0) influence = std::min(influence, least_give_[static_cast<size_t>(b)]);
-    prox_[i][k] = p.row[k].compliance > 0 ? 0 : influence / kStiff;
+      if (b >= 0) own = std::min(own, least_give_[static_cast<size_t>(b)] / kBeside);
+    prox_[i][k] = p.row[k].compliance > 0 ? 0 : own;
     centre_[i][k] = problem_.rows.impulse[i][k];
   }
 }

@@ -64,4 +64,31 @@ TEST_CASE(
       }
 }
 
+TEST_CASE("what stands on the free part of a side that a tie covers the rest of rests there, step by step") {
+  const auto block = [](const char* name, const char* polygon, const char* kind) {
+    return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n", name,
+                       polygon, kind);
+  };
+  const std::string text =
+      "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\nyoung = \"20 GPa\"\npoisson = 0.2\n"
+      "[joint.dry]\nfriction_angle = \"30 deg\"\n[joint.glue]\nfriction_angle = \"30 deg\"\ncohesion = 1e6\n"
+      "[contact]\njoint = \"dry\"\n[[contact_pair]]\nbetween = [\"below\", \"glued\"]\njoint = \"glue\"\n" +
+      block("ground", "[[-1, -1], [4, -1], [4, 0], [-1, 0]]", "fixed") +
+      block("below", "[[0, 0], [3, 0], [3, 1], [0, 1]]", "deformable") +
+      block("glued", "[[0, 1], [2, 1], [2, 2], [0, 2]]", "deformable") +
+      block("stands", "[[2.2, 1], [3, 1], [3, 2], [2.2, 2]]", "deformable") +
+      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\nunbalanced = 1e-9\n";
+  Findings findings("m.toml", text);
+  PreparedRun prepared = prepare_run("m.toml", text, {}, findings);
+  State state = start_state(prepared.scene);
+  Silent silent;
+  const RunResult r = run_stages(prepared.scene, prepared.plans, state, silent);
+  CHECK(r.failure == "");
+  CHECK(r.stages.at(0).steps <= 20);
+  double borne = 0;
+  for (const Patch& p : state.patches)
+    if (p.block_a == 3 || p.block_b == 3) borne += p.force[0][0] + p.force[1][0];
+  CHECK(borne == doctest::Approx(0.8 * 2500 * 10).epsilon(1e-6));
+}
+
 }  // namespace test_hard_rest

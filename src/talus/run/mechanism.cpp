@@ -70,7 +70,7 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
     const auto k = static_cast<size_t>(i);
     if (!goes(i)) continue;
     m.members.push_back(i);
-    ++m.blocks, m.area += blocks.size[k] * blocks.size[k];
+    m.area += blocks.size[k] * blocks.size[k];
     weight += blocks.mass[k] * norm(scene.model.gravity);
   }
   m.share = m.area / all;
@@ -92,14 +92,15 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
 std::string Mechanism::text(const Scene& scene, const State& state) const {
   const auto k = static_cast<size_t>(farthest);
   const Vec2 at = scene.blocks.centroid[k] + state.displacement[k];
+  const bool one = members.size() == 1;
   std::string on;
   if (slides && !joints.empty())
     on = fmt::format(", on joint{} \"{}\"", joints.size() == 1 ? "" : "s", fmt::join(joints, "\", \""));
   return fmt::format(
       "{} block{}, {:.3g} m2 ({:.3g} % of what can move), {}{}; farthest \"{}\" at ({:.4g}, {:.4g}), along ({:.2f}, {:.2f})",
-      blocks, blocks == 1 ? "" : "s", area, 100 * share,
-      slides ? (blocks == 1 ? "slides" : "slide") : (blocks == 1 ? "falls" : "fall"), on,
-      scene.blocks.name[k], at.x, at.y, direction.x, direction.y);
+      members.size(), one ? "" : "s", area, 100 * share,
+      slides ? (one ? "slides" : "slide") : (one ? "falls" : "fall"), on, scene.blocks.name[k], at.x, at.y,
+      direction.x, direction.y);
 }
 
 }  // namespace talus

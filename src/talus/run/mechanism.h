@@ -15,8 +15,7 @@ double pace_of_many(const BlockSet& blocks, const State& state);
 
 /// The blocks that went on together in a step from rest, and what they slid on.
 struct Mechanism {
-  int blocks = 0;
-  std::vector<int> members;         // in order
+  std::vector<int> members;         // blocks, in order
   double area = 0, share = 0;       // [m2], of all blocks that can move
   int farthest = -1;                // the block that went farthest
   Vec2 direction;                   // of its way, unit

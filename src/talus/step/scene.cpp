@@ -41,6 +41,16 @@ bool slides_hard(const Scene& scene) {
   return false;
 }
 
+// Whether hard faces with strength give nothing (contact.stiffness = "none"): where they close loops Newton's method in
+// velocities does not solve them.
+bool ties_without_give(const Scene& scene) {
+  if (scene.give.stress > 0) return false;
+  return std::ranges::any_of(scene.bonds.faces, [&](const BondFace& f) {
+    const JointLaw& law = scene.laws[static_cast<size_t>(f.joint)];
+    return !law.bonded() && !(law.is_soft(0) && law.is_soft(1));
+  });
+}
+
 // Stable step of the smallest block, as share of the median one's, below which a few slivers would rule the
 // step of all; share of the blocks that are few, and what counts as small among them.
 constexpr double kRuled = 1.0 / 7, kFew = 0.25, kSmall = 0.25;
@@ -78,7 +88,7 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   for (StageInput& stage : scene.model.stages) {
     if (stage.elasticity_auto)
       stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
-    if (!stage.from_rest_auto || !scene.by_patches()) continue;
+    if (!stage.from_rest_auto || !scene.by_patches() || ties_without_give(scene)) continue;
     stage.may_follow = true, stage.follow_implicit = stage.implicit;
     stage.go_from_rest();
   }

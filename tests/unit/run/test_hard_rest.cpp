@@ -1,25 +1,16 @@
 // Static stages of rock with hard joints go in steps from rest: friction in turns, faces with strength that close loops
 // (theory 4.22, 4.23, 5.8).
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "talus/model/read_model.h"
-#include "talus/run/run.h"
+#include "support/run_case.h"
 
 namespace test_hard_rest {
 
 using namespace talus;
+using namespace talus::test;
 
 namespace {
-
-class Watch : public Observer {
- public:
-  void at(const Instant& i) override {
-    if (i.stage_start) contacts = i.report.contacts;
-  }
-  int contacts = 0;  // points in the first step
-};
 
 // A slope in two sets of joints; the steeper the friction the more of it sticks.
 std::string slope(double friction, const std::string& strength, double angle) {
@@ -53,17 +44,10 @@ TEST_CASE(
         CAPTURE(strength);
         CAPTURE(friction);
         CAPTURE(angle);
-        const std::string text = slope(friction, strength, angle);
-        Findings findings("m.toml", text);
-        PreparedRun prepared = prepare_run("m.toml", text, {}, findings);
-        State state = start_state(prepared.scene);
-        Watch watch;
-        const RunResult r = run_stages(prepared.scene, prepared.plans, state, watch);
-        CHECK(r.failure == "");
-        CHECK(r.stages.at(0).at_rest);
-        CHECK(!r.stages.at(0).followed());
-        CHECK(r.stages.at(0).steps <= 40);
-        CHECK(r.failed_steps + r.loose_steps == 0);
+        const CaseResult r = run_case(slope(friction, strength, angle));  // no step failed or loose
+        CHECK(r.run.stages.at(0).at_rest);
+        CHECK(!r.run.stages.at(0).followed());
+        CHECK(r.run.stages.at(0).steps <= 40);
       }
 }
 
@@ -81,16 +65,14 @@ TEST_CASE("what stands on the free part of a side that a tie covers the rest of 
       block("glued", "[[0, 1], [2, 1], [2, 2], [0, 2]]", "deformable") +
       block("stands", "[[2.2, 1], [3, 1], [3, 2], [2.2, 2]]", "deformable") +
       "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\nunbalanced = 1e-9\n";
-  Findings findings("m.toml", text);
-  PreparedRun prepared = prepare_run("m.toml", text, {}, findings);
-  State state = start_state(prepared.scene);
-  Watch watch;
-  const RunResult r = run_stages(prepared.scene, prepared.plans, state, watch);
-  CHECK(r.failure == "");
-  CHECK(watch.contacts == 4);  // the first step knows all of them
-  CHECK(r.stages.at(0).steps <= 6);
+  int contacts = 0;  // points in the first step
+  const CaseResult r = run_case(text, {}, [&](const Instant& i) {
+    if (i.stage_start) contacts = i.report.contacts;
+  });
+  CHECK(contacts == 4);  // the first step knows all of them
+  CHECK(r.run.stages.at(0).steps <= 6);
   double borne = 0;
-  for (const Patch& p : state.patches)
+  for (const Patch& p : r.state.patches)
     if (p.block_a == 3 || p.block_b == 3) borne += p.force[0][0] + p.force[1][0];
   CHECK(borne == doctest::Approx(0.8 * 2500 * 10).epsilon(1e-6));
 }

@@ -51,6 +51,16 @@ TEST_CASE(
       }
 }
 
+TEST_CASE("hard rock with strength goes from rest where its contacts give, else by damped motion") {
+  for (const bool gives : {true, false}) {
+    Findings findings("m.toml", "");
+    const std::string contact = gives ? "contact.stiffness=\"auto\"" : "contact.stiffness=\"none\"";
+    CHECK(prepare_run("m.toml", slope(40, "cohesion = 1e6\n", 38), {contact}, findings)
+              .scene.model.stages.at(0)
+              .from_rest == gives);
+  }
+}
+
 TEST_CASE("what stands on the free part of a side that a tie covers the rest of rests there, step by step") {
   const auto block = [](const char* name, const char* polygon, const char* kind) {
     return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n", name,

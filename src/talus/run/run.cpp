@@ -22,6 +22,7 @@
 #include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
 #include "talus/run/steps_from_rest.h"
+#include "talus/run/unrest.h"
 #include "talus/step/change.h"
 
 namespace talus {
@@ -344,7 +345,7 @@ class StagedRun::Runner {
     if (stage.from_rest && out.at_rest) std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
       result_.no_rest = true;
-      throw NumericalError(no_rest(stage, out));
+      throw NumericalError(unrest().text(stage, out.end - out.begin, out.steps));
     }
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
@@ -408,108 +409,14 @@ class StagedRun::Runner {
     state_.kept_force = forces_of_blocks(work_, out);
   }
 
-  // Why a static stage ended without coming to rest, and where.
-  std::string no_rest(const StageInput& stage, const StageResult& out) const {
-    std::string where;
-    if (last_.worst_block >= 0) {
-      const auto k = static_cast<size_t>(last_.worst_block);
-      const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k], v = state_.rate[k].a;
-      where = fmt::format(" The largest is on block \"{}\" at ({:.4g}, {:.4g}): {:.3g} N; it {}.",
-                          scene_.blocks.name[k], at.x, at.y, last_.worst_force,
-                          stage.from_rest
-                              ? fmt::format("went {:.3g} m in the last step", work_.clock.dt * norm(v))
-                              : fmt::format("moves at ({:.3g}, {:.3g}) m/s", v.x, v.y));
-    }
-    const std::string velocity =
-        stage.from_rest ? "" : fmt::format(", and {:.3g} of the velocity is left", last_.speed_left);
-    return fmt::format(
-        "static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced force is "
-        "{:.3g} of the mean{}; asked for is {:g}.{} {}",
-        stage.name, out.end - out.begin, out.steps, out.unbalanced, velocity, stage.unbalanced, where,
-        why_no_rest(stage, out));
-  }
-
-  // What keeps a stage from resting, and the key to change.
-  std::string why_no_rest(const StageInput& stage, const StageResult& out) const {
-    if (penalty_)
-      return fmt::format(
-          "By conventional DDA a static stage forgets its velocities at every step: a longer stage.{}.duration or time_step "
-          "brings it further; what slides or falls never rests (blocks_end.svg)",
-          stage.name);
-    const double dt = plans_[result_.stages.size() - 1].dt;
-    const double floor = solver_leaves(last_, dt);
-    if (floor > 0.5 * last_.worst_force)
-      return fmt::format(
-          "That is what the solver leaves: an error of {:.2g} m in a step of {:.2g} s is a force of {:.2g} "
-          "N there. Give the joints a stiffness, a smaller solver.tolerance with more solver.max_sweeps, or "
-          "a larger stage.{}.unbalanced",
-          last_.error.worst, dt, floor, stage.name);
-    const double left = stage.duration - (out.end - out.begin);
-    double farthest = 0;
-    for (size_t k = 0; k < state_.rate.size(); ++k)
-      farthest =
-          std::max(farthest, norm(state_.rate[k].a) * std::max(left, stage.duration) / scene_.blocks.size[k]);
-    const bool stays = !goes_anywhere(std::max(left, stage.duration));
-    const int fastest = fastest_block();
-    // forces of the others are in balance: it is the one that swings
-    if (farthest > StepsFromRest::kFarToGo && stays && fastest >= 0 &&
-        (last_.unbalanced <= 2 * stage.unbalanced || last_.worst_block == fastest))
-      return chatter(stage, static_cast<size_t>(fastest));
-    if (farthest > StepsFromRest::kFarToGo && !stays)
-      return fmt::format(
-          "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
-          "duration of the stage. Look at blocks_end.svg and slips.csv; if it is on its way to rest, give "
-          "stage.{}.duration more",
-          farthest, stage.name);
-    return fmt::format(
-        "Blocks ring against each other without going anywhere. Give stage.{0}.elasticity = \"implicit\" or "
-        "some contact.alpha, or a larger stage.{0}.unbalanced",
-        stage.name);
-  }
-
-  // Whether some block, at the pace it had since the last look, gets anywhere in `time`: what chatters is fast and stays.
-  bool goes_anywhere(double time) const {
-    const double since = state_.time - look_.time;
-    if (look_.place.size() != state_.displacement.size() || since <= 0) return true;
-    for (size_t k = 0; k < look_.place.size(); ++k)
-      if (norm(state_.displacement[k] - look_.place[k]) * time / since >
-          StepsFromRest::kFarToGo * scene_.blocks.size[k])
-        return true;
-    return false;
-  }
-
-  // The block that moves at most of its size a second; -1: none is free.
-  int fastest_block() const {
-    int fastest = -1;
-    double most = -1;
-    for (size_t k = 0; k < state_.rate.size(); ++k) {
-      if (!scene_.blocks.moves_freely(static_cast<int>(k))) continue;
-      const double pace = norm(state_.rate[k].a) / scene_.blocks.size[k];
-      if (pace > most) most = pace, fastest = static_cast<int>(k);
-    }
-    return fastest;
-  }
-
-  // A block keeps a stage from rest though nothing goes anywhere.
-  std::string chatter(const StageInput& stage, size_t fastest) const {
-    std::vector<double> areas;
-    for (size_t k = 0; k < state_.rate.size(); ++k)
-      if (scene_.blocks.moves_freely(static_cast<int>(k)))
-        areas.push_back(scene_.blocks.size[k] * scene_.blocks.size[k]);
-    const double area = scene_.blocks.size[fastest] * scene_.blocks.size[fastest];
-    const Vec2 at = scene_.blocks.centroid[fastest] + state_.displacement[fastest];
-    return fmt::format(
-        "Block \"{}\" ({:.3g} m2, the median is {:.3g}) chatters at ({:.4g}, {:.4g}), with {:.2g} m/s, and since t = {:.4g} s no block "
-        "has gone anywhere: more duration will not help. Give stage.{}.integration = \"implicit\" (from rest to rest), a "
-        "shorter time_step, or move the joints that make so small a block",
-        scene_.blocks.name[fastest], area, median(std::move(areas)), at.x, at.y, norm(state_.rate[fastest].a),
-        look_.time, stage.name);
-  }
-
-  // The force that the error of a step is on the block with the largest unbalanced force [N].
-  double solver_leaves(const StepReport& report, double dt) const {
-    if (report.worst_block < 0) return 0;
-    return scene_.blocks.mass[static_cast<size_t>(report.worst_block)] * report.error.worst / (dt * dt);
+  Unrest unrest() const {
+    return {scene_,
+            state_,
+            last_,
+            look_,
+            plans_[result_.stages.size() - 1].dt,
+            work_.clock.dt,
+            penalty_.has_value()};
   }
 
   // Where a static stage makes no progress its steps are solved more sharply: errors that the solver leaves
@@ -528,7 +435,8 @@ class StagedRun::Runner {
     const bool at_sharpest = rest.sharper <= kSharpest;
     rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
     // one look is enough the second time: that the solver is what keeps it was found the first
-    const bool by_solver = solver_leaves(report, work_.clock.dt) > kSolverShare * report.worst_force;
+    const bool by_solver =
+        solver_leaves(scene_.blocks, report, work_.clock.dt) > kSolverShare * report.worst_force;
     if (!at_sharpest && by_solver && rest.stuck >= (rest.sharper < 1 ? 1 : kStalls)) {
       rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
       rest.stuck = 0;
@@ -694,11 +602,7 @@ class StagedRun::Runner {
   StepSettings settings_;
   PenaltySettings penalty_settings_;  // where steps are of conventional DDA
   StepWork work_;
-  // where blocks were when rest was last looked for
-  struct Look {
-    double time = 0;
-    std::vector<Vec2> place;
-  } look_, latest_look_;                 // the look before the latest, and that
+  RestLook look_, latest_look_;          // the look before the latest, and that
   std::optional<PenaltySteps> penalty_;  // of formulation = "penalty"
   // of the stage that goes on
   bool in_stage_ = false, over_ = false;

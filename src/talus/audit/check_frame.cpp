@@ -8,6 +8,7 @@
 
 #include "talus/audit/overlap_energy.h"
 #include "talus/audit/shapes.h"
+#include "talus/audit/tip.h"
 
 namespace talus::audit {
 
@@ -281,6 +282,7 @@ class Check {
   void check_pair(const Pair& pair, FrameResult& out) const {
     check_overlap(pair, out);
     if (by_energy_[static_cast<size_t>(&pair - pairs_.data())]) check_energy(pair, out);
+    check_tip(pair, out);
     for (int k = pair.begin; k < pair.end; ++k) {
       const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
       const Point& p = frame_.points[i];
@@ -583,6 +585,60 @@ class Check {
                             "covers (normal {:.2g}, {:.2g})",
                             rules_.names[a], p.normal_force, rules_.names[static_cast<size_t>(p.block_b)],
                             s.normal.x, s.normal.y)));
+  }
+
+  // Check 3 of patches: a force that pushes out through a side behind which third blocks lie. Of a tip between two blocks
+  // such a side is no way out.
+  void check_tip(const Pair& pair, FrameResult& out) const {
+    // in the first step what presses has not closed anything yet
+    if (frame_.time == 0) return;
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const int i = order_[static_cast<size_t>(k)];
+      const Point& p = frame_.points[static_cast<size_t>(i)];
+      if (!p.patch() || p.partner < i) continue;
+      const Point& q = frame_.points[static_cast<size_t>(p.partner)];
+      const double force = p.normal_force + q.normal_force, share = force / mean_force_;
+      if (!(share > kPushWarns)) continue;
+      const Seen &s = seen_[static_cast<size_t>(i)], &o = seen_[static_cast<size_t>(p.partner)];
+      const Pressed at{
+          (p.normal_force * s.place + q.normal_force * o.place) / force, 0.5 * (s.place + o.place),
+          std::max(s.depth, o.depth) + kPlace * size_of(pair.a, pair.b), norm(o.place - s.place)};
+      const double off = std::max(through_thirds(p.block_b, p.block_a, s.normal, at),
+                                  through_thirds(p.block_a, p.block_b, -s.normal, at));
+      if (off * share <= kPushWarns) continue;
+      out.findings.push_back(finding(
+          Defect::kCoveredSide, off * share > kPushInvalid, pair.a, pair.b, at.place, off * share,
+          fmt::format(
+              "a tip between blocks is pressed with {:.4g} N, {:.2g} of it off the sides that the next block "
+              "leaves open",
+              force, off)));
+    }
+  }
+
+  double through_thirds(int block, int pressed, Vec2 way, const Pressed& at) const {
+    if (!is_held(pressed, block, way, at)) return 0;
+    std::vector<Third> thirds;
+    for (const Neighbour& n : neighbours_[static_cast<size_t>(block)])
+      if (n.block != pressed) thirds.push_back({&polygon(n.block), closure_near(n.pair, at.place, at.depth)});
+    return through_covered(polygon(block), thirds, way, at);
+  }
+
+  // Whether some third block presses a block against `way` there: else it may go that way, as one that slides past a crossing.
+  bool is_held(int block, int other, Vec2 way, const Pressed& at) const {
+    for (const Neighbour& n : neighbours_[static_cast<size_t>(block)]) {
+      const Pair& pair = pairs_[static_cast<size_t>(n.pair)];
+      for (int k = pair.begin; n.block != other && k < pair.end; ++k) {
+        const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+        const Point& p = frame_.points[i];
+        if (p.partner < 0 || p.normal_force <= 0) continue;
+        const Vec2 normal = p.block_a == block ? seen_[i].normal : -seen_[i].normal;
+        if (dot(normal, way) < -kOffSide &&
+            distance_to_segment(at.place, seen_[i].place, seen_[static_cast<size_t>(p.partner)].place) <=
+                4 * at.depth + 2 * at.length)
+          return true;
+      }
+    }
+    return false;
   }
 
   // Whether a corner stands before a side and not over its end: further from the ends than anything beside it that

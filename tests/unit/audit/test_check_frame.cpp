@@ -52,6 +52,8 @@ bool has(const FrameResult& r, Defect defect, bool invalid) {
                      [&](const Finding& f) { return f.defect == defect && f.invalid == invalid; });
 }
 
+bool has_any(const FrameResult& r, Defect defect) { return has(r, defect, false) || has(r, defect, true); }
+
 // A block on a wider one, `closure` inside it, one point at each end.
 Case face(double closure, double force, double stiffness = 0) {
   Case c({box_polygon(-1, -1, 2, 0), box_polygon(0, -closure, 1, 1 - closure)}, stiffness);
@@ -242,6 +244,55 @@ TEST_CASE("audit: what is glued to the corner's own block does not make a side a
   CHECK(has(c.look(), Defect::kCoveredSide, true));
 }
 
+TEST_CASE("audit: a tip that is pressed out through what the next block covers is not valid") {
+  // a wedge in the corner of a wall (1) that stands on a floor (0), or beside one; 1 mm in both
+  struct Tip {
+    double lean;  // of the normal of the wall's force below the horizontal [deg]
+    double force = 1e5;
+    Polygon wall = box_polygon(-1, 0, 0, 2), floor = box_polygon(-1, -1, 2, 0);
+    double lifted = 0;
+  };
+  const auto look = [](const Tip& tip) {
+    const double d = 1e-3, degree = std::acos(-1) / 180;
+    Polygon wall = tip.wall;
+    for (Vec2& x : wall) x.y += tip.lifted;
+    Case c({tip.floor, wall, {{-d, -d}, {1 - d, 0.3}, {0.7, 0.8}}});
+    const auto patch = [&c](int b, Vec2 from, Vec2 to, Vec2 normal, double force) {
+      for (const Vec2 x : {from, to}) {
+        Point p;
+        p.block_a = 2, p.block_b = b, p.edge = -2, p.corner = -2, p.place = x, p.normal = normal;
+        p.gap = -1e-3, p.normal_force = 0.5 * force, p.joint = 0;
+        c.frame.points.push_back(p);
+      }
+      c.pair_last_two();
+    };
+    patch(0, {-d, -d / 2}, {2 * d, -d / 2}, {0, 1}, 1e5);
+    patch(1, {-d / 2, -d}, {-d / 2, 2 * d}, {std::cos(tip.lean * degree), -std::sin(tip.lean * degree)},
+          tip.force);
+    return c.look();
+  };
+  CHECK(!has_any(look({0}), Defect::kCoveredSide));
+  CHECK(!has_any(look({4.5}), Defect::kCoveredSide));
+  CHECK(has(look({5.5}), Defect::kCoveredSide, true));
+  CHECK(has(look({30}), Defect::kCoveredSide, true));
+  CHECK(has(look({90}), Defect::kCoveredSide, true));
+  // that of a patch which hardly bears counts less, and then not at all
+  CHECK(has(look({30, 5e3}), Defect::kCoveredSide, false));
+  CHECK(has(look({30, 7e2}), Defect::kCoveredSide, false));
+  CHECK(!has_any(look({30, 5e2}), Defect::kCoveredSide));
+  // upwards nothing is in the way of the wedge
+  CHECK(!has_any(look({-30}), Defect::kCoveredSide));
+  Tip lifted{30};
+  lifted.lifted = 1e-4;
+  CHECK(has(look(lifted), Defect::kCoveredSide, true));
+  lifted.lifted = 0.01;
+  CHECK(!has_any(look(lifted), Defect::kCoveredSide));
+  // a mitred wall: its own face is steeper than what covers its bottom
+  const Polygon mitred{{-1, -1}, {0, 0}, {0, 2}, {-1, 2}}, floor{{-1, -1}, {2, -1}, {2, 0}, {0, 0}};
+  CHECK(!has_any(look({0, 1e5, mitred, floor}), Defect::kCoveredSide));
+  CHECK(has(look({40, 1e5, mitred, floor}), Defect::kCoveredSide, true));
+}
+
 TEST_CASE("audit: resultants of faces are held to the joint's law") {
   const double mu = std::tan(std::acos(-1) / 6);
   Case c = face(0, 1e5);
@@ -284,8 +335,6 @@ Case patch(double closure, double scale, double kn = 1e9) {
   c.pair_last_two();
   return c;
 }
-
-bool has_any(const FrameResult& r, Defect defect) { return has(r, defect, false) || has(r, defect, true); }
 
 }  // namespace
 

@@ -270,7 +270,8 @@ class StagedRun::Runner {
     if (!stage.from_rest) return false;
     if (state_.rest.gone > kFarFromRest) {
       const Mechanism m = find_mechanism(scene_, state_);
-      if (m.slides && state_.rest.gone_many > kMechanismWay) {
+      const bool goes_on = state_.rest.gone_many > kMechanismWay || out.steps >= kMostFromRest;
+      if (m.slides && m.share >= kMechanismShare && goes_on) {
         result_.mechanism = result_.no_rest = true;
         throw NumericalError(fmt::format(
             "static stage \"{}\" finds no balance: a mechanism. {}. {} steps from rest; blocks_end.svg shows it, "

@@ -47,7 +47,7 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     settings.by_all = length <= shortest;
     StepReport report = talus::kick(scene_, settings, length, work_, state_);
     const Approach approach =
-        approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
+        approach_of(scene_.bonds, scene_.blocks, state_, rates_to_come(), length, work_.workers);
     way_ = longest_way(length);
     const bool solved = !report.failed && !(report.loose && length > shortest);
     if (solved && !is_far(approach) && approach.of_margin <= 1) {
@@ -96,6 +96,14 @@ void StepsFromRest::lengthen(double first, bool relaxed) {
 
 bool StepsFromRest::is_far(const Approach& approach) const {
   return !(approach.of_size <= kMostApproach) || !(way_ <= kMostWay);
+}
+
+// Of all but those that stay where they are.
+const std::vector<BlockRate>& StepsFromRest::rates_to_come() {
+  if (state_.left_out.empty()) return state_.rate;
+  moving_ = state_.rate;
+  for (const int k : state_.left_out) moving_[static_cast<size_t>(k)] = {};
+  return moving_;
 }
 
 double StepsFromRest::longest_way(double length) const {

@@ -2,6 +2,7 @@
 // Two convex parts as they lie: what they have in common, the energy of that and its gradient, or how far they
 // are apart. Geometry only: no stiffness, no memory. Theory: docs/theory.md 3.2, 3.3.
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -90,6 +91,14 @@ struct PartsMet {
   double length() const { return dot(turn_right(normal), end - begin); }
 };
 
+/// A side of either part at a place where a corner of one touches a corner of the other.
+struct CornerSide {
+  bool of_b = false;
+  size_t side = 0;
+  std::array<Vec2, 2> behind;  // places behind it, at the corner and farther on, seen from the origin of a
+  bool filled = false;         // told from outside: third blocks are at both
+};
+
 /// Sees how two convex parts lie to each other; keeps its memory from pair to pair.
 class PartsMeeting {
  public:
@@ -108,6 +117,17 @@ class PartsMeeting {
   /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
   /// @pre  look() found them apart or in overlap
   void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
+
+  /// The sides at the corner where the two meet by the way that was chosen, if a corner of one is on a corner of the other
+  /// and no two of them lie on each other or in one line.
+  /// @param level  so far off each other corners may be [m]
+  /// @pre  choose_way()
+  std::span<CornerSide> sides_at_corner(double level);
+
+  /// Leaves out ways that third blocks fill. True: other ways are left, of which choose_way() has to choose. Where none
+  /// is left the two are kFar.
+  /// @pre  sides_at_corner(), and for each is told whether it is filled
+  bool leave_out_filled();
 
   /// Energy, force, chord and closures of an overlap (eqs. 3.2 to 3.4), and its normal and sides by these: of all of it,
   /// or of the first connected piece where ties leave several. False: it has no way out but those that ties close, or
@@ -178,6 +198,8 @@ class PartsMeeting {
   bool stands_at(const Way& w) const;
   bool pushed_off(const Way& w, Vec2 force) const;
   double facing_along(Vec2 tangent) const;
+  void add_corner_sides(bool of_b, size_t at, double level);
+  Vec2 along(const CornerSide& c) const { return part(c.of_b).along[c.side]; }
   size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
   void see_face(bool of_b);
   bool see_gaps();
@@ -211,6 +233,7 @@ class PartsMeeting {
   std::vector<Gap> gaps_;
   std::vector<Seen> seen_, face_[2];  // all corners of a part; those of a and b that face the other
   PartMotion motion_[2];              // of a and b
+  std::vector<CornerSide> corner_sides_;
   // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those
   // and the faces, which part it is that ends, and where its end meets the two faces.
   struct StripEnd {

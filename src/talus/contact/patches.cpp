@@ -155,16 +155,13 @@ class PairSearch {
     const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, first);
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
-    if (met.kind == PartsMet::kApart || !elastic_)
-      meeting_.choose_way(motion(pair_->a), motion(pair_->b),
-                          {before ? before->way : 0, kLevel * size_, before ? force_of(*before) : Vec2{}});
+    if (met.kind == PartsMet::kApart || !elastic_) choose_way(before, shift, p, q);
     if (met.kind == PartsMet::kFar) return;
     const auto own = [&] { return several ? known_near(p, q, 0.5 * (met.begin + met.end)) : before; };
     const bool overlaps = met.kind == PartsMet::kOverlap;
     int joint = -1;
     bool soft = elastic_;
-    if (!elastic_ || !overlaps)
-      joint = joint_between(edge_of(p, met.side_a), edge_of(q, met.side_b)), soft = is_elastic(joint);
+    if (!elastic_ || !overlaps) joint = joint_met(p, q), soft = is_elastic(joint);
     if (soft && overlaps) {
       for (bool any = meeting_.measure_overlap(); any; any = meeting_.measure_next_piece()) {
         Patch& patch = begin_patch(met, p, q, out);
@@ -183,6 +180,51 @@ class PairSearch {
     Patch& patch = begin_patch(met, p, q, out);
     patch.joint = joint, patch.way = met.way;
     finish(met, own(), shift, lifted, soft, patch);
+  }
+
+  // Of hard contacts without the ways that a third block fills.
+  void choose_way(const Patch* before, Vec2 shift, int p, int q) {
+    const WayBefore known{before ? before->way : 0, kLevel * size_, before ? force_of(*before) : Vec2{}};
+    const PartMotion a = motion(pair_->a), b = motion(pair_->b);
+    meeting_.choose_way(a, b, known);
+    if (elastic_) return;
+    const std::span<CornerSide> sides = meeting_.sides_at_corner(known.by);
+    if (sides.empty() || is_elastic(joint_met(p, q))) return;
+    for (CornerSide& s : sides)
+      s.filled = is_in_third(s.of_b, s.behind[0], shift) && is_in_third(s.of_b, s.behind[1], shift);
+    if (meeting_.leave_out_filled()) meeting_.choose_way(a, b, known);
+  }
+
+  // Whether a place, seen from block a, is in a block near one of the two. One that a tie moves with the other of them does
+  // not count: it goes out of the way with that.
+  bool is_in_third(bool near_b, Vec2 x, Vec2 shift) const {
+    const int own = near_b ? pair_->b : pair_->a, other = near_b ? pair_->a : pair_->b;
+    const auto k = static_cast<size_t>(own);
+    const Vec2 from_own = x - (near_b ? shift : Vec2{});
+    for (const int third : state_.candidates.neighbours.of(own)) {
+      if (third == other || w_.blocks.removed(third)) continue;
+      const auto t = static_cast<size_t>(third);
+      const Vec2 place = from_own - (w_.blocks.centroid[t] - w_.blocks.centroid[k]) -
+                         (state_.displacement[t] - state_.displacement[k]);
+      if (norm(place) <= search_.now_[t].reach && is_in_block(t, place) &&
+          !is_tied(w_.bonds, state_, std::min(third, other), std::max(third, other)))
+        return true;
+    }
+    return false;
+  }
+
+  // Whether a place, seen from the centroid of a block, is in one of its parts.
+  bool is_in_block(size_t block, Vec2 place) const {
+    const Outlines& o = w_.outlines;
+    for (auto p = static_cast<size_t>(o.part_begin[block]); p < static_cast<size_t>(o.part_begin[block + 1]);
+         ++p) {
+      bool inside = true;
+      for (auto k = static_cast<size_t>(o.corner_begin[p]);
+           inside && k < static_cast<size_t>(o.corner_begin[p + 1]); ++k)
+        inside = cross(search_.along_[k], place - search_.corner_[k]) >= 0;
+      if (inside) return true;
+    }
+    return false;
   }
 
   Patch& begin_patch(const PartsMet& met, int p, int q, std::vector<Patch>& out) const {
@@ -226,6 +268,11 @@ class PairSearch {
     if (side < 0) return -1;
     return w_.outlines.side[static_cast<size_t>(w_.outlines.corner_begin[static_cast<size_t>(part)] + side)]
         .edge;
+  }
+
+  int joint_met(int p, int q) const {
+    const PartsMet& met = meeting_.met();
+    return joint_between(edge_of(p, met.side_a), edge_of(q, met.side_b));
   }
 
   // Joint between an edge of a and one of b. Where a glued edge meets a third block, the joint of the other one.

@@ -335,8 +335,8 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
   for (const std::string& stiffness : {kHard, kElastic})
     for (const Corner& corner : corners)
       for (const double lean : corner.leans) {
-        // not yet: a tip between two blocks stands on the corners of both as well as on their sides (docs/limits.md)
-        if (corner.name != "one block") continue;
+        // not yet: an elastic tip between two blocks stands on the corners of both as well as on their sides (docs/limits.md)
+        if (!stiffness.empty() && corner.name != "one block") continue;
         CAPTURE(stiffness);
         CAPTURE(corner.name);
         CAPTURE(lean);

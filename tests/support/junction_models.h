@@ -50,7 +50,7 @@ inline std::string between(const std::string& name, const std::string& first, co
 
 // Runs a case with the audit, which must find it valid, or else is shown.
 inline CaseResult audited(const std::string& text, const std::function<void(const Instant&)>& watch = nullptr,
-                          bool must_be_valid = true) {
+                          bool must_be_valid = true, audit::Report* told = nullptr) {
   std::unique_ptr<Auditor> auditor;
   audit::Report report;
   std::vector<std::string> names;
@@ -66,6 +66,7 @@ inline CaseResult audited(const std::string& text, const std::function<void(cons
   if (!found.empty()) fmt::print("audit: {}", found);
   INFO(found);
   if (must_be_valid) CHECK(report.valid());
+  if (told) *told = report;
   return result;
 }
 

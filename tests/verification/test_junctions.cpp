@@ -335,8 +335,6 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
   for (const std::string& stiffness : {kHard, kElastic})
     for (const Corner& corner : corners)
       for (const double lean : corner.leans) {
-        // not yet: an elastic tip between two blocks stands on the corners of both as well as on their sides (docs/limits.md)
-        if (!stiffness.empty() && corner.name != "one block") continue;
         CAPTURE(stiffness);
         CAPTURE(corner.name);
         CAPTURE(lean);
@@ -356,12 +354,21 @@ TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
             stage("push", true, 0.25, 1e-4, "damping_mass = 250") + between("floor", "wedge", "floor") +
             (two ? between("wall", "wedge", "wall") : "") +
             (corner.name == "crossing" ? between("third", "wedge", "third") : "");
-        const CaseResult r = audited(text);
+        // an elastic tip between two blocks stands on the corners of both as well as on their sides (docs/limits.md)
+        const bool doubtful = two && !stiffness.empty();
+        audit::Report told;
+        const CaseResult r = audited(text, nullptr, !doubtful, &told);
         const size_t from = row_at(r, 0.2);
         const auto mean = [&](const char* name) {
           return (r.column(name).back() - r.column(name)[from]) / time_from(r, from);
         };
         const double up = mass * a * std::sin(axis), aside = mass * a * std::cos(axis);
+        if (doubtful) {
+          const bool wrong = std::abs(mean("floor.impulse_y") - up) > 0.05 * up ||
+                             std::abs(mean("wall.impulse_x") - aside) > 0.05 * aside;
+          CHECK(told.of(audit::Defect::kCoveredSide).invalid == wrong);
+          continue;
+        }
         check_close("wedge in a corner: force of the floor [N]", mean("floor.impulse_y"), up, 1e-2, 1e-4);
         check_close("wedge in a corner: force of the wall [N]",
                     mean(two ? "wall.impulse_x" : "floor.impulse_x"), aside, 1e-2, 1e-4);

@@ -56,6 +56,8 @@ class PairSearch {
     return margin_;
   }
 
+  double born() const { return born_; }
+
  private:
   bool is_elastic(int joint) const { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].is_soft(0); }
 
@@ -236,8 +238,7 @@ class PairSearch {
   }
 
   // Place, memory and closures of what has been found.
-  void finish(const PartsMet& met, const Patch* before, Vec2 shift, double lifted, bool soft,
-              Patch& patch) const {
+  void finish(const PartsMet& met, const Patch* before, Vec2 shift, double lifted, bool soft, Patch& patch) {
     write_place(met, shift, patch);
     for (size_t end = 0; end < 2; ++end) patch.gap[end] = lifted - met.closure[end];
     remember(before, patch);
@@ -245,8 +246,14 @@ class PairSearch {
       if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
     if (soft)
       measure(met, before, patch), count_from_ground(lifted > 0, patch);
-    else if ((!before || dot(before->normal, patch.normal) < kSameWay) && !goes_out_at_once())
-      for (size_t end = 0; end < 2; ++end) patch.allowed[end] = std::max(0.0, patch.closure[end]);
+    else if (!before || dot(before->normal, patch.normal) < kSameWay)
+      for (size_t end = 0; end < 2; ++end) {
+        const double deep = std::max(0.0, patch.closure[end]);
+        if (goes_out_at_once())
+          born_ = std::max(born_, deep / size_);
+        else
+          patch.allowed[end] = deep;
+      }
   }
 
   // Whether a step leaves no overlap of hard blocks: where it ends at rest, what is pushed out has no speed. What is drawn
@@ -515,6 +522,7 @@ class PairSearch {
   bool all_laws_elastic_ = false, elastic_ = false;  // all joints, those of this pair
   bool any_rises_ = false;                           // some joint does
   std::span<const Patch> known_;
+  double born_ = 0;  // of all pairs: as PatchSearch::born()
   double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
   std::vector<SideRole> roles_a_, roles_b_;
   std::vector<std::pair<int, double>> shares_;
@@ -581,7 +589,7 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
   changed_.resize((n + kPatchGrain - 1) / kPatchGrain);
   workers.for_chunks(n, kPatchGrain, [&](size_t begin, size_t end) {
     Changed& changed = changed_[begin / kPatchGrain];
-    changed.pair.clear(), changed.patch.clear(), changed.met = 0;
+    changed.pair.clear(), changed.patch.clear(), changed.met = 0, changed.born = 0;
     PairSearch search(world, ahead, *this, state);
     std::vector<Patch> found;
     for (size_t i = begin; i < end; ++i) {
@@ -599,10 +607,13 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
       changed.pair.emplace_back(i, static_cast<int>(found.size()));
       changed.patch.insert(changed.patch.end(), found.begin(), found.end());
     }
+    changed.born = search.born();
   });
+  born_ = 0;
   int met = 0;
   bool any = false;
-  for (const Changed& c : changed_) met += c.met, any = any || !c.pair.empty();
+  for (const Changed& c : changed_)
+    met += c.met, any = any || !c.pair.empty(), born_ = std::max(born_, c.born);
   if (any) put_together(state), changed_.clear();  // at the start it holds all patches
   return met;
 }

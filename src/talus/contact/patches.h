@@ -28,6 +28,10 @@ class PatchSearch {
   /// @return  pairs whose parts overlap or are near enough to touch
   int update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers, State& state);
 
+  /// How deep hard parts were in each other that update() has found in touch for the first time, in steps from rest: nobody
+  /// saw them coming. Share of the smaller block, largest.
+  double born() const { return born_; }
+
  private:
   std::vector<Vec2> corner_, along_;  // of all parts as they lie, from each block's centroid
   struct BlockNow {
@@ -47,8 +51,10 @@ class PatchSearch {
     std::vector<std::pair<size_t, int>> pair;  // and how many it has now
     std::vector<Patch> patch;
     int met = 0;
+    double born = 0;
   };
   std::vector<Changed> changed_;
+  double born_ = 0;
 
   void place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                    const State& state);

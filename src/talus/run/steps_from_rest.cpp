@@ -17,6 +17,10 @@ namespace {
 // of its size.
 constexpr double kMostApproach = 0.05, kMostWay = 10;
 
+// How deep hard blocks may be in each other that nobody saw coming, as share of the smaller: what pushes them out does work
+// that no contact has taken.
+constexpr double kMostUnseen = 1e-6;
+
 // Steps in a row that have to go without halving before one is longer, and what that count begins at after one beyond the
 // first length that was halved: what was too long is not asked for again at once.
 constexpr int kWhole = 2, kAfterHalving = -2;
@@ -47,10 +51,14 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     settings.by_all = length <= shortest;
     StepReport report = talus::kick(scene_, settings, length, work_, state_);
     const Approach approach =
-        approach_of(scene_.bonds, scene_.blocks, state_, rates_to_come(), length, work_.workers);
+        approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
     way_ = longest_way(length);
     const bool solved = !report.failed && !(report.loose && length > shortest);
-    if (solved && !is_far(approach) && approach.of_margin <= 1) {
+    const auto lands = [&] {  // deep in what nobody saw coming
+      return length > shortest &&
+             unseen_overlap(scene_, state_.time + advance, work_, state_, report) > kMostUnseen;
+    };
+    if (solved && !is_far(approach) && approach.of_margin <= 1 && !lands()) {
       state_.rest.length = length;
       state_.rest.gone += way_, state_.rest.gone_many += length * pace_of_many(scene_.blocks, state_);
       state_.rest.whole = !halved ? state_.rest.whole + 1 : length < first ? 0 : kAfterHalving;
@@ -96,14 +104,6 @@ void StepsFromRest::lengthen(double first, bool relaxed) {
 
 bool StepsFromRest::is_far(const Approach& approach) const {
   return !(approach.of_size <= kMostApproach) || !(way_ <= kMostWay);
-}
-
-// Of all but those that stay where they are.
-const std::vector<BlockRate>& StepsFromRest::rates_to_come() {
-  if (state_.left_out.empty()) return state_.rate;
-  moving_ = state_.rate;
-  for (const int k : state_.left_out) moving_[static_cast<size_t>(k)] = {};
-  return moving_;
 }
 
 double StepsFromRest::longest_way(double length) const {

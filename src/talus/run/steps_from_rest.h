@@ -42,7 +42,6 @@ class StepsFromRest {
 
  private:
   bool is_far(const Approach& approach) const;
-  const std::vector<BlockRate>& rates_to_come();
   double longest_way(double length) const;
   void restore(const State& before, bool expect);
   std::string way_text(const Approach& approach) const;
@@ -51,8 +50,7 @@ class StepsFromRest {
   const Scene& scene_;
   StepWork& work_;
   State& state_;
-  std::vector<BlockRate> moving_;  // rates of all blocks but those that are left out
-  double way_ = 0;                 // the longest of a block, as share of its size
+  double way_ = 0;  // the longest of a block, as share of its size
   std::string why_not_;
 };
 

@@ -45,10 +45,7 @@ void drift(const Scene& scene, double time_end, StepWork& work, State& state, St
   std::atomic<size_t> bad{state.rate.size()};
   work.workers.for_chunks(state.rate.size(), kChunkOfBlocks, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
-      // what a stage does not wait for stays where it was when it was named, and presses as what slides or falls
-      const bool stays = work.clock.from_rest && state.is_left_out(static_cast<int>(k));
-      if (stays) state.rate[k] = {};
-      if (stays || drift_block(blocks, dt, k, state)) continue;
+      if (drift_block(blocks, dt, k, state)) continue;
       for (size_t least = bad; k < least && !bad.compare_exchange_weak(least, k);) {
       }
     }

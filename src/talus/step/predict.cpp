@@ -51,17 +51,19 @@ void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool rene
   }
   if (!work.bolt_forces.empty()) force += work.bolt_forces[k];
   const bool implicit = scheme.implicit(k);
+  const bool left_out = work.clock.from_rest && state.is_left_out(static_cast<int>(k));
+  const double share = left_out ? scheme.share_left_out(k, force) : scheme.share();
   if (implicit)
-    work.mobility[k] = mobility_implicit(blocks, k, work.elastic[k].rotation, scheme.share(),
+    work.mobility[k] = mobility_implicit(blocks, k, work.elastic[k].rotation, share,
                                          scheme.tangent_time2() + scheme.damping_time2());
-  else if (renew)
-    work.mobility[k] = mobility_of(blocks, k, scheme.share());
+  else if (renew || left_out)
+    work.mobility[k] = mobility_of(blocks, k, share);
   BlockRate& v = state.rate[k];
   BlockForce impulse = work.clock.dt_kick * force;
   if (scheme.settings.damping_local > 0)
     impulse += work.local_damping[k] = local_damping_impulse(scheme, work, state, k);
   if (scheme.explicitly_damped(k)) impulse += scheme.stiffness_damping(k, v, v);
-  if (!implicit && scheme.damping() == 0) {
+  if (!implicit && share == 1) {
     v = v + accelerate(blocks, k, impulse);
     return;
   }
@@ -114,7 +116,7 @@ void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& st
       work.rate_free[i] = state.rate[i];
     }
   });
-  work.mobility_share = settings.implicit ? 0 : scheme.share();
+  work.mobility_share = settings.implicit || !state.left_out.empty() ? 0 : scheme.share();
   for (auto* rate : {&state.rate, &work.rate_free})
     drive_blocks(scene.blocks, scene.model, scene.layout, state, work.clock, *rate);
 }

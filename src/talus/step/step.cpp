@@ -181,6 +181,9 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   profile.points += static_cast<int64_t>(work.rows.size());
   profile.go_on_with(Profile::kRest);
   solve_rows(scene, settings, work, state, report);
+  // what a stage does not wait for stays where it was when it was named, and presses as what slides or falls
+  if (settings.from_rest)
+    for (const int k : state.left_out) state.rate[static_cast<size_t>(k)] = {};
   profile.go_on_with(Profile::kRemember);
   const RowSums rows = settle_rows(scene, work, state);
   remember(scene, work, state);
@@ -199,6 +202,16 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
   TALUS_VALIDATE(state, scene.blocks);
   TALUS_VALIDATE(work.rows, scene.blocks.count);
   return report;
+}
+
+double unseen_overlap(const Scene& scene, double time_end, StepWork& work, const State& state,
+                      StepReport report) {
+  const auto is_elastic = [](const JointLaw& law) { return law.is_soft(0); };
+  if (!scene.by_patches() || std::all_of(scene.laws.begin(), scene.laws.end(), is_elastic)) return 0;
+  State end = state;
+  drift(scene, time_end, work, end, report);
+  seek_contacts(scene, work, end, report);
+  return work.patches.born();
 }
 
 }  // namespace talus

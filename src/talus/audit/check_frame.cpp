@@ -616,6 +616,8 @@ class Check {
   }
 
   double through_thirds(int block, int pressed, Vec2 way, const Pressed& at) const {
+    // two faces on each other are no tip, as where blocks have slid past a crossing by little
+    if (has_side(polygon(block), way, at) && has_side(polygon(pressed), -way, at)) return 0;
     if (!is_held(pressed, block, way, at)) return 0;
     std::vector<Third> thirds;
     for (const Neighbour& n : neighbours_[static_cast<size_t>(block)])

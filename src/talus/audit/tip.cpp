@@ -7,6 +7,17 @@
 
 namespace talus::audit {
 
+bool has_side(const Polygon& block, Vec2 way, const Pressed& at) {
+  for (size_t e = 0; e < block.size(); ++e) {
+    const Vec2 to = block[(e + 1) % block.size()], side = to - block[e];
+    const double length = norm(side);
+    if (length > 0 && dot(turn_right(side), way) > 0 && std::abs(dot(side, way)) <= kOffSide * length &&
+        distance_to_segment(at.place, block[e], to) <= at.depth)
+      return true;
+  }
+  return false;
+}
+
 double through_covered(const Polygon& block, const std::vector<Third>& thirds, Vec2 way, const Pressed& at) {
   const double reach = 2 * at.depth + at.length;
   bool any_covered = false;

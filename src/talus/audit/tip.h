@@ -22,6 +22,10 @@ struct Third {
   double closure;
 };
 
+/// Whether a block has a side near there to which a force is normal, within 5 degrees.
+/// @param way  of the force: unit vector out of the block
+bool has_side(const Polygon& block, Vec2 way, const Pressed& at);
+
 /// How far off the sides of a block the force is with which it presses another one, where third blocks cover one of the
 /// sides that it goes out through.
 /// @param way  of the force: unit vector out of the block

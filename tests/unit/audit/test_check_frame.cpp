@@ -7,6 +7,7 @@
 #include <string>
 #include "support/box_polygon.h"
 #include "talus/audit/read_results.h"
+#include "talus/audit/tip.h"
 
 namespace test_check_frame {
 
@@ -291,6 +292,20 @@ TEST_CASE("audit: a tip that is pressed out through what the next block covers i
   const Polygon mitred{{-1, -1}, {0, 0}, {0, 2}, {-1, 2}}, floor{{-1, -1}, {2, -1}, {2, 0}, {0, 0}};
   CHECK(!has_any(look({0, 1e5, mitred, floor}), Defect::kCoveredSide));
   CHECK(has(look({40, 1e5, mitred, floor}), Defect::kCoveredSide, true));
+}
+
+TEST_CASE("audit: a side that a force is normal to, near by and within 5 degrees") {
+  const double degree = std::acos(-1) / 180;
+  const auto has = [&](double turned, Vec2 place) {
+    return has_side(box_polygon(0, 0, 1, 1), {std::cos(turned * degree), std::sin(turned * degree)},
+                    {place, place, 1e-3, 0});
+  };
+  CHECK(has(0, {1, 0.5}));
+  CHECK(has(4.5, {1, 0.5}));
+  CHECK(!has(5.5, {1, 0.5}));
+  CHECK(!has(180, {1, 0.5}));
+  CHECK(has(0, {1.0009, 1}));
+  CHECK(!has(0, {1.0011, 1}));
 }
 
 TEST_CASE("audit: resultants of faces are held to the joint's law") {

@@ -42,9 +42,8 @@ void PartsMeeting::add_corner_sides(bool of_b, size_t at, double level) {
   }
 }
 
-// Where one of the two has a filled side the corner is that one's and the other one the tip in it: the way is its other
-// side. Where both have, the way is the side along whose normal they move the least against what fills. What has no side
-// left is behind a corner of others, which bear.
+// Filled sides are no ways, nor are sides against such ones of the other part along whose normal they move against what
+// fills by more than they have to. What has no side left is behind a corner of others, which bear.
 bool PartsMeeting::leave_out_filled() {
   std::array<bool, 2> filled{}, open{};  // of a and b
   for (const CornerSide& c : corner_sides_) (c.filled ? filled : open)[c.of_b] = true;
@@ -60,7 +59,7 @@ bool PartsMeeting::leave_out_filled() {
   for (const CornerSide& c : corner_sides_)
     if (!c.filled) least = std::min(least, against(c));
   const auto is_out = [&](const CornerSide& c) {
-    return c.filled || !filled[c.of_b] || (filled[!c.of_b] && against(c) > least + kOneSide);
+    return c.filled || (filled[!c.of_b] && against(c) > least + kOneSide);
   };
   size_t count = 0;
   bool apart = false;

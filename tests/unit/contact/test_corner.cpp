@@ -86,16 +86,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("hard contacts: a tip in a blunt corner is pushed along the normal of the wall") {
-  // the wall leans back by 30 degrees; the tip's upper side is upright, or leans back too
-  const Body wall{{{0, 0}, turned({1, 0}, 120 * kDegree), {-1, 1}, {-1, 0}}, {}};
-  for (const double angle : {75.0, 90.0}) {
-    CAPTURE(angle);
-    const Vec2 n = normal(wedge(15, angle), wall, {kFloor});
-    CHECK(norm(n - turned({1, 0}, 30 * kDegree)) < 1e-12);
-  }
-}
-
 TEST_CASE("hard contacts: a wall that is lifted by more than what is level is a block of its own") {
   const Body tip = wedge(35, 40);
   const auto lifted = [&](double by) { return normal(tip, kWall, {moved(kFloor, {0, -by})}); };

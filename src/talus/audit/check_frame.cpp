@@ -609,8 +609,8 @@ class Check {
       out.findings.push_back(finding(
           Defect::kCoveredSide, off * share > kPushInvalid, pair.a, pair.b, at.place, off * share,
           fmt::format(
-              "a tip between blocks is pressed with {:.4g} N, {:.2g} of it off the sides that the next block "
-              "leaves open",
+              "the tip of one is pressed with {:.4g} N in a corner between blocks, against what the next block is in the way "
+              "of: {:.2g} of that force has a wrong direction, and those beside it are off by as much",
               force, off)));
     }
   }

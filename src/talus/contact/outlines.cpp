@@ -15,8 +15,8 @@ namespace {
 // 1e-16 of a block.
 constexpr double kSame = 1e-9;
 
-// Beyond this sine the lines of two moved sides would meet further off than ten times what they are moved by.
-constexpr double kTooFlat = 0.1;
+// The lines of two moved sides meet at most so many times off as they are moved by, else a cut joins their ends.
+constexpr double kFarthestOff = 10;
 
 struct NotchCut {
   size_t corner = 0, side = 0;  // from which corner, to which side
@@ -125,9 +125,9 @@ void cut_on(const ConvexPart& part, int depth, std::vector<ConvexPart>& out) {
 
 // A place on a side of a block at which something begins or ends: a bonded face, a face that the ground closes.
 struct Stretch {
-  double from = 0, to = 0;          // along the edge [m]
-  int face = -1;                    // bonded
-  double out_from = 0, out_to = 0;  // how far it is moved outwards at both ends [m]
+  double from = 0, to = 0;  // along the edge [m]
+  int face = -1;            // bonded
+  int joint = -1;           // that the ground closes: the side is moved outwards
 };
 
 // Stretches of all edges, by the edge's place in the list of corners.
@@ -138,18 +138,8 @@ void add_stretch(const BlockSet& blocks, int block, int edge, const Vec2 (&arm)[
   const Vec2 from = blocks.corner({block, edge}), side = blocks.corner(blocks.end_of({block, edge})) - from;
   const double length = norm(side), first = dot(arm[0] - from, side) / length,
                second = dot(arm[1] - from, side) / length;
-  if (first > second) std::swap(s.out_from, s.out_to);
   s.from = std::min(first, second), s.to = std::max(first, second);
   out[static_cast<size_t>(blocks.vertex_begin[static_cast<size_t>(block)] + edge)].push_back(s);
-}
-
-// Half the closure by the stress of the ground at an end of a face [m] (theory 3.4).
-double moved_out(const Model& model, const BlockSet& blocks, const JointLaw& law, const BondFace& face,
-                 int end) {
-  const Vec2 along = face.arm_b[1] - face.arm_b[0];
-  const double height = blocks.centroid[static_cast<size_t>(face.block_b)].y + face.arm_b[end].y;
-  return -0.5 *
-         law.closure(in_situ_stress(model.in_situ, model.gravity, height), turn_right(along) / norm(along)).x;
 }
 
 Stretches stretches_of(const Model& model, const Layout& layout, const BlockSet& blocks, const BondSet& bonds,
@@ -172,7 +162,7 @@ Stretches stretches_of(const Model& model, const Layout& layout, const BlockSet&
     outlines.closed.emplace_back(face.block_a, face.block_b);
     if (!law.is_soft(0)) continue;
     Stretch s;
-    s.out_from = moved_out(model, blocks, law, face, 0), s.out_to = moved_out(model, blocks, law, face, 1);
+    s.joint = face.joint;
     add(face, s);
   }
   return out;
@@ -185,25 +175,38 @@ struct Marked {
   bool any = false;
 };
 
-std::array<double, 2> moved_between(const std::vector<Stretch>& list, double from, double to) {
-  std::array<double, 2> out{};
-  const double middle = 0.5 * (from + to);
-  for (const Stretch& s : list) {
-    if (s.out_from == 0 && s.out_to == 0) continue;
-    if (middle < s.from || middle > s.to || s.to <= s.from) continue;
-    const double slope = (s.out_to - s.out_from) / (s.to - s.from);
-    out = {s.out_from + (from - s.from) * slope, s.out_from + (to - s.from) * slope};
-  }
-  return out;
-}
+// Half the closure by the stress of the ground, along a side of a block (theory 3.4): a function of the place alone, so that
+// faces beside each other on one side leave no step, whatever their own ends are rounded to.
+struct Ground {
+  const Model& model;
+  const std::vector<JointLaw>& laws;
+  Vec2 normal;
+  double height, rise;  // of the side's begin [m], along it
 
-Marked marked_outline(const BlockSet& blocks, const Stretches& stretches, int block) {
+  double moved_out(int joint, double along) const {
+    const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, height + along * rise);
+    return -0.5 * laws[static_cast<size_t>(joint)].closure(stress, normal).x;
+  }
+  std::array<double, 2> moved_between(const std::vector<Stretch>& list, double from, double to) const {
+    std::array<double, 2> out{};
+    const double middle = 0.5 * (from + to);
+    for (const Stretch& s : list)
+      if (s.joint >= 0 && middle >= s.from && middle <= s.to)
+        out = {moved_out(s.joint, from), moved_out(s.joint, to)};
+    return out;
+  }
+};
+
+Marked marked_outline(const Model& model, const BlockSet& blocks, const std::vector<JointLaw>& laws,
+                      const Stretches& stretches, int block) {
   Marked out;
   const double least = kTouching * blocks.size[static_cast<size_t>(block)];
   for (int e = 0; e < blocks.vertex_count(block); ++e) {
     const auto& list = stretches[static_cast<size_t>(blocks.vertex_begin[static_cast<size_t>(block)] + e)];
     const Vec2 from = blocks.corner({block, e}), side = blocks.corner(blocks.end_of({block, e})) - from;
     const double length = norm(side);
+    const Ground ground{model, laws, turn_right(side) / length,
+                        blocks.centroid[static_cast<size_t>(block)].y + from.y, side.y / length};
     std::vector<double> at{0, length};
     for (const Stretch& s : list)
       for (const double end : {s.from, s.to})
@@ -216,7 +219,7 @@ Marked marked_outline(const BlockSet& blocks, const Stretches& stretches, int bl
       for (const Stretch& s : list)
         if (s.face >= 0 && s.from <= 0.5 * (at[k] + at[k + 1]) && s.to >= 0.5 * (at[k] + at[k + 1]))
           mark.face = s.face;
-      const auto moved = moved_between(list, at[k], at[k + 1]);
+      const auto moved = ground.moved_between(list, at[k], at[k + 1]);
       out.any = out.any || moved[0] != 0 || moved[1] != 0;
       out.outline.corner.push_back(from + (at[k] / length) * side);
       out.outline.side.push_back(mark), out.moved.push_back(moved);
@@ -236,12 +239,15 @@ void move_outwards(const Marked& marked, ConvexPart& outline) {
     const Vec2 at = p[k], u = turn_right(at - p[before]) / norm(at - p[before]),
                v = turn_right(p[(k + 1) % n] - at) / norm(p[(k + 1) % n] - at);
     const double one = marked.moved[before][1], two = marked.moved[k][0], d = cross(u, v);
-    if (std::abs(d) >= kTooFlat) {
-      out.corner.push_back(at + Vec2{(one * v.y - two * u.y) / d, (two * u.x - one * v.x) / d});
+    const double most = std::max(std::abs(one), std::abs(two));
+    const Vec2 end = at + one * u, begin = at + two * v;
+    const Vec2 meets{one * v.y - two * u.y, two * u.x - one * v.x};  // times d
+    if (norm(begin - end) <= kSame * most) {
+      out.corner.push_back(begin);
+    } else if (norm(meets) <= kFarthestOff * most * std::abs(d)) {
+      out.corner.push_back(at + meets / d);
     } else {
-      const Vec2 end = at + one * u, begin = at + two * v;
-      if (norm(begin - end) > kSame * std::max(std::abs(one), std::abs(two)))
-        out.corner.push_back(end), out.side.push_back({});
+      out.corner.push_back(end), out.side.push_back({});
       out.corner.push_back(begin);
     }
     out.side.push_back(outline.side[k]);
@@ -264,7 +270,7 @@ Outlines build_outlines(const Model& model, const Layout& layout, const BlockSet
   const Stretches stretches = stretches_of(model, layout, blocks, bonds, laws, out);
   out.part_begin.push_back(0), out.corner_begin.push_back(0);
   for (int i = 0; i < blocks.count; ++i) {
-    const Marked marked = marked_outline(blocks, stretches, i);
+    const Marked marked = marked_outline(model, blocks, laws, stretches, i);
     ConvexPart outline = marked.outline;
     if (marked.any) move_outwards(marked, outline);
     for (const ConvexPart& part : convex_parts(outline)) {

@@ -139,6 +139,13 @@ class Check {
     return std::isfinite(least) ? least : 0;
   }
 
+  double stiffest() const {
+    double most = 0;
+    for (const Law& law : rules_.laws)
+      if (!law.bonded) most = std::max(most, law.normal_stiffness);
+    return most;
+  }
+
   Seen see_patch(const Point& p) const {
     Seen s;
     s.place = p.place, s.normal = p.normal, s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
@@ -317,8 +324,8 @@ class Check {
       const double share = rest / smaller;
       if (share > out.unexplained_share) out.unexplained_share = share, out.unexplained_area = rest;
       if (share > kOverlapWarns)
-        out.findings.push_back(finding(Defect::kUnexplainedOverlap, share > kOverlapInvalid, a, b, common.at,
-                                       share,
+        out.findings.push_back(finding(Defect::kUnexplainedOverlap,
+                                       share > kOverlapInvalid && is_felt(pair, rest), a, b, common.at, share,
                                        fmt::format("they overlap by {:.3g} m2, {:.3g} m2 of it ({:.2g} % of "
                                                    "the smaller block) at no point that the run knows of",
                                                    common.area, rest, 100 * share)));
@@ -326,6 +333,19 @@ class Check {
     if (pair.begin == pair.end) check_push(pair, common, out);
     if (common.area <= 0) check_apart(pair, out);
     check_normal(pair, common, out);
+  }
+
+  // Whether an overlap would push with a force that tells beside the others: of a crumb that is hardly larger than what joints
+  // close by it does not. Hard and unknown joints push with anything.
+  bool is_felt(const Pair& pair, double area) const {
+    if (pair.begin == pair.end && softest() == 0) return true;
+    double stiffness = pair.begin == pair.end ? stiffest() : 0;
+    for (int k = pair.begin; k < pair.end; ++k) {
+      const Law* law = law_of(frame_.points[static_cast<size_t>(order_[static_cast<size_t>(k)])]);
+      if (!law || law->normal_stiffness == 0) return true;
+      stiffness = std::max(stiffness, law->normal_stiffness);
+    }
+    return !(stiffness * rules_.thickness * area <= kPushWarns * mean_force_);
   }
 
   // An overlap without any point, by the force that the softest joint would make of it: what is a share of 1e-4 of a block is

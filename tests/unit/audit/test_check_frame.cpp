@@ -507,6 +507,23 @@ TEST_CASE("audit: an overlap without a patch counts by what its joint would push
   CHECK(!has_any(c.look(), Defect::kUnexplainedOverlap));
 }
 
+TEST_CASE(
+    "audit: an overlap of a crumb between joints with stiffness is a warning while its force is nothing") {
+  // a crumb of 1e-2 m that lies by a tenth in another block: 1e-5 m2, at 1e9 Pa/m 10 kN; and one of 1 mm, 0.1 kN of 50 kN
+  const auto crumb = [](double size) {
+    Case c = patch(1e-4, 1);
+    c.frame.blocks.push_back(
+        {Hold::kFree, box_polygon(0.2, -1 - 0.9 * size, 0.2 + size, -1 + 0.1 * size), {}});
+    c.rules.names.push_back("crumb");
+    return c;
+  };
+  CHECK(has(crumb(1e-2).look(), Defect::kUnexplainedOverlap, true));
+  CHECK(has(crumb(1e-3).look(), Defect::kUnexplainedOverlap, false));
+  Case hard = crumb(1e-3);
+  hard.rules.laws.push_back({});
+  CHECK(has(hard.look(), Defect::kUnexplainedOverlap, true));
+}
+
 TEST_CASE("audit: elastic joints give back no more than they have taken") {
   const auto given = [](double work, double friction, bool lifting, const Rules& rules = {},
                         double slack = 0) {

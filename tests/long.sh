@@ -4,6 +4,8 @@
 # suite "long: NAME" (one word) in any test program: TEST_SUITE("long: NAME") around them is all it takes, tests/main.cpp leaves
 # such suites out unless they are asked for.
 long_table="
+sliding_blocks | a block slides over blocks whose joints slant, on level ground, a slope and a wall, as a point mass does | tests/families/sliding_blocks.py build/release/app/talus
+tunnels | random tunnels in elastic joints end in equilibrium, or name what is loose | tests/families/tunnels.py build/release/app/talus
 sliding | joints slide at their strength, whatever the mesh | build/release/studies/sliding_joints
 includes | every file compiled by itself, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
 slurm | a study on a Slurm of two nodes, one of which dies (root, Debian's slurmctld, slurmd, slurm-client, munge; else skipped) | tests/slurm/two_nodes.sh build/release

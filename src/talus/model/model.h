@@ -306,6 +306,8 @@ struct SafetyInput {
   int load = -1;                     // that is raised
   double lowest = 0.5, highest = 4;  // factors between which it is sought
   double tolerance = 0.01;           // of the factor
+  bool from_start = false;           // strength: each trial runs the stages, none goes on from rest
+  int at = -1;  // static stage in whose end it is sought, -1: the last of the leading ones
   double displacement =
       std::numeric_limits<double>::quiet_NaN();  // [m] at which a trial has failed, NaN = automatic
   std::vector<int> joints;                       // reduced; empty: all

@@ -568,8 +568,20 @@ class ModelReader : private SectionReader {
                       f.given("load") ? "is raised by = \"load\" alone" : "is missing: which load is raised",
                       "give by = \"load\" and load = \"NAME\"");
     s.load = refer(f, "load", model_.loads, "load");
-    if (s.by != SafetyBy::kStrength && f.given("joints"))
-      findings_.error(f.where("joints"), f.path_of("joints"), "belongs to by = \"strength\"", "leave it out");
+    for (const char* key : {"joints", "from"})
+      if (s.by != SafetyBy::kStrength && f.given(key))
+        findings_.error(f.where(key), f.path_of(key), "belongs to by = \"strength\"", "leave it out");
+    s.from_start = f.get<std::string>("from") == "start";
+    s.at = refer(f, "at", model_.stages, "stage");
+    for (int k = 0; k <= s.at; ++k)
+      if (model_.stages[static_cast<size_t>(k)].kind != StageKind::kStatic) {
+        findings_.error(
+            f.where("at"), f.path_of("at"),
+            fmt::format("stage \"{}\" is not static, or one before it is not: there is no rest to go on from",
+                        model_.stages[static_cast<size_t>(s.at)].name),
+            "name one of the static stages that the model begins with");
+        break;
+      }
     const bool turns = s.by == SafetyBy::kTilt || s.by == SafetyBy::kAcceleration;
     if (turns && (norm(model_.gravity) == 0 || model_.in_situ.given))
       findings_.error(f.where("by"), f.path_of("by"),

@@ -183,10 +183,11 @@ std::vector<SectionSpec> run_sections() {
       {"safety",
        SectionShape::kTable,
        "How `talus safety` seeks what a model just bears. By strength: tan(friction angle), cohesion and tensile strength "
-       "of joints, peak and residual, are divided by a factor F; the static stages before the first dynamic "
-       "one are run from the start; the largest F at which they come to rest is found by halving. By load, tilt or "
-       "acceleration: these stages are run once without it, then it is raised from rest to rest, in a stage like the last of them. Other "
-       "verbs ignore it.",
+       "of joints, peak and residual, are divided by a factor F, that rises from 1 in the state in which the static stages "
+       "before the first dynamic one have ended, rung by rung of a ladder (1, 1.1, 1.2 ... 2, 2.2 ... 4, 4.4 ...), each from "
+       "rest to rest; behind the first rung that fails it is halved. What does not stand at 1 is run with its strength "
+       "doubled (again and again), then lowered. By load, tilt or acceleration: the stages are run once without it, then it "
+       "is raised from rest to rest, in a stage like the last of them. Other verbs ignore it.",
        {{.name = "by",
          .type = K::kChoice,
          .default_text = "\"strength\"",
@@ -199,16 +200,32 @@ std::vector<SectionSpec> run_sections() {
          .type = K::kName,
          .refers_to = "load",
          .doc = "With `by = \"load\"`: the load that is raised."},
+        {.name = "from",
+         .type = K::kChoice,
+         .default_text = "\"rest\"",
+         .choices = {"rest", "start"},
+         .doc =
+             "With `by = \"strength\"`. `rest`: strength is lowered where the stages have ended, with all their supports in. "
+             "`start`: each trial runs the stages anew with its strength, and the factor is sought by halving between `lowest`, "
+             "which must stand, and `highest`, which must fail: what is put in late does not help what has slid before."},
+        {.name = "at",
+         .type = K::kName,
+         .refers_to = "stage",
+         .doc =
+             "The static stage in whose end the question is asked: supports and openings of later ones are not yet there. "
+             "None: the last before the first dynamic one."},
         {.name = "lowest",
          .range = kPositive,
          .doc =
-             "Factor (angle, share) at which the model should stand; tried first. None: 0.5; tilt 1, acceleration 0.01."},
+             "By strength: what fails at or below it is told as below it, and sought no further. Else the angle, share or factor at "
+             "which the model should stand; tried first. None: 0.5; tilt 1, acceleration 0.01."},
         {.name = "highest",
          .range = kPositive,
          .doc =
-             "The same at which it should fail; tried second. None: 4; tilt 60, acceleration 1. Each trial puts its whole step on at once: "
-             "joints with cohesion or tensile strength may break under the overshoot, and the answer then depends on `lowest` and "
-             "`highest` by some percent. Try two brackets."},
+             "By strength: what still stands at the first rung at or above it is told as above it. Else where it should fail; tried "
+             "second. None: 4; tilt 60, acceleration 1. From `start`, and by load, tilt and acceleration, each trial puts its whole "
+             "step on at once: joints with cohesion or tensile strength may break under the overshoot, and the answer then depends "
+             "on `lowest` and `highest` by some percent. Try two brackets."},
         {.name = "tolerance",
          .range = {.min = 1e-6, .max = 10},
          .doc =
@@ -218,10 +235,11 @@ std::vector<SectionSpec> run_sections() {
          .dimension = D::kLength,
          .range = kPositive,
          .default_text = "\"auto\"",
-         .doc = "A trial has failed when some block has moved this far since the start of its stage. "
-                "\"auto\": a tenth of its own size (the square root of its area), and at least of the "
-                "median block's but no more than half its own, if it still moves. Needles (below 1e-4 of "
-                "the median block's area or 0.002 of its thickness) do not vote then."},
+         .doc =
+             "A trial has failed when some block has moved this far since the start of its stage, and from rest since "
+             "strength was first lowered. \"auto\": a tenth of its own size (the square root of its area), and at least of the "
+             "median block's but no more than half its own, if it still moves. Needles (below 1e-4 of "
+             "the median block's area or 0.002 of its thickness) do not vote then."},
         {.name = "accept_merged",
          .type = K::kBool,
          .default_text = "false",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <thread>
 
 #include "talus/base/angle.h"
@@ -25,6 +26,16 @@ constexpr double kStillMoves = 0.1;
 
 // Needles, which do not vote: below these shares of the median block's area or thickness.
 constexpr double kNeedleArea = 1e-4, kNeedleThickness = 2e-3;
+
+// The rung of the ladder of strength after a factor: 1, 1.1, 1.2 ... 2, 2.2 ... 4, 4.4 ..., and so on below 1; `by`: how many
+// rungs on. A tenth of what a factor is at most, whatever the bracket: friction goes by the path.
+constexpr int kRungs = 10;
+double rung_after(double factor, int by) {
+  const double octave = std::exp2(std::floor(std::log2(factor * (1 + 1e-9))));
+  const double next = std::rint(kRungs * factor / octave) + by;
+  return next < 2 * kRungs ? octave * next / kRungs
+                           : octave * 2 * (kRungs + std::floor((next - 2 * kRungs) / 2)) / kRungs;
+}
 
 // Who votes in a trial, and how far each may go.
 struct Electorate {
@@ -62,10 +73,13 @@ struct Electorate {
 // Sees how far blocks move within each stage, and ends the trial when one has moved too far.
 class Watch : public Observer {
  public:
-  Watch(const Scene& scene, const Electorate& electorate) : electorate_(electorate), scene_(scene) {}
+  /// @param since  displacements from which ways are counted; empty: those at the start of each stage
+  Watch(const Scene& scene, const Electorate& electorate, const std::vector<Vec2>& since)
+      : electorate_(electorate), scene_(scene), since_(since) {}
 
   void at(const Instant& i) override {
-    if (i.stage_start) start_ = i.state.displacement, begin_ = i.state.time, peak_ = 0;
+    if (i.stage_start)
+      start_ = since_.empty() ? i.state.displacement : since_, begin_ = i.state.time, peak_ = 0;
     // steps from rest count as one time each: their lengths are but a measure of how little inertia holds
     const bool from_rest = i.scene.model.stages[static_cast<size_t>(i.stage)].from_rest;
     const double elapsed = from_rest ? static_cast<double>(i.steps_before + 1) : i.state.time - begin_,
@@ -108,6 +122,7 @@ class Watch : public Observer {
  private:
   const Electorate& electorate_;
   const Scene& scene_;
+  const std::vector<Vec2>& since_;
   bool failed_ = false, beyond_ = false, fell_ = false;
   double farthest_ = 0, begin_ = 0, peak_ = 0, speed_left_ = 0;
   int worst_ = -1;
@@ -121,14 +136,47 @@ size_t leading_static_stages(const Model& model) {
   return n;
 }
 
-// The scene of a trial. Its faces stay: strength divided by a factor is still strength.
+// Stages that trials run.
+size_t stages_of(const Model& model) {
+  return model.safety.at < 0 ? leading_static_stages(model) : static_cast<size_t>(model.safety.at) + 1;
+}
+
+bool is_weakened(const SafetyInput& safety, int joint) {
+  return safety.joints.empty() ||
+         std::find(safety.joints.begin(), safety.joints.end(), joint) != safety.joints.end();
+}
+
+// Divides strength. Faces stay: strength divided by a factor is still strength.
+/// @param full  the joints before that
+void weaken(Scene& scene, const std::vector<JointProperty>& full, double factor) {
+  for (size_t i = 0; i < full.size(); ++i)
+    if (is_weakened(scene.model.safety, static_cast<int>(i)))
+      scene.model.joints[i] = reduced(full[i], factor);
+  scene.laws = joint_laws(scene.model.joints);
+}
+
+// Joints with the strength that they have at the end of the stages.
+std::vector<JointProperty> joints_after(const Model& model, size_t stages) {
+  std::vector<JointProperty> out = model.joints;
+  for (size_t stage = 0; stage < stages; ++stage)
+    for (const ChangeInput& c : model.changes)
+      if (c.joint >= 0 && c.stage == static_cast<int>(stage)) {
+        JointProperty& joint = out[static_cast<size_t>(c.joint)];
+        joint = changed(joint, c);
+      }
+  return out;
+}
+
+// The scene of a trial that runs the stages.
 Scene weakened(const PreparedRun& prepared, double factor) {
   Scene scene = prepared.scene;
-  const std::vector<int>& chosen = scene.model.safety.joints;
-  for (size_t i = 0; i < scene.model.joints.size(); ++i)
-    if (chosen.empty() || std::find(chosen.begin(), chosen.end(), static_cast<int>(i)) != chosen.end())
-      scene.model.joints[i] = reduced(scene.model.joints[i], factor);
-  scene.laws = joint_laws(scene.model.joints);
+  scene.model.stages.resize(stages_of(scene.model));
+  weaken(scene, prepared.scene.model.joints, factor);
+  for (ChangeInput& c : scene.model.changes) {  // what a stage gives is divided, too
+    if (c.joint < 0 || !is_weakened(scene.model.safety, c.joint)) continue;
+    c.friction_angle = std::atan(std::tan(c.friction_angle) / factor);
+    c.cohesion /= factor, c.tensile_strength /= factor;
+  }
   // a wedge is a failure, however small
   for (StageInput& stage : scene.model.stages) stage.strict_rest = true;
   return scene;
@@ -161,19 +209,100 @@ struct Base {
   std::vector<StagePlan> plans;
   Standing standing;
   State state;
+  std::vector<Vec2> since;  // displacements from which ways are counted; empty: those of each trial's start
 };
+
+constexpr const char* kRaised = ", raised";
+
+// Whether a trial went on from where another stood.
+bool goes_on(const SafetyTrial& trial) { return trial.stage.ends_with(kRaised); }
+
+// The stage of trials: like the last one, with what acts there.
+void add_raised(Base& base) {
+  Model& model = base.scene.model;
+  const int last = static_cast<int>(model.stages.size()) - 1;
+  StageInput raised = model.stages.back();
+  raised.name += kRaised;
+  raised.excavate.clear(), raised.relaxation.clear();
+  raised.reset_displacements = true;
+  // what acts in the last of them, and nothing that comes later
+  const auto also = [last](auto& list) {
+    for (auto& item : list)
+      if (!item.stages.empty())
+        item.stages = item.acts_in(last) ? std::vector{last, last + 1} : std::vector{-1};
+  };
+  also(model.supports), also(model.boundaries), also(model.loads);
+  for (BoltInput& bolt : model.bolts)
+    if (bolt.stage > last) bolt.stage = std::numeric_limits<int>::max();
+  // those of joints have been made, and are not made again where a run goes on
+  std::erase_if(model.changes, [last](const ChangeInput& c) { return c.stage > last || c.joint >= 0; });
+  model.stages.push_back(raised);
+  base.plans.push_back(base.plans.back());
+  base.standing.between = true;
+}
 
 // Searches by trials of one kind.
 class Search {
  public:
   Search(const PreparedRun& prepared, const Workers& workers, const SafetySettings& settings)
-      : prepared_(prepared), workers_(workers), settings_(settings), input_(prepared.scene.model.safety) {
+      : prepared_(prepared),
+        workers_(workers),
+        settings_(settings),
+        input_(prepared.scene.model.safety),
+        full_(joints_after(prepared.scene.model, stages_of(prepared.scene.model))) {
     if (input_.by != SafetyBy::kStrength) settle();
   }
 
   SafetyResult run() {
-    if (!round({input_.lowest})) return ended(SafetyStatus::kBelow);
-    if (round({input_.highest}); result_.fails == 0) return ended(SafetyStatus::kAbove);
+    if (input_.by != SafetyBy::kStrength || input_.from_start) {
+      if (!round({input_.lowest})) return ended(SafetyStatus::kBelow);
+      if (round({input_.highest}); result_.fails == 0) return ended(SafetyStatus::kAbove);
+      close_in();
+      return ended(SafetyStatus::kFound);
+    }
+    if (!stand()) return ended(SafetyStatus::kBelow);
+    const std::shared_ptr<const Base> stood = base_;
+    const double begun = result_.stands;
+    const SafetyStatus status = climb(1);
+    if (status != SafetyStatus::kFound) return ended(status);
+    // the same by longer strides; its trials are not told
+    SafetySettings quiet;
+    quiet.jobs = settings_.jobs;
+    Search coarse(prepared_, workers_, quiet);
+    coarse.base_ = coarse.before_ = stood, coarse.result_.stands = begun;
+    if (coarse.climb(2) == SafetyStatus::kFound) result_.coarse = coarse.result_.factor();
+    return ended(status);
+  }
+
+ private:
+  struct Tried {
+    SafetyTrial trial;
+    std::unique_ptr<Base> after;  // of one that stands, where trials go on from there
+  };
+
+  // A state that stands: with the strength given, or with twice that, and so on.
+  bool stand() {
+    for (double factor = 1;; factor /= 2) {
+      if (round({factor})) {
+        result_.fails = 0;  // with less it failed as it was built; it is tried again from here
+        return true;
+      }
+      if (factor <= input_.lowest) return false;
+    }
+  }
+
+  // From what stands rung by rung to the first that fails, and by halving between the two.
+  SafetyStatus climb(int rungs) {
+    while (result_.fails == 0) {
+      if (result_.stands >= input_.highest) return SafetyStatus::kAbove;
+      round({rung_after(result_.stands, rungs)});
+    }
+    if (result_.fails <= input_.lowest) return SafetyStatus::kBelow;
+    close_in();
+    return SafetyStatus::kFound;
+  }
+
+  void close_in() {
     while (result_.fails - result_.stands > input_.tolerance) {
       std::vector<double> factors;
       for (int k = 1; k <= settings_.jobs; ++k)
@@ -182,14 +311,7 @@ class Search {
                               : result_.stands + k * (result_.fails - result_.stands) / (settings_.jobs + 1));
       round(factors);
     }
-    return ended(SafetyStatus::kFound);
   }
-
- private:
-  struct Tried {
-    SafetyTrial trial;
-    std::unique_ptr<Base> after;  // of one that stands, where trials go on from there
-  };
 
   SafetyResult ended(SafetyStatus status) {
     result_.status = status;
@@ -239,9 +361,9 @@ class Search {
 
   // The stages without the action, once.
   void settle() {
-    auto base = std::make_shared<Base>(Base{prepared_.scene, {}, {}, {}});
+    auto base = std::make_shared<Base>(Base{prepared_.scene, {}, {}, {}, {}});
     Model& model = base->scene.model;
-    const size_t stages = leading_static_stages(model);
+    const size_t stages = stages_of(model);
     model.stages.resize(stages);
     base->plans.assign(prepared_.plans.begin(),
                        prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
@@ -254,26 +376,14 @@ class Search {
     if (!base->standing.result.failure.empty())
       throw NumericalError("the model does not come to rest before anything is raised: " +
                            base->standing.result.failure);
-    base->standing.between = true;
-    // the stage in which it is raised: like the last one, with what acts there
-    const int last = static_cast<int>(stages) - 1;
-    StageInput raised = model.stages.back();
-    raised.name += ", raised";
-    raised.excavate.clear(), raised.relaxation.clear();
-    raised.reset_displacements = true;
-    const auto also = [last](auto& list) {
-      for (auto& item : list)
-        if (!item.stages.empty() && item.acts_in(last)) item.stages.push_back(last + 1);
-    };
-    also(model.supports), also(model.boundaries), also(model.loads);
-    model.stages.push_back(raised);
-    base->plans.push_back(base->plans.back());
+    add_raised(*base);
     base_ = before_ = std::move(base);
   }
 
   // Puts the action into a scene whose blocks stand as `state` says. The ledger goes on: what turns is no work.
   void raise(Scene& scene, State& state, double factor) const {
     Model& model = scene.model;
+    if (input_.by == SafetyBy::kStrength) return weaken(scene, full_, factor);
     if (input_.by == SafetyBy::kLoad) {
       model.loads[static_cast<size_t>(input_.load)].factor = factor;
       return;
@@ -290,10 +400,11 @@ class Search {
   }
 
   Tried attempt(double factor, const Workers& workers) const {
+    const bool needs_no_state = input_.by == SafetyBy::kStrength && input_.from_start;
     for (const SafetyTrial& k : settings_.known)
-      if (k.factor == factor && (!k.stands || input_.by == SafetyBy::kStrength)) return {k, nullptr};
-    return input_.by == SafetyBy::kStrength ? of_strength(factor, workers, nullptr)
-                                            : of_action(factor, *base_, workers, nullptr);
+      if (k.factor == factor && goes_on(k) == (base_ != nullptr) && (!k.stands || needs_no_state))
+        return {k, nullptr};
+    return base_ ? of_action(factor, *base_, workers, nullptr) : of_start(factor, workers, nullptr);
   }
 
   // The same trial again, shown to a keeper.
@@ -301,28 +412,34 @@ class Search {
     SafetyTrial told;
     for (const SafetyTrial& t : result_.trials)
       if (t.factor == factor) told = t;
-    if (input_.by == SafetyBy::kStrength)
-      of_strength(factor, workers_, &told);
-    else
+    if (from)
       of_action(factor, *from, workers_, &told);
+    else
+      of_start(factor, workers_, &told);
   }
 
-  Tried of_strength(double factor, const Workers& workers, const SafetyTrial* kept) const {
-    Scene scene = weakened(prepared_, factor);
-    const size_t stages = leading_static_stages(scene.model);
-    scene.model.stages.resize(stages);
-    const std::vector<StagePlan> plans(prepared_.plans.begin(),
-                                       prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
-    State state = start_state(scene);
-    return judged(factor, scene, kept, state,
-                  [&](Observer& observer) { return run_stages(scene, plans, state, observer, workers); });
+  Tried of_start(double factor, const Workers& workers, const SafetyTrial* kept) const {
+    auto after = std::make_unique<Base>(Base{weakened(prepared_, factor), {}, {}, {}, {}});
+    after->plans.assign(
+        prepared_.plans.begin(),
+        prepared_.plans.begin() + static_cast<std::ptrdiff_t>(after->scene.model.stages.size()));
+    after->state = start_state(after->scene);
+    Tried tried = judged(factor, *after, kept, [&](Observer& observer) {
+      after->standing.result = run_stages(after->scene, after->plans, after->state, observer, workers);
+      return after->standing.result;
+    });
+    if (!tried.trial.stands || input_.from_start) return tried;
+    add_raised(*after);
+    after->since = after->state.displacement;
+    tried.after = std::move(after);
+    return tried;
   }
 
   Tried of_action(double factor, const Base& from, const Workers& workers, const SafetyTrial* kept) const {
     auto after = std::make_unique<Base>(from);
     raise(after->scene, after->state, factor);
     RunResult run;
-    Tried tried = judged(factor, after->scene, kept, after->state, [&](Observer& observer) {
+    Tried tried = judged(factor, *after, kept, [&](Observer& observer) {
       run = continue_stages(after->scene, after->plans, after->standing, after->state, observer, workers);
       return run;
     });
@@ -335,9 +452,11 @@ class Search {
   }
 
   template <class Run>
-  Tried judged(double factor, const Scene& scene, const SafetyTrial* kept, const State& state, Run go) const {
+  Tried judged(double factor, const Base& base, const SafetyTrial* kept, Run go) const {
+    const Scene& scene = base.scene;
+    const State& state = base.state;
     const Electorate electorate(scene);
-    Watch watch(scene, electorate);
+    Watch watch(scene, electorate, base.since);
     RunResult run;
     if (kept) {
       const std::unique_ptr<Observer> keeper = settings_.keeper(scene, *kept);
@@ -378,6 +497,7 @@ class Search {
   const Workers& workers_;
   const SafetySettings& settings_;
   const SafetyInput& input_;
+  const std::vector<JointProperty> full_;  // strength at the end of the stages, not divided
   SafetyResult result_;
   std::shared_ptr<const Base> base_, before_,
       failed_from_;  // now; of the last trial that stands, and that fails

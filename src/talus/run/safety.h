@@ -29,6 +29,7 @@ struct SafetyResult {
   std::vector<SafetyTrial> trials;  // as they were run
   SafetyStatus status = SafetyStatus::kFound;
   double stands = 0, fails = 0;  // last factor that stands, first that fails; 0: none
+  double coarse = 0;  // the same by a ladder of every second rung: slip goes by the path; 0: not sought
   double factor() const { return 0.5 * (stands + fails); }
 };
 

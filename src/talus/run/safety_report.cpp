@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -48,6 +49,9 @@ std::string safety_text(const Model& model, const SafetyResult& r) {
   else
     out = fmt::format("{}: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n", what, r.factor(),
                       r.stands, r.fails, r.trials.size());
+  if (r.coarse > 0)
+    out += fmt::format("{:.4f} by rungs twice as long: what slips on the way tells by {:.2g} %\n", r.coarse,
+                       100 * std::abs(r.coarse / r.factor() - 1));
   if (const SafetyTrial* t = doubtful(r))
     out += fmt::format(
         "DOUBTFUL: the trial at {:g} failed because it did not come to rest; \"{}\" had moved by {:.3g} m, hardly more than where it stands. "
@@ -84,6 +88,7 @@ std::string safety_json(const Model& model, const SafetyResult& r) {
     j[model.safety.by == SafetyBy::kStrength ? "factor_of_safety" : name_of(model.safety.by)] = r.factor();
   if (r.status != SafetyStatus::kBelow) j["stands_at"] = r.stands;
   if (r.status != SafetyStatus::kAbove) j["fails_at"] = r.fails;
+  if (r.coarse > 0) j["factor_by_longer_rungs"] = r.coarse;
   j["tolerance"] = model.safety.tolerance;
   ordered_json names = ordered_json::array();
   for (const int i : model.safety.joints) names.push_back(model.joints[static_cast<size_t>(i)].name);

@@ -35,7 +35,13 @@ void add_faces(const BlockSet& blocks, int a, int b, double touching, std::vecto
       // ends of a's edge seen from b; antiparallel: a's second corner comes first along b
       const Vec2 a0 = blocks.corner({a, ea}), a1 = blocks.corner({a, (ea + 1) % blocks.vertex_count(a)});
       const Vec2 r0 = a0 + shift - b0, r1 = a1 + shift - b0;
-      if (std::abs(dot(n, r0)) > near || std::abs(dot(n, r1)) > near || dot(along, a1 - a0) >= 0) continue;
+      // ends of the shorter from the line of the longer: that of the shorter, drawn out, is off by as much more
+      const double length_a = norm(a1 - a0);
+      const Vec2 na = turn_right(a1 - a0) / length_a;
+      const double off = length_a <= length_b
+                             ? std::max(std::abs(dot(n, r0)), std::abs(dot(n, r1)))
+                             : std::max(std::abs(dot(na, r0)), std::abs(dot(na, b1 - b0 - r0)));
+      if (off > near || dot(along, a1 - a0) >= 0) continue;
       const double from = std::max(dot(along, r1), 0.0), to = std::min(dot(along, r0), length_b);
       if (to - from <= near) continue;
       BondFace face;

@@ -372,6 +372,17 @@ TEST_CASE("what moved outlines overlap by follows the stress along an upright fa
   }
 }
 
+TEST_CASE("a short side on a long one is a face whichever block comes first, however its ends are rounded") {
+  // 3e-8 m over 0.25 m is 1.2e-6 m at the other end of a wall of 10 m
+  const Polygon wall{{10, 0}, {10, 1}, {0, 1}, {0, 0}}, block{{0, -1}, {0.25, -1}, {0.25, 3e-8}, {0, -3e-8}};
+  for (const bool first : {true, false}) {
+    CAPTURE(first);
+    const Scene scene = first ? block_scene(pressed_rock(), {{wall}, {block}})
+                              : block_scene(pressed_rock(), {{block}, {wall}});
+    CHECK(scene.outlines.closed.size() == 1);
+  }
+}
+
 TEST_CASE("faces beside each other on one side leave no step in it, however their ends are rounded") {
   // a wall and three blocks on it, turned, with corners that lie up to 3e-8 m off it: a step of 1e-11 m in the moved side
   // would cut the wall in two, and a face that lies over the cut would have none of the stress of the ground

@@ -4,7 +4,7 @@
 tunnels.py TALUS [--seeds A-B] [--jobs N] [--cpu SECONDS] [--least SHARE]
 
 20 to 160 blocks, joints of 5 to 50 GPa/m, in-situ stress, two static stages at their defaults. Passes: exit 0 and valid, or exit 6
-with a block named. Exit 1 when fewer than SHARE (29 of 30) pass; one line for each that does not.
+with the farthest block named. Exit 1 when fewer than SHARE (29 of 30) pass; one line for each that does not.
 """
 import argparse, concurrent.futures, math, os, random, resource, subprocess, sys, tempfile
 
@@ -77,7 +77,7 @@ def run(talus, seed, cpu):
         done = subprocess.run([talus, "run", file, "-o", out, "--threads", "1"], capture_output=True, text=True,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 2)))
     said = " ".join(done.stderr.split())
-    return "" if done.returncode == 0 or done.returncode == 6 and 'block "' in said else f"exit {done.returncode}: {said[-300:]}"
+    return "" if done.returncode == 0 or done.returncode == 6 and 'farthest "' in said else f"exit {done.returncode}: {said[-300:]}"
 
 
 def main():

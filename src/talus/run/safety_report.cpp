@@ -50,8 +50,11 @@ std::string safety_text(const Model& model, const SafetyResult& r) {
     out = fmt::format("{}: {:.4f} (stands at {:.5f}, fails at {:.5f}; {} trials)\n", what, r.factor(),
                       r.stands, r.fails, r.trials.size());
   if (r.coarse > 0)
-    out += fmt::format("{:.4f} by rungs twice as long: what slips on the way tells by {:.2g} %\n", r.coarse,
-                       100 * std::abs(r.coarse / r.factor() - 1));
+    out += std::abs(r.coarse - r.factor()) <= model.safety.tolerance
+               ? "by rungs twice as long the same within the tolerance\n"
+               : fmt::format(
+                     "by rungs twice as long {:.4f}: what slips on the way makes a difference of {:.2g} %\n",
+                     r.coarse, 100 * std::abs(r.coarse / r.factor() - 1));
   if (const SafetyTrial* t = doubtful(r))
     out += fmt::format(
         "DOUBTFUL: the trial at {:g} failed because it did not come to rest; \"{}\" had moved by {:.3g} m, hardly more than where it stands. "

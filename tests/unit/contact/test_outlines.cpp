@@ -372,6 +372,19 @@ TEST_CASE("what moved outlines overlap by follows the stress along an upright fa
   }
 }
 
+TEST_CASE(
+    "a moved side ends on the next one where they meet within ten times the way, else a cut joins the two") {
+  // beside a side that stays, at a sine of d, they meet 1/d times the way off: 7 and 14 times
+  for (const bool meets : {true, false}) {
+    CAPTURE(meets);
+    const double d = meets ? 0.14 : 0.07;
+    const Polygon bent{{0, 0}, {4, 0}, {4, 1 - 2 * d / std::sqrt(1 - d * d)}, {2, 1}, {0, 1}};
+    const Scene scene = block_scene(pressed_rock(), {{bent}, {box_polygon(0, 1, 2, 2)}});
+    const auto end = static_cast<size_t>(scene.outlines.part_begin[1]);
+    CHECK((scene.outlines.corner_begin[end] == 5) == meets);
+  }
+}
+
 TEST_CASE("a short side on a long one is a face whichever block comes first, however its ends are rounded") {
   // 3e-8 m over 0.25 m is 1.2e-6 m at the other end of a wall of 10 m
   const Polygon wall{{10, 0}, {10, 1}, {0, 1}, {0, 0}}, block{{0, -1}, {0.25, -1}, {0.25, 3e-8}, {0, -3e-8}};

@@ -103,7 +103,7 @@ void rest(const std::string& name, int threads) {
     if (p.partner >= 0) closure += p.cross(0) * w.rows.impulse[static_cast<size_t>(p.partner)][0];
     closure *= kDt / StepClock{.alpha = s.model.contact.alpha}.position_factor();
     const double slop = p.row[0].compliance > 0 ? 0 : s.model.contact.slop * size;
-    beyond = std::max(beyond, (-w.places[i].gap - closure - slop) / size);
+    beyond = std::max(beyond, (-w.gaps[i] - closure - slop) / size);
   }
   fmt::print(
       "rest {}: unbalanced {:.2g} after {} steps, {:.1f} sweeps in the last; balance max {:.2g}, coulomb "

@@ -77,7 +77,7 @@ class PatchForces : public ContactForces {
     rows_.restart();
     const PatchWorld world{scene.blocks, scene.outlines, scene.bonds, scene.layout, scene.model, scene.laws};
     PatchSearch().update(world, ahead, Workers(), state_);
-    add_patch_rows(world, scene.give, state_, still, kClock, Workers(), rows_, place_);
+    add_patch_rows(world, scene.give, state_, still, kClock, Workers(), rows_, gaps_);
     rows_.finish();
     for (size_t i = 0; i < rows_.size(); ++i) {
       const int partner = rows_.points[i].partner;
@@ -111,7 +111,7 @@ class PatchForces : public ContactForces {
                         per * rotation_minus_identity(to[i].turn - from[i].turn)};
     const std::vector<BlockRate> still(path_->blocks.size());
     for (size_t r = rows_.range(Family::kContact).begin; r < rows_.range(Family::kContact).end; ++r)
-      remember_patch(rows_, r, relative_velocity(rows_.points[r], state_.rate), place_, still, kClock,
+      remember_patch(scene_->blocks, rows_, r, relative_velocity(rows_.points[r], state_.rate), still, kClock,
                      state_);
   }
 
@@ -143,7 +143,7 @@ class PatchForces : public ContactForces {
   std::shared_ptr<const Scene> scene_;
   State state_;
   RowSet rows_;
-  std::vector<ContactPlace> place_;
+  std::vector<double> gaps_;
   double last_ = 0;  // where it was asked last
   bool begun_ = false;
 };

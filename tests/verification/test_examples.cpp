@@ -222,7 +222,7 @@ TEST_CASE("example pile: no stone inside another, comes to rest, the same bits t
         return 0.5 * turn * turn * i.scene.blocks.size[static_cast<size_t>(block)];
       };
       for (size_t n = 0; n < 2 * i.state.patches.size(); ++n) {
-        const double gap = i.work.places[n].gap;
+        const double gap = i.work.gaps[n];
         const int a = i.state.patches[n / 2].block_a, b = i.state.patches[n / 2].block_b;
         const double size = std::min(i.scene.blocks.size[static_cast<size_t>(a)],
                                      i.scene.blocks.size[static_cast<size_t>(b)]);

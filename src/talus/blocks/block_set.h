@@ -2,6 +2,7 @@
 // The blocks of a stage: everything about them that a step does not change, in flat arrays.
 // A block is an affine body in reference form, x = c + F X. Theory: docs/theory.md section 1.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,12 @@ struct BlockSet {
   Vec2 corner(BlockCorner c) const {
     TALUS_ASSERT(c.corner >= 0 && c.corner < vertex_count(c.block));
     return arm[static_cast<size_t>(vertex_begin[static_cast<size_t>(c.block)] + c.corner)];
+  }
+  /// From the start of an edge to its end, of the reference shape.
+  Vec2 side(BlockEdge e) const { return corner(end_of(e)) - corner({e.block, e.edge}); }
+  /// Size of the smaller of two blocks [m].
+  double smaller_size(int i, int j) const {
+    return std::min(size[static_cast<size_t>(i)], size[static_cast<size_t>(j)]);
   }
 };
 

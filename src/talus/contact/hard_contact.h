@@ -53,4 +53,18 @@ inline double thickness_along(const BlockSet& blocks, const State& state, int bl
   return blocks.size[k] * blocks.size[k] / (most - least);
 }
 
+/// Overlaps below this share of the thinner block are not measured against it.
+inline constexpr double kDeepNoticed = 0.01;
+
+/// Overlap of a contact as share of the mean thickness, along the normal, of the thinner block.
+inline double closed_share(const BlockSet& blocks, const State& state, int a, int b, double gap,
+                           Vec2 normal) {
+  double share = 0;
+  if (gap >= 0) return share;
+  for (const int block : {a, b})
+    if (-gap > kDeepNoticed * blocks.thinness[static_cast<size_t>(block)])
+      share = std::max(share, -gap / thickness_along(blocks, state, block, normal));
+  return share;
+}
+
 }  // namespace talus

@@ -11,9 +11,6 @@ namespace talus {
 
 namespace {
 
-// Overlaps below this share of the thinner block are not measured against it.
-constexpr double kDeepNoticed = 0.01;
-
 // Pairs to a chunk.
 constexpr size_t kPatchRowGrain = 256;
 
@@ -21,7 +18,7 @@ class PatchRows {
  public:
   PatchRows(const PatchWorld& world, const ContactGive& give, const State& state,
             const std::vector<BlockRate>& before, const StepClock& clock, size_t first, RowSet& rows,
-            std::vector<ContactPlace>& place)
+            std::vector<double>& gaps)
       : w_(world),
         state_(state),
         before_(before),
@@ -29,10 +26,7 @@ class PatchRows {
         give_(give),
         first_(first),
         rows_(rows),
-        place_(place) {
-    const std::vector<double>& thin = world.blocks.thinness;
-    if (!thin.empty()) thinnest_ = *std::min_element(thin.begin(), thin.end());
-  }
+        gaps_(gaps) {}
 
   void add(const ContactPair& pair) const {
     const double give = pair.count > 0 ? give_.row_compliance(w_.blocks, pair.a, pair.b, clock_) : 0;
@@ -53,10 +47,6 @@ class PatchRows {
   }
 
  private:
-  double size_of(const ContactPair& pair) const {
-    return std::min(w_.blocks.size[static_cast<size_t>(pair.a)], w_.blocks.size[static_cast<size_t>(pair.b)]);
-  }
-
   // `give`: compliance where contacts give. `u`: gets the relative velocity half a step ago where the joint asks for it.
   void write(const ContactPair& pair, size_t i, size_t end, double give, std::array<double, 2>& u) const {
     const Patch& c = state_.patches[i];
@@ -71,8 +61,8 @@ class PatchRows {
     const double half_area = 0.5 * c.length * w_.blocks.thickness;
     const JointStrength bears = strength_of(c, w_.laws, end);
     p.friction = bears.friction, p.lower = 0, p.cohesion = 0;
-    const double size = size_of(pair), slop = w_.model.contact.slop * size;
-    place_[2 * i + end] = {c.gap[end], c.stretch[end], size, closed_part(c, end)};
+    const double slop = w_.model.contact.slop * w_.blocks.smaller_size(c.block_a, c.block_b);
+    gaps_[2 * i + end] = c.gap[end];
     // what a broken face keeps while it is in touch
     if (was_face(pair, c) && -c.closure[end] <= noticeable(w_.blocks, a, b))
       bound(bears.over(half_area * clock_.dt_kick), p);
@@ -127,16 +117,6 @@ class PatchRows {
     return false;
   }
 
-  // Overlap as share of the mean thickness, along the normal, of the thinner block.
-  double closed_part(const Patch& c, size_t end) const {
-    double share = 0;
-    if (-c.gap[end] <= kDeepNoticed * thinnest_) return share;
-    for (const int block : {c.block_a, c.block_b})
-      if (-c.gap[end] > kDeepNoticed * w_.blocks.thinness[static_cast<size_t>(block)])
-        share = std::max(share, -c.gap[end] / thickness_along(w_.blocks, state_, block, c.normal));
-    return share;
-  }
-
   const PatchWorld& w_;
   const State& state_;
   const std::vector<BlockRate>& before_;
@@ -144,35 +124,31 @@ class PatchRows {
   const ContactGive& give_;
   const size_t first_;
   RowSet& rows_;
-  std::vector<ContactPlace>& place_;
+  std::vector<double>& gaps_;
   const JointLaw none_;  // of contacts without a joint
-  double thinnest_ = 0;  // least thinness of a block [m]
 };
 
 }  // namespace
 
 void add_patch_rows(const PatchWorld& world, const ContactGive& give, const State& state,
                     const std::vector<BlockRate>& before, const StepClock& clock, const Workers& workers,
-                    RowSet& rows, std::vector<ContactPlace>& place) {
+                    RowSet& rows, std::vector<double>& gaps) {
   const size_t count = 2 * state.patches.size(), first = rows.add_more(Family::kContact, count);
-  resize_sparingly(place, count);
-  const PatchRows patch_rows(world, give, state, before, clock, first, rows, place);
+  resize_sparingly(gaps, count);
+  const PatchRows patch_rows(world, give, state, before, clock, first, rows, gaps);
   workers.for_chunks(state.pairs.size(), kPatchRowGrain, [&](size_t begin, size_t end) {
     for (size_t q = begin; q < end; ++q) patch_rows.add(state.pairs[q]);
   });
 }
 
 // Eq. 4.7.
-void remember_patch(const RowSet& rows, size_t r, const std::array<double, 2>& u,
-                    const std::vector<ContactPlace>& place, const std::vector<BlockRate>& before,
-                    const StepClock& clock, State& state) {
+void remember_patch(const BlockSet& blocks, const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                    const std::vector<BlockRate>& before, const StepClock& clock, State& state) {
   const RowRange all = rows.range(Family::kContact);
-  TALUS_ASSERT(all.size() == 2 * state.patches.size() && place.size() == all.size() && r >= all.begin &&
-               r < all.end);
+  TALUS_ASSERT(all.size() == 2 * state.patches.size() && r >= all.begin && r < all.end);
   const PointRows& p = rows.points[r];
   const Impulse& impulse = rows.impulse[r];
   const size_t end = (r - all.begin) % 2;
-  const ContactPlace& at = place[r - all.begin];
   Patch& c = state.patches[(r - all.begin) / 2];
   const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
   if (slid) {
@@ -191,7 +167,7 @@ void remember_patch(const RowSet& rows, size_t r, const std::array<double, 2>& u
   }
   c.touched = c.touched || held;
   c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
-  push_out(c.closure[end], at.size, c.allowed[end]);
+  push_out(c.closure[end], blocks.smaller_size(c.block_a, c.block_b), c.allowed[end]);
 }
 
 }  // namespace talus

@@ -4,7 +4,6 @@
 
 #include "talus/contact/compliance.h"
 #include "talus/contact/contact_give.h"
-#include "talus/contact/contact_place.h"
 #include "talus/contact/patches.h"
 
 namespace talus {
@@ -12,16 +11,15 @@ namespace talus {
 /// Rows of state.patches, appended: the ends of the chord of each, normal row and friction; compliant where the
 /// joint has stiffness, the two ends coupled as those of a closure that is linear along the chord (eq. 3.4).
 /// @param before  rates half a step ago
-/// @param place   gets gap and closed share of each end [2 n_patches]
+/// @param gaps    gets the gap of each end [2 n_patches] [m]
 void add_patch_rows(const PatchWorld& world, const ContactGive& give, const State& state,
                     const std::vector<BlockRate>& before, const StepClock& clock, const Workers& workers,
-                    RowSet& rows, std::vector<ContactPlace>& place);
+                    RowSet& rows, std::vector<double>& gaps);
 
 /// Stores force, elastic slip at the end of the step and slip of the end of a patch that row r stands for in the state.
 /// @param u       its relative velocity after the kick [m/s]
 /// @param before  rates half a step ago
-void remember_patch(const RowSet& rows, size_t r, const std::array<double, 2>& u,
-                    const std::vector<ContactPlace>& place, const std::vector<BlockRate>& before,
-                    const StepClock& clock, State& state);
+void remember_patch(const BlockSet& blocks, const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                    const std::vector<BlockRate>& before, const StepClock& clock, State& state);
 
 }  // namespace talus

@@ -10,9 +10,6 @@ namespace talus {
 
 namespace {
 
-// Overlaps below this share of the thinner block are not measured against it.
-constexpr double kNoticed = 0.01;
-
 // Pairs to a chunk.
 constexpr size_t kRowGrain = 256;
 
@@ -22,11 +19,14 @@ double off_anchor(const Contact& c, double slip) {
   return c.memory == Contact::kWhole && !std::isnan(c.anchor) ? slip - c.anchor : 0;
 }
 
+// Where it is along the edge, in the material of that [m].
+double slip_of(const CornerEdge& over, Vec2 edge) { return -over.along * norm(edge); }
+
 class CornerRows {
  public:
   CornerRows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
              const State& state, const StepClock& clock, size_t first, RowSet& rows,
-             std::vector<ContactPlace>& place)
+             std::vector<double>& gaps)
       : blocks_(blocks),
         model_(model),
         laws_(laws),
@@ -34,25 +34,21 @@ class CornerRows {
         clock_(clock),
         first_(first),
         rows_(rows),
-        place_(place) {
-    if (blocks.count > 0) thinnest_ = *std::min_element(blocks.thinness.begin(), blocks.thinness.end());
-  }
+        gaps_(gaps) {}
 
   void add(const ContactPair& pair) const {
-    for (int k = 0; k < pair.count; ++k) write(pair, static_cast<size_t>(pair.begin + k));
+    for (int k = 0; k < pair.count; ++k) write(static_cast<size_t>(pair.begin + k));
   }
 
  private:
-  void write(const ContactPair& pair, size_t i) const {
+  void write(size_t i) const {
     const Contact& c = state_.contacts[i];
     const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
     const JointLaw& law = c.joint < 0 ? none_ : laws_[static_cast<size_t>(c.joint)];
     const CornerEdge over = corner_over_edge(blocks_, state_, c.key.corner(), c.key.on());
-    const Vec2 b0 = blocks_.corner({c.key.block_b, c.key.edge}),
-               edge = blocks_.corner(blocks_.end_of(c.key.on())) - b0;
-    const double size = std::min(blocks_.size[a], blocks_.size[b]), slop = model_.contact.slop * size;
-    const double slip = -over.along * norm(edge);
-    place_[i] = {over.gap, slip, size, closed_part(pair, over)};
+    const Vec2 b0 = blocks_.corner({c.key.block_b, c.key.edge}), edge = blocks_.side(c.key.on());
+    const double slop = model_.contact.slop * blocks_.smaller_size(c.key.block_a, c.key.block_b);
+    gaps_[i] = over.gap;
 
     PointRows& p = rows_.points[first_ + i];
     p = kFreshRows;
@@ -63,22 +59,11 @@ class CornerRows {
     p.friction = law.between(c.key.block_a, c.key.block_b, law.worn(c.slip)).friction;
     p.lower = 0, p.cohesion = 0;
     p.row[0].bias = hard_gap_bias(over.gap + c.allowed, slop, clock_.dt);
-    p.row[1].bias = beyond_slop(off_anchor(c, slip), slop) / clock_.dt;
+    p.row[1].bias = beyond_slop(off_anchor(c, slip_of(over, edge)), slop) / clock_.dt;
     rows_.impulse[first_ + i] = {};
     if (c.memory != Contact::kNone)
       rows_.impulse[first_ + i] = {c.force[0] * clock_.dt_kick, c.force[1] * clock_.dt_kick};
     rows_.owner[first_ + i] = {Family::kContact, static_cast<int>(i)};
-  }
-
-  // Overlap as share of the mean thickness, along the normal, of the thinner block.
-  double closed_part(const ContactPair& pair, const CornerEdge& over) const {
-    double share = 0;
-    if (-over.gap <= kNoticed * thinnest_) return share;
-    for (const int block : {pair.a, pair.b})
-      // below this nobody asks: the thinnest there can be
-      if (-over.gap > kNoticed * blocks_.thinness[static_cast<size_t>(block)])
-        share = std::max(share, -over.gap / thickness_along(blocks_, state_, block, over.normal));
-    return share;
   }
 
   const BlockSet& blocks_;
@@ -88,50 +73,50 @@ class CornerRows {
   const StepClock& clock_;
   const size_t first_;
   RowSet& rows_;
-  std::vector<ContactPlace>& place_;
+  std::vector<double>& gaps_;
   const JointLaw none_;  // of contacts without a joint
-  double thinnest_ = 0;  // least thinness of a block [m]
 };
 
 }  // namespace
 
 void add_corner_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
                      const State& state, const StepClock& clock, const Workers& workers, RowSet& rows,
-                     std::vector<ContactPlace>& place) {
+                     std::vector<double>& gaps) {
   TALUS_ASSERT(laws.size() == model.joints.size());
   const size_t first = rows.add_more(Family::kContact, state.contacts.size());
-  resize_sparingly(place, state.contacts.size());
-  const CornerRows corner_rows(blocks, model, laws, state, clock, first, rows, place);
+  resize_sparingly(gaps, state.contacts.size());
+  const CornerRows corner_rows(blocks, model, laws, state, clock, first, rows, gaps);
   workers.for_chunks(state.pairs.size(), kRowGrain, [&](size_t begin, size_t end) {
     for (size_t q = begin; q < end; ++q) corner_rows.add(state.pairs[q]);
   });
 }
 
 // Eq. 4.7.
-void remember_corners(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
-                      const StepClock& clock, State& state) {
+void remember_corners(const BlockSet& blocks, const RowSet& rows, RowRange range, const StepClock& clock,
+                      State& state) {
   const RowRange all = rows.range(Family::kContact);
-  TALUS_ASSERT(all.size() == state.contacts.size() && place.size() == state.contacts.size());
+  TALUS_ASSERT(all.size() == state.contacts.size());
   TALUS_ASSERT(range.begin >= all.begin && range.end <= all.end);
   const double per_kick = 1 / clock.dt_kick;
   for (size_t r = range.begin; r < range.end; ++r) {
     const PointRows& p = rows.points[r];
     const Impulse& impulse = rows.impulse[r];
-    const ContactPlace& at = place[r - all.begin];
     Contact& c = state.contacts[r - all.begin];
+    const CornerEdge over = corner_over_edge(blocks, state, c.key.corner(), c.key.on());
+    const double at = slip_of(over, blocks.side(c.key.on()));
     const bool anchored = c.memory == Contact::kWhole && !std::isnan(c.anchor);
     const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
     c.touched = c.touched || held;
     if (held && slid) {
-      const double gone = off_anchor(c, at.slip) + clock.dt * relative_velocity(p, state.rate)[1];
+      const double gone = off_anchor(c, at) + clock.dt * relative_velocity(p, state.rate)[1];
       c.slip += std::abs(gone), c.slip_signed += gone;
     }
     if (slid)
       c.anchor = std::nan("");
     else if (!anchored)
-      c.anchor = at.slip;
+      c.anchor = at;
     c.force = {impulse[0] * per_kick, impulse[1] * per_kick};
-    push_out(-at.gap, at.size, c.allowed);
+    push_out(-over.gap, blocks.smaller_size(c.key.block_a, c.key.block_b), c.allowed);
     c.memory = Contact::kWhole;
   }
 }

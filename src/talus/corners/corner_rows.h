@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "talus/contact/contact_place.h"
 #include "talus/corners/follow.h"
 
 namespace talus {
@@ -12,14 +11,14 @@ namespace talus {
 /// Rows of state.contacts, appended: normal row and friction with a stick anchor. First guess and anchor come from the
 /// memory of each contact.
 /// @param laws   of the model's joints
-/// @param place  gets gap and slip of each contact [n_contacts]
+/// @param gaps  gets that of each contact [n_contacts] [m]
 void add_corner_rows(const BlockSet& blocks, const Model& model, const std::vector<JointLaw>& laws,
                      const State& state, const StepClock& clock, const Workers& workers, RowSet& rows,
-                     std::vector<ContactPlace>& place);
+                     std::vector<double>& gaps);
 
 /// Stores force, anchor and slip of the contacts of some rows in the state.
-/// @pre  state.rate are the rates after the kick
-void remember_corners(const RowSet& rows, RowRange range, const std::vector<ContactPlace>& place,
-                      const StepClock& clock, State& state);
+/// @pre  state.rate are the rates after the kick, and the blocks lie as they did when the rows were made
+void remember_corners(const BlockSet& blocks, const RowSet& rows, RowRange range, const StepClock& clock,
+                      State& state);
 
 }  // namespace talus

@@ -460,7 +460,7 @@ void PenaltySteps::write_rows(double dt, State& state) {
   const BlockSet& blocks = scene_.blocks;
   RowSet& rows = work_.rows;
   rows.restart();
-  work_.places.assign(state.contacts.size(), {});
+  work_.gaps.assign(state.contacts.size(), 0);
   state.row_force.assign(static_cast<size_t>(blocks.count), {});
   for (const Spring& s : springs_) {
     PointRows p;
@@ -476,12 +476,7 @@ void PenaltySteps::write_rows(double dt, State& state) {
     p.friction = s.bears.friction, p.cohesion = s.bears.cohesion * dt;
     for (size_t k = 0; k < 2; ++k) p.row[k].compliance = 1 / (s.stiffness[k] * dt * dt);
     rows.add(p, {s.force[0] * dt, s.force[1] * dt}, {s.glued ? Family::kFace : Family::kContact, s.index});
-    if (!s.glued) {
-      const double size = std::min(blocks.size[a], blocks.size[b]);
-      work_.places[static_cast<size_t>(s.index)] = {
-          s.gap_after, s.slip + s.slip_step, size,
-          std::max(0.0, -s.gap_after) / std::min(blocks.thinness[a], blocks.thinness[b])};
-    }
+    if (!s.glued) work_.gaps[static_cast<size_t>(s.index)] = s.gap_after;
   }
   for (size_t i = 0; i < scene_.supported.size(); ++i) {
     const SupportedPoint& point = scene_.supported[i];
@@ -502,11 +497,14 @@ StepReport PenaltySteps::report(const State& state) const {
   r.contacts = static_cast<int>(state.contacts.size());
   for (const Contact& c : state.contacts) r.closed += c.force[0] != 0;
   r.solve.iterations = state.judged.iterations;
-  for (size_t k = 0; k < work_.places.size(); ++k)
-    if (work_.places[k].closed > r.closed_share) {
-      r.closed_share = work_.places[k].closed;
-      r.closed_row = static_cast<int>(work_.rows.range(Family::kContact).begin + k);
-    }
+  const RowRange contacts = work_.rows.range(Family::kContact);
+  for (size_t row = contacts.begin; row < contacts.end; ++row) {
+    const PointRows& p = work_.rows.points[row];
+    const double thin = std::min(blocks.thinness[static_cast<size_t>(p.block_a)],
+                                 blocks.thinness[static_cast<size_t>(p.block_b)]);
+    const double closed = -work_.gaps[work_.rows.owner[row].at()] / thin;
+    if (closed > r.closed_share) r.closed_share = closed, r.closed_row = static_cast<int>(row);
+  }
   r.unbalanced = state.judged.unbalanced, r.worst_force = state.judged.worst_force,
   r.worst_block = state.judged.worst_block, r.nudge = state.judged.nudge;
   Energy& e = r.energy;

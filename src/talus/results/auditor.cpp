@@ -133,7 +133,7 @@ void Auditor::watch(const Instant& i) {
     const Contact& c = state.contacts[k];
     const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
     points_.push_back(
-        {c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge, c.force[0], i.work.places[k].gap, hard});
+        {c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge, c.force[0], i.work.gaps[k], hard});
   }
   centroid_.resize(blocks_.size());
   for (size_t k = 0; k < centroid_.size(); ++k)
@@ -210,7 +210,7 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
       const Contact& c = i.state.contacts[k];
       audit::Point p;
       p.block_a = c.key.block_a, p.corner = c.key.vertex, p.block_b = c.key.block_b, p.edge = c.key.edge;
-      p.gap = i.work.places[k].gap;
+      p.gap = i.work.gaps[k];
       p.normal_force = c.force[0], p.shear_force = c.force[1];
       p.joint = c.joint < 0 ? audit::kNoJoint : c.joint;
       if (c.joint >= 0) {

@@ -157,7 +157,7 @@ JointPoint patch_point(const Scene& scene, const Instant& i, size_t k) {
   out.slip = c.slip[end];
   out.slip_signed = residual_slip(scene, i, c, end, i.work.rows.range(Family::kContact).begin + k);
   if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip[end]);
-  out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
+  out.opening = std::max(0.0, i.work.gaps[k] - out.rise);
   const double noticed =
       noticeable(scene.blocks, static_cast<size_t>(c.block_a), static_cast<size_t>(c.block_b));
   out.state = static_cast<int>(joint_state(c.touched, c.force[end][0], out.slip, out.opening, noticed));
@@ -175,7 +175,7 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   out.length = c.length;
   out.slip = c.slip, out.slip_signed = residual_slip(scene, i, k);
   if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip);
-  out.opening = std::max(0.0, i.work.places[k].gap - out.rise);
+  out.opening = std::max(0.0, i.work.gaps[k] - out.rise);
   const double noticed =
       noticeable(scene.blocks, static_cast<size_t>(c.key.block_a), static_cast<size_t>(c.key.block_b));
   out.state = static_cast<int>(joint_state(c.touched, c.force[0], out.slip, out.opening, noticed));
@@ -251,7 +251,7 @@ void take_row(const Scene& scene, const Instant& i, size_t r, FramePoint& out) {
       out.corner = key.vertex, out.edge = key.edge;
       out.law = i.state.contacts[owner.at()].joint;
     }
-    out.gap = i.work.places[owner.at()].gap;
+    out.gap = i.work.gaps[owner.at()];
   } else {  // number among those of its kind that act
     const Family first = owner.family == Family::kTie ? Family::kBoundary : owner.family;
     out.corner = static_cast<int>(r - rows.range(first).begin);

@@ -28,8 +28,8 @@ struct RowSums {
 
 /// The work that row r does as it is solved (theory 8).
 /// @param u  its relative velocity after the kick [m/s]
-void tally_row(const BlockSet& blocks, const StepWork& work, size_t r, const std::array<double, 2>& u,
-               RowSums& sums);
+void tally_row(const BlockSet& blocks, const StepWork& work, const State& state, size_t r,
+               const std::array<double, 2>& u, RowSums& sums);
 
 /// Puts the work of rows and blocks into the ledger (theory 8), and what is left out of balance into the
 /// report; writes state.row_force.

@@ -68,9 +68,9 @@ void gather_rows(const Scene& scene, StepWork& work, const State& state) {
   work.profile.go_on_with(Profile::kRows);
   add_bond_rows(blocks, scene.bonds, scene.laws, scene.give, state, before, clock, work.workers, rows);
   if (scene.by_patches())
-    add_patch_rows(patch_world(scene), scene.give, state, before, clock, work.workers, rows, work.places);
+    add_patch_rows(patch_world(scene), scene.give, state, before, clock, work.workers, rows, work.gaps);
   else
-    add_corner_rows(blocks, model, scene.laws, state, clock, work.workers, rows, work.places);
+    add_corner_rows(blocks, model, scene.laws, state, clock, work.workers, rows, work.gaps);
   work.profile.go_on_with(Profile::kHeld);
   add_support_rows(blocks, model, scene.supported, state, clock, rows);
   add_boundary_rows(blocks, model, scene.boundaries, state, before, clock, work.columns, rows);
@@ -127,13 +127,13 @@ RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
       work.rows.size(), kChunkOfRows, [&](size_t begin, size_t end, RowSums& s) {
         for (size_t r = begin; r < end; ++r) {
           const std::array<double, 2> u = relative_velocity(work.rows.points[r], state.rate);
-          tally_row(blocks, work, r, u, s);
+          tally_row(blocks, work, state, r, u, s);
           if (scene.by_patches() && r >= contacts.begin && r < contacts.end)
-            remember_patch(work.rows, r, u, work.places, work.rate_before, work.clock, state);
+            remember_patch(blocks, work.rows, r, u, work.rate_before, work.clock, state);
         }
         const RowRange here{std::max(begin, contacts.begin), std::min(end, contacts.end)};
         if (!scene.by_patches() && here.begin < here.end)
-          remember_corners(work.rows, here, work.places, work.clock, state);
+          remember_corners(blocks, work.rows, here, work.clock, state);
       });
 }
 

@@ -63,11 +63,11 @@ struct StepWork {
   Profile profile;
   SolverSet solvers;
   PatchSearch patches;
-  StepClock clock;                   // of this step
-  std::vector<Mobility> mobility;    // of this step
-  double mobility_share = 0;         // for which `mobility` was made, 0: for an implicit step or none
-  std::vector<ContactPlace> places;  // of the rows of contacts
-  RowSet rows;                       // of all families
+  StepClock clock;                 // of this step
+  std::vector<Mobility> mobility;  // of this step
+  double mobility_share = 0;       // for which `mobility` was made, 0: for an implicit step or none
+  std::vector<double> gaps;        // of the rows of contacts, > 0 apart [m]
+  RowSet rows;                     // of all families
   std::vector<BlockRate> rate_before;
   std::vector<BlockRate> rate_expected;  // of a step from rest: those of the one before
   ColumnMotion columns;                  // of the free field

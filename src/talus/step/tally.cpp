@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/contact/hard_contact.h"
 #include "talus/step/chunks.h"
 #include "talus/step/parts.h"
 
@@ -126,15 +127,18 @@ RowSums& RowSums::operator+=(const RowSums& o) {
 }
 
 // Theory 8.
-void tally_row(const BlockSet& blocks, const StepWork& step, size_t r, const std::array<double, 2>& u,
-               RowSums& s) {
+void tally_row(const BlockSet& blocks, const StepWork& step, const State& state, size_t r,
+               const std::array<double, 2>& u, RowSums& s) {
   const PointRows& p = step.rows.points[r];
   const Impulse& impulse = step.rows.impulse[r];
   const RowOwner owner = step.rows.owner[r];
   const bool contact = owner.family == Family::kContact;
-  if (contact && !p.is_soft(0)) s.drift = std::max(s.drift, -step.places[owner.at()].gap);
-  if (contact && step.places[owner.at()].closed > s.closed_share)
-    s.closed_share = step.places[owner.at()].closed, s.closed_row = static_cast<int>(r);
+  if (contact) {
+    const double gap = step.gaps[owner.at()];
+    if (!p.is_soft(0)) s.drift = std::max(s.drift, -gap);
+    const double closed = closed_share(blocks, state, p.block_a, p.block_b, gap, p.normal);
+    if (closed > s.closed_share) s.closed_share = closed, s.closed_row = static_cast<int>(r);
+  }
   if (impulse[0] == 0 && impulse[1] == 0) return;
   for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
     if (block >= 0 && blocks.kind[static_cast<size_t>(block)] == BlockKind::kDriven)

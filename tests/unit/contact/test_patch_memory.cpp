@@ -65,8 +65,8 @@ class PutBlocks {
                           (1 / kClock.dt) * turn_between(pose_[i].turn, to[i].turn)};
       solve();  // slip is what the end of the step leaves of it
       for (size_t r = rows_.range(Family::kContact).begin; r < rows_.range(Family::kContact).end; ++r)
-        remember_patch(rows_, r, relative_velocity(rows_.points[r], state_.rate), place_, still, kClock,
-                       state_);
+        remember_patch(scene_.blocks, rows_, r, relative_velocity(rows_.points[r], state_.rate), still,
+                       kClock, state_);
     }
     for (size_t i = 0; i < to.size(); ++i) {
       state_.displacement[i] = to[i].way, state_.angle[i] = to[i].turn;
@@ -78,7 +78,7 @@ class PutBlocks {
     const PatchWorld world{scene_.blocks, scene_.outlines, scene_.bonds, scene_.layout, scene_.model, laws_};
     search_.update(world, ahead, Workers(), state_);
     rows_.restart();
-    add_patch_rows(world, scene_.give, state_, still, kClock, Workers(), rows_, place_);
+    add_patch_rows(world, scene_.give, state_, still, kClock, Workers(), rows_, gaps_);
     rows_.finish();
     solve();
   }
@@ -112,7 +112,7 @@ class PutBlocks {
   std::vector<Pose> pose_;
   PatchSearch search_;
   RowSet rows_;
-  std::vector<ContactPlace> place_;
+  std::vector<double> gaps_;
 
   static Scene scene_of(const std::vector<Polygon>& polygons, const JointProperty& joint) {
     Model model = jointed_rock();

@@ -302,6 +302,25 @@ TEST_CASE("collapse by acceleration: brick walls of Ferris and Tin-Loi") {
   CHECK(r.fails < 0.58);
 }
 
+TEST_CASE("collapse: the bracket only stops the search, and longer rungs come to the same") {
+  const auto found = [](const std::string& bracket) {
+    return seek_safety(
+        prepare(bond_text(6) + "[safety]\nby = \"acceleration\"\ntolerance = 0.005\n" + bracket), Workers());
+  };
+  const SafetyResult r = found("");
+  REQUIRE(r.status == SafetyStatus::kFound);
+  check_below("33 blocks: by rungs twice as long", std::abs(r.coarse - r.factor()), 0.005, 1e-12);
+  for (const char* bracket : {"lowest = 0.6\n", "highest = 0.7\n", "lowest = 0.001\nhighest = 40\n"}) {
+    const SafetyResult other = found(bracket);
+    CHECK(other.stands == r.stands);
+    CHECK(other.fails == r.fails);
+  }
+  CHECK(found("lowest = 0.7\n").status == SafetyStatus::kBelow);
+  const SafetyResult above = found("highest = 0.3\n");
+  CHECK(above.status == SafetyStatus::kAbove);
+  CHECK(above.stands == 0.3);
+}
+
 TEST_CASE("collapse: several trials at once come to the same, and what is known is not run again") {
   const PreparedRun prepared = prepare(
       bond_text(6) + "[safety]\nby = \"acceleration\"\nlowest = 0.3\nhighest = 0.9\ntolerance = 0.01\n");

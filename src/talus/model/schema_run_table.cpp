@@ -187,7 +187,8 @@ std::vector<SectionSpec> run_sections() {
        "before the first dynamic one have ended, rung by rung of a ladder (1, 1.1, 1.2 ... 2, 2.2 ... 4, 4.4 ...), each from "
        "rest to rest; behind the first rung that fails it is halved. What does not stand at 1 is run with its strength "
        "doubled (again and again), then lowered. By load, tilt or acceleration: the stages are run once without it, then it "
-       "is raised from rest to rest, in a stage like the last of them. Other verbs ignore it.",
+       "is raised from rest to rest, in a stage like the last of them: doubled (from 1/16 of the load, 1 degree, 1/64 of gravity) "
+       "until something fails, from what stood before that by the same ladder, and halved behind its first rung that fails. Other verbs ignore it.",
        {{.name = "by",
          .type = K::kChoice,
          .default_text = "\"strength\"",
@@ -217,15 +218,13 @@ std::vector<SectionSpec> run_sections() {
         {.name = "lowest",
          .range = kPositive,
          .doc =
-             "By strength: what fails at or below it is told as below it, and sought no further. Else the angle, share or factor at "
-             "which the model should stand; tried first. None: 0.5; tilt 1, acceleration 0.01."},
+             "What fails at or below it, as the first rung that does, is told as below it, and sought no further. None: 0.5; tilt 1, "
+             "acceleration 0.01. From `start`: what should stand, tried first."},
         {.name = "highest",
          .range = kPositive,
          .doc =
-             "By strength: what still stands at the first rung at or above it is told as above it. Else where it should fail; tried "
-             "second. None: 4; tilt 60, acceleration 1. From `start`, and by load, tilt and acceleration, each trial puts its whole "
-             "step on at once: joints with cohesion or tensile strength may break under the overshoot, and the answer then depends "
-             "on `lowest` and `highest` by some percent. Try two brackets."},
+             "The last rung: what still stands there is told as above it. None: 4; tilt 60, acceleration 1. From `start`: what "
+             "should fail, tried second; the answer may then depend on `lowest` and `highest` by some percent. Try two brackets."},
         {.name = "tolerance",
          .range = {.min = 1e-6, .max = 10},
          .doc =
@@ -236,8 +235,8 @@ std::vector<SectionSpec> run_sections() {
          .range = kPositive,
          .default_text = "\"auto\"",
          .doc =
-             "A trial has failed when some block has moved this far since the start of its stage, and from rest since "
-             "strength was first lowered. \"auto\": a tenth of its own size (the square root of its area), and at least of the "
+             "A trial has failed when some block has moved this far since strength was first lowered or anything raised, and from "
+             "`start` since the start of a stage. \"auto\": a tenth of its own size (the square root of its area), and at least of the "
              "median block's but no more than half its own, if it still moves. Needles (below 1e-4 of "
              "the median block's area or 0.002 of its thickness) do not vote then."},
         {.name = "accept_merged",

@@ -10,24 +10,14 @@
 
 #include "talus/base/angle.h"
 #include "talus/base/error.h"
-#include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
+#include "talus/run/safety_watch.h"
 
 namespace talus {
 
 namespace {
 
-// Way at which a block has failed, as share of its size or, where that is larger, the median block's; and at
-// most, as share of its own: a wedge in solid rock falls by less than the rock is large.
-constexpr double kFailed = 0.1, kFarthest = 0.5;
-
-// A block still moves when it is faster than this share of its mean speed so far.
-constexpr double kStillMoves = 0.1;
-
-// Needles, which do not vote: below these shares of the median block's area or thickness.
-constexpr double kNeedleArea = 1e-4, kNeedleThickness = 2e-3;
-
-// The rung of the ladder of strength after a factor: 1, 1.1, 1.2 ... 2, 2.2 ... 4, 4.4 ..., and so on below 1; `by`: how many
+// The rung of the ladder after a factor: 1, 1.1, 1.2 ... 2, 2.2 ... 4, 4.4 ..., and so on below 1; `by`: how many
 // rungs on. A tenth of what a factor is at most, whatever the bracket: friction goes by the path.
 constexpr int kRungs = 10;
 double rung_after(double factor, int by) {
@@ -37,108 +27,16 @@ double rung_after(double factor, int by) {
                            : octave * 2 * (kRungs + std::floor((next - 2 * kRungs) / 2)) / kRungs;
 }
 
-// Who votes in a trial, and how far each may go.
-struct Electorate {
-  explicit Electorate(const Scene& scene) : votes(scene.blocks.size.size(), false) {
-    const BlockSet& b = scene.blocks;
-    std::vector<double> size, thickness;
-    for (size_t k = 0; k < votes.size(); ++k)
-      if (can_move(b.kind[k])) size.push_back(b.size[k]), thickness.push_back(b.thinness[k]);
-    const double median_size = lower_median(size), median_thickness = lower_median(thickness);
-    const double told = scene.model.safety.displacement;
-    for (size_t k = 0; k < votes.size(); ++k) {
-      const double area = b.size[k] * b.size[k];
-      const bool is_needle = area < kNeedleArea * median_size * median_size ||
-                             b.thinness[k] < kNeedleThickness * median_thickness;
-      votes[k] = can_move(b.kind[k]) && (!is_needle || !std::isnan(told));
-      limit.push_back(!std::isnan(told)
-                          ? told
-                          : std::min(kFailed * std::max(b.size[k], median_size), kFarthest * b.size[k]));
-    }
-    may_rest_beyond = std::isnan(told);
-  }
-
-  static bool can_move(BlockKind kind) { return kind == BlockKind::kDeformable || kind == BlockKind::kRigid; }
-
-  // of two the smaller: a wedge in solid rock is no crumb
-  static double lower_median(const std::vector<double>& v) {
-    return v.empty() ? 0 : value_at_rank(v, (v.size() - 1) / 2);
-  }
-
-  std::vector<bool> votes;
-  std::vector<double> limit;     // [m]
-  bool may_rest_beyond = false;  // past its limit a block has failed only while it moves
-};
-
-// Sees how far blocks move within each stage, and ends the trial when one has moved too far.
-class Watch : public Observer {
- public:
-  /// @param since  displacements from which ways are counted; empty: those at the start of each stage
-  Watch(const Scene& scene, const Electorate& electorate, const std::vector<Vec2>& since)
-      : electorate_(electorate), scene_(scene), since_(since) {}
-
-  void at(const Instant& i) override {
-    if (i.stage_start)
-      start_ = since_.empty() ? i.state.displacement : since_, begin_ = i.state.time, peak_ = 0;
-    // steps from rest count as one time each: their lengths are but a measure of how little inertia holds
-    const bool from_rest = i.scene.model.stages[static_cast<size_t>(i.stage)].from_rest;
-    const double elapsed = from_rest ? static_cast<double>(i.steps_before + 1) : i.state.time - begin_,
-                 unit = from_rest ? i.work.clock.dt : 1;
-    double share = 0, moving = 0;
-    failed_ = false;
-    for (size_t k = 0; k < start_.size(); ++k) {
-      if (!electorate_.votes[k]) continue;
-      const double moved = norm(i.state.displacement[k] - start_[k]), speed = norm(i.state.rate[k].a);
-      moving += 0.5 * scene_.blocks.mass[k] * speed * speed;
-      if (moved > share * electorate_.limit[k]) {
-        share = moved / electorate_.limit[k];
-        farthest_ = moved, block_ = k;
-      }
-      failed_ = failed_ || (moved > electorate_.limit[k] &&
-                            (!electorate_.may_rest_beyond || speed * unit * elapsed > kStillMoves * moved));
-    }
-    fell_ =
-        fell_ || (failed_ && from_rest);  // the last instant is one more step, and may find a balance far off
-    peak_ = std::max(peak_, moving);
-    speed_left_ = peak_ > 0 ? std::sqrt(moving / peak_) : 0;
-    worst_ = i.report.worst_block;
-    beyond_ = share > 1;
-  }
-  // What steps from rest have not held within the limit has failed, wherever it may come to rest then.
-  void stage_is_followed(const Scene&, int, const StagePlan&, const std::string&) override {
-    fell_ = fell_ || beyond_;
-  }
-  bool stop() override { return failed(); }
-
-  bool failed() const { return failed_ || fell_; }
-  // Whether nothing that votes keeps the last stage from rest.
-  bool only_needles_move(double unbalanced) const {
-    return !failed() && speed_left_ <= unbalanced &&
-           (worst_ < 0 || !electorate_.votes[static_cast<size_t>(worst_)]);
-  }
-  double farthest() const { return farthest_; }
-  size_t block() const { return block_; }
-
- private:
-  const Electorate& electorate_;
-  const Scene& scene_;
-  const std::vector<Vec2>& since_;
-  bool failed_ = false, beyond_ = false, fell_ = false;
-  double farthest_ = 0, begin_ = 0, peak_ = 0, speed_left_ = 0;
-  int worst_ = -1;
-  size_t block_ = 0;
-  std::vector<Vec2> start_;
-};
+// The first rung of what is raised from nothing: far below what anybody asks about, and doubled until something fails.
+double first_rung(SafetyBy by) {
+  constexpr double kFirst[] = {1, 1. / 16, 1, 1. / 64};  // factor, factor, degrees, share of gravity
+  return kFirst[static_cast<size_t>(by)];
+}
 
 size_t leading_static_stages(const Model& model) {
   size_t n = 0;
   while (n < model.stages.size() && model.stages[n].kind == StageKind::kStatic) ++n;
   return n;
-}
-
-// Stages that trials run.
-size_t stages_of(const Model& model) {
-  return model.safety.at < 0 ? leading_static_stages(model) : static_cast<size_t>(model.safety.at) + 1;
 }
 
 bool is_weakened(const SafetyInput& safety, int joint) {
@@ -170,7 +68,7 @@ std::vector<JointProperty> joints_after(const Model& model, size_t stages) {
 // The scene of a trial that runs the stages.
 Scene weakened(const PreparedRun& prepared, double factor) {
   Scene scene = prepared.scene;
-  scene.model.stages.resize(stages_of(scene.model));
+  scene.model.stages.resize(safety_stages(scene.model));
   weaken(scene, prepared.scene.model.joints, factor);
   for (ChangeInput& c : scene.model.changes) {  // what a stage gives is divided, too
     if (c.joint < 0 || !is_weakened(scene.model.safety, c.joint)) continue;
@@ -182,27 +80,6 @@ Scene weakened(const PreparedRun& prepared, double factor) {
   return scene;
 }
 
-// Forwards to a second observer, which may say no word.
-class Both : public Observer {
- public:
-  Both(Watch& watch, Observer& second) : watch_(watch), second_(second) {}
-  void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
-                         const std::string& why) override {
-    watch_.stage_is_followed(scene, stage, plan, why);
-    second_.stage_is_followed(scene, stage, plan, why);
-  }
-  void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override {
-    second_.stage_begins(scene, stage, plan);
-  }
-  void at(const Instant& i) override { watch_.at(i), second_.at(i); }
-  void fails(const Instant& i) override { second_.fails(i); }
-  bool stop() override { return watch_.stop(); }
-
- private:
-  Watch& watch_;
-  Observer& second_;
-};
-
 // From where trials start: the model as it stands under the largest action it is known to bear.
 struct Base {
   Scene scene;
@@ -210,19 +87,15 @@ struct Base {
   Standing standing;
   State state;
   std::vector<Vec2> since;  // displacements from which ways are counted; empty: those of each trial's start
+  double factor = 0;        // under which it stands; 0: nothing raised
 };
-
-constexpr const char* kRaised = ", raised";
-
-// Whether a trial went on from where another stood.
-bool goes_on(const SafetyTrial& trial) { return trial.stage.ends_with(kRaised); }
 
 // The stage of trials: like the last one, with what acts there.
 void add_raised(Base& base) {
   Model& model = base.scene.model;
   const int last = static_cast<int>(model.stages.size()) - 1;
   StageInput raised = model.stages.back();
-  raised.name += kRaised;
+  raised.name += ", raised";
   raised.excavate.clear(), raised.relaxation.clear();
   raised.reset_displacements = true;
   // what acts in the last of them, and nothing that comes later
@@ -249,18 +122,18 @@ class Search {
         workers_(workers),
         settings_(settings),
         input_(prepared.scene.model.safety),
-        full_(joints_after(prepared.scene.model, stages_of(prepared.scene.model))) {
+        full_(joints_after(prepared.scene.model, safety_stages(prepared.scene.model))) {
     if (input_.by != SafetyBy::kStrength) settle();
   }
 
   SafetyResult run() {
-    if (input_.by != SafetyBy::kStrength || input_.from_start) {
+    if (input_.from_start) {
       if (!round({input_.lowest})) return ended(SafetyStatus::kBelow);
       if (round({input_.highest}); result_.fails == 0) return ended(SafetyStatus::kAbove);
       close_in();
       return ended(SafetyStatus::kFound);
     }
-    if (!stand()) return ended(SafetyStatus::kBelow);
+    if (input_.by == SafetyBy::kStrength && !stand()) return ended(SafetyStatus::kBelow);
     const std::shared_ptr<const Base> stood = base_;
     const double begun = result_.stands;
     const SafetyStatus status = climb(1);
@@ -291,11 +164,18 @@ class Search {
     }
   }
 
-  // From what stands rung by rung to the first that fails, and by halving between the two.
+  // From what stands rung by rung to the first that fails, and by halving between the two. What is raised from nothing is
+  // doubled before, until something fails: no more is taken from that than from where rungs begin.
   SafetyStatus climb(int rungs) {
+    if (input_.by != SafetyBy::kStrength) {
+      const double first = first_rung(input_.by), stride = std::exp2(rungs);
+      while (result_.fails == 0 && result_.stands < input_.highest)
+        round({std::min(result_.stands > 0 ? stride * result_.stands : first, input_.highest)});
+      if (result_.stands > 0) result_.fails = 0;
+    }
     while (result_.fails == 0) {
       if (result_.stands >= input_.highest) return SafetyStatus::kAbove;
-      round({rung_after(result_.stands, rungs)});
+      round({std::min(rung_after(result_.stands, rungs), input_.highest)});
     }
     if (result_.fails <= input_.lowest) return SafetyStatus::kBelow;
     close_in();
@@ -363,7 +243,7 @@ class Search {
   void settle() {
     auto base = std::make_shared<Base>(Base{prepared_.scene, {}, {}, {}, {}});
     Model& model = base->scene.model;
-    const size_t stages = stages_of(model);
+    const size_t stages = safety_stages(model);
     model.stages.resize(stages);
     base->plans.assign(prepared_.plans.begin(),
                        prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
@@ -377,6 +257,7 @@ class Search {
       throw NumericalError("the model does not come to rest before anything is raised: " +
                            base->standing.result.failure);
     add_raised(*base);
+    base->since = base->state.displacement;
     base_ = before_ = std::move(base);
   }
 
@@ -402,7 +283,7 @@ class Search {
   Tried attempt(double factor, const Workers& workers) const {
     const bool needs_no_state = input_.by == SafetyBy::kStrength && input_.from_start;
     for (const SafetyTrial& k : settings_.known)
-      if (k.factor == factor && goes_on(k) == (base_ != nullptr) && (!k.stands || needs_no_state))
+      if (k.factor == factor && k.from == (base_ ? base_->factor : 0) && (!k.stands || needs_no_state))
         return {k, nullptr};
     return base_ ? of_action(factor, *base_, workers, nullptr) : of_start(factor, workers, nullptr);
   }
@@ -411,7 +292,7 @@ class Search {
   void keep(double factor, const std::shared_ptr<const Base>& from) const {
     SafetyTrial told;
     for (const SafetyTrial& t : result_.trials)
-      if (t.factor == factor) told = t;
+      if (t.factor == factor && t.from == (from ? from->factor : 0)) told = t;
     if (from)
       of_action(factor, *from, workers_, &told);
     else
@@ -424,13 +305,14 @@ class Search {
         prepared_.plans.begin(),
         prepared_.plans.begin() + static_cast<std::ptrdiff_t>(after->scene.model.stages.size()));
     after->state = start_state(after->scene);
-    Tried tried = judged(factor, *after, kept, [&](Observer& observer) {
+    Tried tried = judged(factor, 0, *after, kept, [&](Observer& observer) {
       after->standing.result = run_stages(after->scene, after->plans, after->state, observer, workers);
       return after->standing.result;
     });
     if (!tried.trial.stands || input_.from_start) return tried;
     add_raised(*after);
     after->since = after->state.displacement;
+    after->factor = factor;
     tried.after = std::move(after);
     return tried;
   }
@@ -439,7 +321,7 @@ class Search {
     auto after = std::make_unique<Base>(from);
     raise(after->scene, after->state, factor);
     RunResult run;
-    Tried tried = judged(factor, *after, kept, [&](Observer& observer) {
+    Tried tried = judged(factor, from.factor, *after, kept, [&](Observer& observer) {
       run = continue_stages(after->scene, after->plans, after->standing, after->state, observer, workers);
       return run;
     });
@@ -447,28 +329,23 @@ class Search {
     // the next trial is another go of the same stage
     run.stages.pop_back();
     after->standing = {run, true};
+    after->factor = factor;
     tried.after = std::move(after);
     return tried;
   }
 
   template <class Run>
-  Tried judged(double factor, const Base& base, const SafetyTrial* kept, Run go) const {
+  Tried judged(double factor, double from, const Base& base, const SafetyTrial* kept, Run go) const {
     const Scene& scene = base.scene;
     const State& state = base.state;
     const Electorate electorate(scene);
-    Watch watch(scene, electorate, base.since);
-    RunResult run;
-    if (kept) {
-      const std::unique_ptr<Observer> keeper = settings_.keeper(scene, *kept);
-      Both both(watch, *keeper);
-      run = go(both);
-      if (settings_.kept) settings_.kept(*keeper, run);
-    } else {
-      run = go(watch);
-    }
+    const std::unique_ptr<Observer> keeper = kept ? settings_.keeper(scene, *kept) : nullptr;
+    Watch watch(scene, electorate, base.since, keeper.get());
+    const RunResult run = go(watch);
+    if (keeper && settings_.kept) settings_.kept(*keeper, run);
     const StageResult& last = run.stages.back();
     SafetyTrial trial;
-    trial.factor = factor;
+    trial.factor = factor, trial.from = from;
     trial.stage = last.name;
     trial.time = state.time;
     trial.steps = state.step;
@@ -504,6 +381,10 @@ class Search {
 };
 
 }  // namespace
+
+size_t safety_stages(const Model& model) {
+  return model.safety.at < 0 ? leading_static_stages(model) : static_cast<size_t>(model.safety.at) + 1;
+}
 
 void check_safety(const PreparedRun& prepared) {
   const Model& model = prepared.scene.model;

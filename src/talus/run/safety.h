@@ -12,12 +12,14 @@ namespace talus {
 /// One run at reduced strength, or with a raised action.
 struct SafetyTrial {
   double factor = 1;
+  double from =
+      0;  // factor of the trial from whose end it went on; 0: from the end of the stages, or their start
   bool stands = false;
   std::string outcome;  // "at rest", "needles move" (but nothing else), "displacement limit", "no rest"
   std::string stage;    // in which it ended
   double time = 0;      // [s] at its end
   int64_t steps = 0;
-  double displacement = 0;  // since the start of its stage [m] of the block that came nearest to its limit
+  double displacement = 0;  // since anything was raised [m] of the block that came nearest to its limit
   std::string block;        // that one
   double unbalanced = 0;    // at the end
   double closure = 0;       // of the energy ledger
@@ -32,6 +34,9 @@ struct SafetyResult {
   double coarse = 0;  // the same by a ladder of every second rung: slip goes by the path; 0: not sought
   double factor() const { return 0.5 * (stands + fails); }
 };
+
+/// Number of stages that trials run: the static ones that the model begins with, or those up to `safety.at`.
+size_t safety_stages(const Model& model);
 
 /// Throws InputError when the model has no leading static stage, or slivers with joints were merged or deleted
 /// and `safety.accept_merged` is not set.

@@ -20,8 +20,8 @@ std::string safety_line(const SafetyTrial& t) {
 
 namespace {
 
-// Whether the trial that failed first did so by want of rest, though hardly more moved than in the one that stands: then
-// it may be the way to rest that failed, and not what is built.
+// Whether the trial that failed first did so by want of rest, though hardly more moved in it than in the one that stands:
+// then it may be the way to rest that failed, and not what is built.
 const SafetyTrial* doubtful(const SafetyResult& r) {
   constexpr double kHardlyMore = 10;
   const auto at = [&r](double factor, bool stands) -> const SafetyTrial* {
@@ -29,10 +29,36 @@ const SafetyTrial* doubtful(const SafetyResult& r) {
       if (t.factor == factor && t.stands == stands) return &t;
     return nullptr;
   };
+  // ways are counted from before anything was raised
+  const auto way = [&at](const SafetyTrial& t) {
+    const SafetyTrial* before = t.from > 0 ? at(t.from, true) : nullptr;
+    return t.displacement - (before && before->from > 0 ? before->displacement : 0);
+  };
   const SafetyTrial *failed = at(r.fails, false), *stood = at(r.stands, true);
   if (r.fails <= 0 || !failed || failed->outcome != "no rest") return nullptr;
-  if (stood && failed->displacement > kHardlyMore * stood->displacement) return nullptr;
+  if (stood && way(*failed) > kHardlyMore * way(*stood)) return nullptr;
   return failed;
+}
+
+}  // namespace
+
+namespace {
+
+// What holds and loads the model in the stage in which the question is asked: names.
+nlohmann::ordered_json what_acts(const Model& model) {
+  const int stage = static_cast<int>(safety_stages(model)) - 1;
+  nlohmann::ordered_json out = {{"stage", model.stages[static_cast<size_t>(stage)].name}};
+  const auto list = [&](const char* kind, const auto& items) {
+    nlohmann::ordered_json names = nlohmann::ordered_json::array();
+    for (const auto& item : items)
+      if (item.acts_in(stage)) names.push_back(item.name);
+    out[kind] = names;
+  };
+  list("supports", model.supports), list("boundaries", model.boundaries), list("loads", model.loads);
+  out["bolts"] = nlohmann::ordered_json::array();
+  for (const BoltInput& bolt : model.bolts)
+    if (bolt.stage <= stage) out["bolts"].push_back(bolt.name);
+  return out;
 }
 
 }  // namespace
@@ -70,11 +96,11 @@ std::string safety_text(const Model& model, const SafetyResult& r) {
 
 std::string safety_csv(const SafetyResult& r) {
   std::string out =
-      "factor,stands,outcome,stage,time [s],steps,unbalanced,displacement [m],block,energy_closure\n";
+      "factor,stands,outcome,stage,time [s],steps,unbalanced,displacement [m],block,energy_closure,from\n";
   for (const SafetyTrial& t : r.trials)
-    out += fmt::format("{:.17g},{},{},{},{:.17g},{},{:.17g},{:.17g},{},{:.17g}\n", t.factor, t.stands ? 1 : 0,
-                       table_cell(t.outcome), table_cell(t.stage), t.time, t.steps, t.unbalanced,
-                       t.displacement, table_cell(t.block), t.closure);
+    out += fmt::format("{:.17g},{},{},{},{:.17g},{},{:.17g},{:.17g},{},{:.17g},{:.17g}\n", t.factor,
+                       t.stands ? 1 : 0, table_cell(t.outcome), table_cell(t.stage), t.time, t.steps,
+                       t.unbalanced, t.displacement, table_cell(t.block), t.closure, t.from);
   return out;
 }
 
@@ -85,6 +111,9 @@ std::string safety_json(const Model& model, const SafetyResult& r) {
   ordered_json j = {{"program", fmt::format("talus {}", kVersion)},
                     {"model_file", std::filesystem::path(model.file).filename().string()},
                     {"model_hash", model.hash},
+                    {"title", model.title},
+                    {"answer", safety_text(model, r)},
+                    {"acts", what_acts(model)},
                     {"by", kBy[static_cast<size_t>(model.safety.by)]},
                     {"status", kStatus[static_cast<int>(r.status)]}};
   if (r.status == SafetyStatus::kFound)
@@ -107,7 +136,8 @@ std::string safety_json(const Model& model, const SafetyResult& r) {
                            {"unbalanced", t.unbalanced},
                            {"displacement [m]", t.displacement},
                            {"block", t.block},
-                           {"energy_closure", t.closure}});
+                           {"energy_closure", t.closure},
+                           {"from", t.from}});
   return j.dump(2) + "\n";
 }
 

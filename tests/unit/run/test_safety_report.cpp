@@ -34,6 +34,18 @@ TEST_CASE("safety report: a trial without rest in which hardly anything moved is
   CHECK(doubts(found(stands, trial(1.6, false, "no rest", 5e-4))));
   CHECK(!doubts(found(stands, trial(1.6, false, "no rest", 5e-2))));
   CHECK(!doubts(found(stands, trial(1.6, false, "displacement limit", 5e-4))));
+  // on a ladder ways are counted from before anything was raised: it is what each trial adds that tells
+  SafetyTrial before = trial(1.4, true, "at rest", 2e-2), last = trial(1.5, true, "at rest", 2.01e-2),
+              fails = trial(1.6, false, "no rest", 2.05e-2);
+  before.from = 1.3, last.from = 1.4, fails.from = 1.5;
+  const auto ladder = [&] {
+    SafetyResult r = found(last, fails);
+    r.trials.insert(r.trials.begin(), before);
+    return r;
+  };
+  CHECK(doubts(ladder()));
+  fails.displacement = 4e-2;
+  CHECK(!doubts(ladder()));
   SafetyResult below;
   below.status = SafetyStatus::kBelow;
   below.trials = {trial(0.5, false, "no rest", 1e-5)};

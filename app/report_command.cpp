@@ -10,6 +10,7 @@
 #include "talus/base/text_file.h"
 #include "talus/output/result_folder.h"
 #include "talus/report/page.h"
+#include "talus/report/safety_page.h"
 #include "tell.h"
 
 namespace talus::app {
@@ -44,17 +45,10 @@ void add_report_arguments(CLI::App& verb, ReportArguments& args) {
       "browser)");
 }
 
-int report_command(const ReportArguments& args) {
-  if (!args.output.empty() && args.output != "-") check_no_result(args.output);
-  const std::string page = page_text();
-  std::vector<report::RunFolder> runs;
-  for (const std::string& folder : args.folders) {
-    runs.push_back(report::read_run_folder(folder));
-    for (const std::string& note : runs.back().notes) tell("talus: note: {}: {}\n", folder, note);
-  }
-  report::PageNotes notes;
-  const std::string html =
-      report::report_page(page, runs, {.frames = args.frames, .megabytes = args.megabytes}, notes);
+namespace {
+
+// Puts a page where it is wanted, and says where.
+int written(const ReportArguments& args, const std::string& html) {
   if (args.output == "-") {
     fmt::print("{}", html);
     return kExitOk;
@@ -64,11 +58,34 @@ int report_command(const ReportArguments& args) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
   note_result(args.folders[0], file);
   write_file(file, html);
-  for (const auto& run : notes.runs)
-    fmt::print("{}: {} of {} frames{}, contact points of {} frames\n", run.name, run.frames, run.frames_there,
-               run.reason.empty() ? "" : " (" + run.reason + ")", run.contact_frames);
   fmt::print("{}: {}\n", file.string(), readable_bytes(static_cast<double>(html.size())));
   return kExitOk;
+}
+
+}  // namespace
+
+int report_command(const ReportArguments& args) {
+  if (!args.output.empty() && args.output != "-") check_no_result(args.output);
+  if (report::is_safety_folder(args.folders[0])) {
+    if (args.folders.size() > 1)
+      throw FileError(fmt::format("{}: is a folder of talus safety, whose page stands alone; name it alone",
+                                  args.folders[0]));
+    return written(args, report::safety_page(args.folders[0]));
+  }
+  const std::string page = page_text();
+  std::vector<report::RunFolder> runs;
+  for (const std::string& folder : args.folders) {
+    runs.push_back(report::read_run_folder(folder));
+    for (const std::string& note : runs.back().notes) tell("talus: note: {}: {}\n", folder, note);
+  }
+  report::PageNotes notes;
+  const std::string html =
+      report::report_page(page, runs, {.frames = args.frames, .megabytes = args.megabytes}, notes);
+  if (args.output != "-")
+    for (const auto& run : notes.runs)
+      fmt::print("{}: {} of {} frames{}, contact points of {} frames\n", run.name, run.frames,
+                 run.frames_there, run.reason.empty() ? "" : " (" + run.reason + ")", run.contact_frames);
+  return written(args, html);
 }
 
 }  // namespace talus::app

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 
 #include "plot_blocks.h"
 #include "talus/base/text_file.h"
 #include "talus/output/text_table.h"
+#include "talus/plot/figure.h"
 #include "talus/talus.h"
 #include "tell.h"
 
@@ -35,12 +38,43 @@ std::vector<SafetyTrial> known_trials(const fs::path& folder, const Model& model
       t.stage = row.at(3);
       t.time = std::stod(row.at(4)), t.steps = std::stoll(row.at(5)), t.unbalanced = std::stod(row.at(6));
       t.displacement = std::stod(row.at(7)), t.block = row.at(8), t.closure = std::stod(row.at(9));
+      t.from = std::stod(row.at(10));
     } catch (const std::logic_error&) {  // a row that is no trial, or cut short: that trial is run again
       continue;
     }
     known.push_back(t);
   }
   return known;
+}
+
+// How far the block that came nearest to its limit has moved, over what was asked: the trials that stand, and where the
+// first that fails goes off the figure.
+plot::Figure displacement_figure(const Model& model, const SafetyResult& result) {
+  const bool by_strength = model.safety.by == SafetyBy::kStrength;
+  std::map<double, double> stood;  // of one factor the last
+  if (!by_strength) stood[0] = 0;
+  for (const SafetyTrial& t : result.trials) {
+    const bool counted_from = by_strength && !model.safety.from_start && t.from == 0;
+    if (t.stands && t.factor <= result.stands) stood[t.factor] = counted_from ? 0 : 1e3 * t.displacement;
+  }
+  plot::Figure figure;
+  figure.title = "Displacement of the block that came nearest to its limit";
+  figure.x_label = name_of(model.safety.by), figure.y_label = "displacement [mm]";
+  plot::Curve stands{.label = "at rest", .x = {}, .y = {}};
+  double most = 0;
+  for (const auto& [factor, moved] : stood)
+    stands.x.push_back(factor), stands.y.push_back(moved), most = std::max(most, moved);
+  figure.curves = {stands};
+  if (result.fails > 0 && !stood.empty()) {
+    const double top = most > 0 ? 1.5 * most : 1;
+    figure.curves.push_back({.label = "fails",
+                             .x = {stands.x.back(), result.fails},
+                             .y = {stands.y.back(), top},
+                             .color = 1,
+                             .style = plot::Style::kDashed});
+    figure.y_max = top, figure.x_max = result.fails + 0.05 * (result.fails - stands.x.front());
+  }
+  return figure;
 }
 
 }  // namespace
@@ -88,6 +122,8 @@ int safety_command(const ModelArguments& args, const SafetyArguments& how) {
   const SafetyResult result = seek_safety(prepared, workers, settings);
   out.write(kTrials, safety_csv(result));
   out.write("safety.json", safety_json(model, result));
+  out.note_picture("displacement");
+  plot::write_figure(displacement_figure(model, result), root / "displacement");
   if (result.fails > 0) {
     BlockPlotArguments picture;
     picture.quantities = {"displacement"};
@@ -96,7 +132,8 @@ int safety_command(const ModelArguments& args, const SafetyArguments& how) {
     plot_blocks(root / "fails", picture, root / "mechanism", true);
   }
   fmt::print(
-      "{}written to {}: safety.csv, safety.json{}\n", safety_text(model, result), how.folder,
+      "{0}written to {1}: safety.csv, safety.json, displacement.svg{2}\ntalus report {1} makes a page of it\n",
+      safety_text(model, result), how.folder,
       result.fails > 0
           ? ", mechanism.svg; stands/, fails/: the last trial that stands, the first that fails, for talus report and plot"
           : "");

@@ -64,6 +64,15 @@ TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on afte
   CHECK(std::filesystem::file_size(f / "s/mechanism.svg") > 5000);
   has(read_text_file((f / "s/mechanism.svg").string()), "<svg");
   CHECK(shell(f, "$talus report s/fails").code == 0);
+  // the page of the search
+  CHECK(shell(f, "$talus report s").code == 0);
+  const std::string page = read_text_file((f / "s/report.html").string());
+  for (const char* part : {"acceleration [g]: 0.6", "What acts", "stand", "data:image/svg+xml;base64,", "displacement limit"})
+    has(page, part);
+  has(page, "<td>0.50000</td><td>0.25000</td><td class=\"text\">stands</td>");
+  has(shell(f, "$talus report s s/fails").text, "whose page stands alone");
+  write_file((f / "s/safety.json").string(), "{\"by\": 1}");
+  has(shell(f, "$talus report s").text, "safety.json: is no result of this talus safety");
 
   // broken off: the table of trials is there, and the search comes to the same
   shell(

@@ -1,0 +1,16 @@
+#pragma once
+// What `talus safety` found, as one page: the answer, what acts, the mechanism, how far blocks move, the trials.
+
+#include <filesystem>
+#include <string>
+
+namespace talus::report {
+
+/// Whether a folder holds the results of `talus safety`.
+bool is_safety_folder(const std::filesystem::path& folder);
+
+/// The page of such a folder, in HTML, with its pictures in it.
+/// Throws FileError naming the file that cannot be read, or is none of a search that has ended.
+std::string safety_page(const std::filesystem::path& folder);
+
+}  // namespace talus::report

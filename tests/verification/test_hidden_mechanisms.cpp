@@ -186,6 +186,8 @@ void check_factor(const std::string& what, const Wedge& w) {
   REQUIRE(r.status == SafetyStatus::kFound);
   // the tolerance of the search is 0.002 of a factor of at least 0.8
   check_close(what + ": factor of safety", r.factor(), w.factor, 2e-2, 5e-3);
+  // a wedge slips on one way only: two ladders come to the same, within what each leaves
+  check_below(what + ": off by rungs twice as long", std::abs(r.coarse - r.factor()), 0.002, 1e-12);
 }
 
 // Free fall: nothing holds what parts from both planes.

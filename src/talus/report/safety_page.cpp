@@ -99,10 +99,16 @@ std::string page_of(const json& found, const fs::path& folder) {
 
 }  // namespace
 
-bool is_safety_folder(const fs::path& folder) { return is_there(folder / kFile); }
+bool is_safety_folder(const fs::path& folder) {
+  return is_there(folder / kFile) || is_there(folder / "safety.csv");
+}
 
 std::string safety_page(const fs::path& folder) {
   const fs::path file = folder / kFile;
+  if (!is_there(file))
+    throw FileError(
+        fmt::format("{}: the search there has not ended; go on with it by talus safety MODEL -o {} --resume",
+                    folder.string(), folder.string()));
   try {
     return page_of(json::parse(checked_json(file.string(), read_text_file(file))), folder);
   } catch (const json::exception& e) {

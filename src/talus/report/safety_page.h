@@ -6,7 +6,7 @@
 
 namespace talus::report {
 
-/// Whether a folder holds the results of `talus safety`.
+/// Whether a folder is one of `talus safety`, be it of a search that was broken off.
 bool is_safety_folder(const std::filesystem::path& folder);
 
 /// The page of such a folder, in HTML, with its pictures in it.

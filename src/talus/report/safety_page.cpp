@@ -8,6 +8,7 @@
 #include "talus/base/json_depth.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
+#include "talus/output/page_style.h"
 #include "talus/output/vtk_arrays.h"
 
 namespace talus::report {
@@ -20,12 +21,7 @@ using json = nlohmann::ordered_json;
 constexpr const char* kFile = "safety.json";
 
 constexpr const char* kStyle = R"(
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 1100px; padding: 0 1rem; color: #222; background: #fff; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 .answer { font-size: 1.2rem; } .answer p { margin: .2rem 0; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .2rem .6rem; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
-td.text, th.text { text-align: left; }
 tr.fails td { color: #a33; }
 img { max-width: 100%; }
 )";
@@ -58,10 +54,13 @@ std::string acts_table(const json& acts) {
   return out + "</table>\n";
 }
 
-std::string trials_table(const json& trials) {
-  std::string out =
-      "<h2>Trials</h2>\n<table><tr><th>factor</th><th>from</th><th class=\"text\"></th><th class=\"text\">ended "
-      "by</th><th>steps</th><th>unbalanced</th><th>moved [m]</th><th class=\"text\">block</th></tr>\n";
+std::string trials_table(const std::string& by, const json& trials) {
+  std::string out = fmt::format(
+      "<h2>Trials</h2>\n<table><tr><th>{}</th><th>from</th><th class=\"text\"></th><th class=\"text\">ended "
+      "by</th><th>steps</th><th>unbalanced</th><th>moved [m]</th><th class=\"text\">block</th></tr>\n",
+      by == "tilt"           ? "tilt [deg]"
+      : by == "acceleration" ? "share of gravity"
+                             : "factor");
   for (const json& t : trials) {
     const bool stands = t.at("stands").get<bool>();
     out += fmt::format(
@@ -81,8 +80,8 @@ std::string page_of(const json& found, const fs::path& folder) {
                     given = found.at("title").get<std::string>(), title = given.empty() ? file : given;
   std::string out = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
-      "content=\"width=device-width\"><style>{1}</style></head><body>\n<h1>{0}</h1>\n<div class=\"answer\">\n",
-      in_markup(title), kStyle);
+      "content=\"width=device-width\"><style>{1}{2}</style></head><body>\n<h1>{0}</h1>\n<div class=\"answer\">\n",
+      in_markup(title), kPageStyle, kStyle);
   const std::string answer = found.at("answer").get<std::string>();
   for (size_t at = 0; at < answer.size();) {
     const size_t end = std::min(answer.find('\n', at), answer.size());
@@ -94,7 +93,7 @@ std::string page_of(const json& found, const fs::path& folder) {
   out += acts_table(found.at("acts"));
   out += picture(folder / "mechanism.svg", "What goes");
   out += picture(folder / "displacement.svg", "Displacement over what is asked");
-  return out + trials_table(found.at("trials")) + "</body></html>\n";
+  return out + trials_table(found.at("by").get<std::string>(), found.at("trials")) + "</body></html>\n";
 }
 
 }  // namespace

@@ -68,7 +68,11 @@ std::string safety_text(const Model& model, const SafetyResult& r) {
   int loose = 0;
   for (const SafetyTrial& t : r.trials) loose += t.outcome == "needles move";
   std::string out;
-  if (r.status == SafetyStatus::kBelow)
+  if (r.status == SafetyStatus::kBelow && r.stands > 0)
+    out = fmt::format(
+        "{}: between {:g} and {:g}, and sought no further below safety.lowest; give a smaller one\n", what,
+        r.stands, r.fails);
+  else if (r.status == SafetyStatus::kBelow)
     out = fmt::format("{}: below {:g}, the lowest tried; give a smaller safety.lowest\n", what, r.fails);
   else if (r.status == SafetyStatus::kAbove)
     out = fmt::format("{}: above {:g}, the highest tried; give a larger safety.highest\n", what, r.stands);
@@ -118,7 +122,7 @@ std::string safety_json(const Model& model, const SafetyResult& r) {
                     {"status", kStatus[static_cast<int>(r.status)]}};
   if (r.status == SafetyStatus::kFound)
     j[model.safety.by == SafetyBy::kStrength ? "factor_of_safety" : name_of(model.safety.by)] = r.factor();
-  if (r.status != SafetyStatus::kBelow) j["stands_at"] = r.stands;
+  if (r.stands > 0) j["stands_at"] = r.stands;
   if (r.status != SafetyStatus::kAbove) j["fails_at"] = r.fails;
   if (r.coarse > 0) j["factor_by_longer_rungs"] = r.coarse;
   j["tolerance"] = model.safety.tolerance;

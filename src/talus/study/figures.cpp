@@ -9,6 +9,7 @@
 #include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/output/files.h"
+#include "talus/output/page_style.h"
 #include "talus/output/text_table.h"
 #include "talus/plot/figure.h"
 
@@ -254,12 +255,7 @@ class Figures {
 };
 
 constexpr const char* kStyle = R"(
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 1100px; padding: 0 1rem; color: #222; background: #fff; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .2rem .6rem; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
 th { cursor: pointer; position: sticky; top: 0; background: #f5f5f5; }
-td.text, th.text { text-align: left; }
 tr.bad td { color: #a33; }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(480px, 1fr)); gap: 1rem; }
 .figures img { width: 100%; }
@@ -295,10 +291,10 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
   const std::string title = study.title.empty() ? "Study of " + study.model.filename().string() : study.title;
   std::string out = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
-      "content=\"width=device-width\"><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
+      "content=\"width=device-width\"><style>{7}{1}</style></head><body>\n<h1>{0}</h1>\n"
       "<p>{2} runs of <code>{3}</code>: {4} finished, {5} failed, {6} not valid, {7} missing.</p>\n",
       in_markup(title), kStyle, found.rows.size(), in_markup(study.model.filename().string()), found.finished,
-      found.failed, found.not_valid, found.missing);
+      found.failed, found.not_valid, found.missing, kPageStyle);
   for (const std::string& trouble : found.troubles) out += "<p><b>" + in_markup(trouble) + "</b></p>\n";
   if (!found.fragility.empty()) {
     out += fmt::format(

@@ -51,6 +51,12 @@ TEST_CASE("safety report: a trial without rest in which hardly anything moved is
   below.trials = {trial(0.5, false, "no rest", 1e-5)};
   below.fails = 0.5;
   CHECK(doubts(below));
+  const auto text_has = [&](const std::string& part) {
+    return safety_text(Model(), below).find(part) != std::string::npos;
+  };
+  CHECK(text_has("below 0.5, the lowest tried"));
+  below.stands = 0.4;  // on a ladder that was only stopped
+  CHECK(text_has("between 0.4 and 0.5, and sought no further below safety.lowest"));
   SafetyResult above;
   above.status = SafetyStatus::kAbove;
   above.trials = {trial(4, true, "at rest", 1e-5)};

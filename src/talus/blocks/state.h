@@ -97,6 +97,7 @@ struct Patch {
                           // elastic joints measure, the face of b of a strip
   bool touched = false;   // the two have been in touch here
   bool overlaps = false;  // they do
+  int16_t also = 0;       // with way the only ones that ContactPair::lead leaves; 0: none
   Vec2 normal;            // unit, from b into a; the tangent is the normal turned clockwise
   std::array<Vec2, 2> arm_a, arm_b;  // reference arms of the chord's ends, the first along the tangent first
   std::array<double, 2> closure{};   // at the ends, of what it bears; < 0: a gap [m]
@@ -130,6 +131,7 @@ struct ContactPair {
   // Joints carry the stress of the ground between blocks that share a face since the first step, and where
   // blocks that were near each other then come to share one.
   bool from_start = false, shares_face = false;
+  float lead = 0;     // [m] see PatchSearch
   double margin = 0;  // [m] gaps up to which they were sought
 };
 

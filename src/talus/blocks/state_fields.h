@@ -31,8 +31,9 @@ void each_field(Is<Contact> auto& c, auto&& f) {
 
 void each_field(Is<Patch> auto& p, auto&& f) {
   auto& [block_a, block_b, part_a, part_b, side_a, side_b, joint, other_joint, other_share, way, touched,
-         overlaps, normal, arm_a, arm_b, closure, gap, allowed, length, area, root_kept, force, stretch, slip,
-         slip_signed] = p;
+         overlaps, also, normal, arm_a, arm_b, closure, gap, allowed, length, area, root_kept, force, stretch,
+         slip, slip_signed] = p;
+  static_cast<void>(also);  // found anew
   f("block_a", block_a), f("block_b", block_b), f("part_a", part_a), f("part_b", part_b);
   f("side_a", side_a), f("side_b", side_b), f("joint", joint), f("other_joint", other_joint);
   f("other_share", other_share), f("touched", touched), f("overlaps", overlaps), f("normal", normal);
@@ -44,7 +45,8 @@ void each_field(Is<Patch> auto& p, auto&& f) {
 }
 
 void each_field(Is<ContactPair> auto& p, auto&& f) {
-  auto& [a, b, begin, count, face, joint, from_start, shares_face, margin] = p;
+  auto& [a, b, begin, count, face, joint, from_start, shares_face, lead, margin] = p;
+  static_cast<void>(lead);  // found anew
   f("a", a), f("b", b), f("begin", begin), f("count", count), f("face", face), f("joint", joint);
   f("from_start", from_start), f("shares_face", shares_face), f("margin", margin);
 }

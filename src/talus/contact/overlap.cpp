@@ -35,25 +35,41 @@ void keep(const std::vector<Vec2>& in, F value, std::vector<Vec2>& out) {
 
 }  // namespace
 
-// All sides of a part with how far the nearest corner of the other one is before each. No corner ends the loop: what a wrong
-// guess of a branch costs is more than all of it.
-PartsMeeting::Way* PartsMeeting::write_sides(bool of_b, Way* out) const {
-  const std::span<const Vec2> own = part(of_b).corner, along = part(of_b).along, other = part(!of_b).corner;
-  const Vec2 shift = shift_from(of_b);
-  for (size_t k = 0; k < own.size(); ++k) {
-    double furthest = -kAll;  // behind it, from the other part's origin
-    for (const Vec2 x : other) furthest = std::max(furthest, cross(along[k], x));
-    *out++ = {of_b, k, cross(along[k], own[k] - shift) - furthest};
+// A side with how far the nearest corner of the other part is before it. No corner ends the loop: what a wrong guess of a
+// branch costs is more than all of it.
+PartsMeeting::Way PartsMeeting::side_before(bool of_b, size_t k) const {
+  const Vec2 along = part(of_b).along[k];
+  double furthest = -kAll;  // behind it, from the other part's origin
+  for (const Vec2 x : part(!of_b).corner) furthest = std::max(furthest, cross(along, x));
+  return {of_b, k, cross(along, part(of_b).corner[k] - shift_from(of_b)) - furthest};
+}
+
+// find_ways() where all other ways are known to be behind these.
+void PartsMeeting::find_near_ways(std::array<int, 2> near, double margin) {
+  met_.kind = PartsMet::kFar;
+  sides_.resize(near.size());
+  size_t count = 0;
+  double widest = -kAll;
+  for (const int way : near) {
+    if (way == 0) break;
+    sides_[count] = side_before(way > 0, static_cast<size_t>(std::abs(way)) - 1);
+    widest = std::max(widest, sides_[count++].gap);
   }
-  return out;
+  if (widest > margin) return;
+  if (sides_[0].gap < widest - behind_) sides_[0] = sides_[1], count = 1;
+  if (count > 1 && sides_[1].gap < widest - behind_) count = 1;
+  ways_ = {sides_.data(), count};
+  met_.kind = widest >= -rounding_ ? PartsMet::kApart : PartsMet::kOverlap;
 }
 
 // Convex parts overlap unless a side of one has all of the other before it. What is behind the widest way out by more than
 // the step can change is no way.
-void PartsMeeting::find_ways(double margin, double rounding) {
+void PartsMeeting::find_ways(double margin) {
   met_.kind = PartsMet::kFar;
   sides_.resize(part_[0].size() + part_[1].size());
-  write_sides(false, write_sides(true, sides_.data()));
+  Way* out = sides_.data();
+  for (const bool of_b : {true, false})
+    for (size_t k = 0; k < part(of_b).size(); ++k) *out++ = side_before(of_b, k);
   double widest_out = -kAll, widest_shut = -kAll;
   for (const Way& w : sides_)
     if (role_of(w) == SideRole::kOut)
@@ -63,15 +79,21 @@ void PartsMeeting::find_ways(double margin, double rounding) {
   if (widest_out > margin || widest_shut > 0) return;
   const double least = widest_out - behind_;
   size_t count = 0;
+  double rest = -kAll;
+  near_ = {};
   for (const Way& w : sides_) {
     const SideRole role = role_of(w);
     const bool near = w.gap >= (role == SideRole::kOut ? least : std::min(0.0, least));
+    rest = std::max(rest, near ? -kAll : w.gap);
+    if (near && count < near_.size()) near_[count] = w.number();
     sides_[count] = w;
     count +=
         static_cast<size_t>(near && role != SideRole::kCut && (role == SideRole::kOut || !goes_on_free(w)));
   }
   ways_ = {sides_.data(), count};
-  if (count > 0) met_.kind = widest_out >= -rounding ? PartsMet::kApart : PartsMet::kOverlap;
+  const bool all_out = part_[0].role.empty() && part_[1].role.empty();
+  lead_ = all_out && count <= near_.size() ? widest_out - rest : 0;
+  if (count > 0) met_.kind = widest_out >= -rounding_ ? PartsMet::kApart : PartsMet::kOverlap;
 }
 
 // Whether a side that a third block ties goes on in its line as a way out: where a tie ends within a side, what is before the
@@ -94,8 +116,9 @@ bool PartsMeeting::goes_on_free(const Way& w) const {
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
 // What overlaps by no more than `before.by` touches, and keeps in the same way to the ways that it touches along.
 // Of two sides that lie on each other the longer one has the way: it is the better one as soon as they turn at all.
-void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before) {
-  motion_[0] = motion_a, motion_[1] = motion_b;
+void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b,
+                              const WayBefore& before) {
+  motion_ = {&motion_a, &motion_b};
   double widest = -kAll;
   for (const Way& w : ways_) widest = std::max(widest, w.gap);
   const auto better = [this](const Way& w, const Way& than) {
@@ -104,7 +127,10 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   };
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
-    w.then = w.gap < widest - behind_ ? -kAll : then_before(w);
+    if (w.gap >= widest - behind_)
+      look_ahead(w);
+    else
+      w.then = -kAll;
     if (!best || better(w, *best)) best = &w;
     if (w.number() == before.way) kept = &w;
   }
@@ -115,7 +141,7 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
     const Way* found = nullptr;
     for (Way& w : ways_) {
       if (!stands(w) || !may(w)) continue;
-      w.then = then_before(w);
+      look_ahead(w);
       if (!found || better(w, *found)) found = &w;
     }
     return found;
@@ -136,17 +162,16 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
         other = &w;
     best = other ? other : kept;
   }
-  met_.at_corner = false;
-  for (const Way& w : ways_)
-    if (!apart && &w != best && w.then >= best->then - before.by &&
-        facing_along(part(w.of_b).along[w.side]) <= before.by)
-      met_.at_corner = true;
   met_.tied = part(best->of_b).role_of(best->side) != SideRole::kOut;
   const Vec2 out = turn_right(part(best->of_b).along[best->side]);
   met_.way = best->number();
   met_.normal = best->of_b ? out : -out;
   (best->of_b ? met_.side_b : met_.side_a) = static_cast<int>(best->side);
-  (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(!best->of_b, *best, out));
+  (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(*best, out));
+  met_.at_corner = false;
+  for (const Way& w : ways_)
+    if (!apart && &w != best && w.then >= best->then - before.by)
+      met_.at_corner = met_.at_corner || !faces_along(part(w.of_b).along[w.side], before.by);
 }
 
 double PartsMeeting::side_length(bool of_b, size_t side) const {
@@ -156,25 +181,27 @@ double PartsMeeting::side_length(bool of_b, size_t side) const {
 
 // Where a place of the other part is going to be at the end of the step, seen from the origin of one.
 Vec2 PartsMeeting::then_at(bool of_b, Vec2 place) const {
-  const PartMotion &own = motion_[of_b], &other = motion_[!of_b];
+  const PartMotion &own = *motion_[of_b], &other = *motion_[!of_b];
   const Vec2 seen = place + shift_from(of_b);
   return seen + ((other.way + other.turn * place) - (own.way + own.turn * seen));
 }
 
-// How far the nearest corner of the other part is going to be before a side at the end of the step: one of those that
-// are not further now than the two move. What then_at() adds to a distance is linear in the place.
-double PartsMeeting::then_before(const Way& w) const {
-  const PartMotion &own = motion_[w.of_b], &other = motion_[!w.of_b];
+// How far the nearest corner of the other part is going to be before a side at the end of the step, one of those that
+// are not further now than the two move; and which is nearest now. What then_at() adds to a distance is linear in the place.
+void PartsMeeting::look_ahead(Way& w) const {
+  const PartMotion &own = *motion_[w.of_b], &other = *motion_[!w.of_b];
   const Vec2 out = turn_right(part(w.of_b).along[w.side]), shift = shift_from(w.of_b);
   const double at_origin = dot(out, shift - part(w.of_b).corner[w.side]);
   const double comes = dot(out, other.way - own.way - own.turn * shift);
   const Vec2 per_place = transpose(other.turn - own.turn) * out;
-  double least = kAll;
-  for (const Vec2 x : part(!w.of_b).corner) {
-    const double now = at_origin + dot(out, x), then = now + comes + dot(per_place, x);
-    least = std::min(least, now - w.gap > behind_ ? kAll : then);
+  double nearest = kAll;
+  w.then = kAll;
+  const std::span<const Vec2> corners = part(!w.of_b).corner;
+  for (size_t k = 0; k < corners.size(); ++k) {
+    const double now = at_origin + dot(out, corners[k]), then = now + comes + dot(per_place, corners[k]);
+    w.then = std::min(w.then, now - w.gap > behind_ ? kAll : then);
+    w.nearest = pick(now < nearest, k, w.nearest), nearest = std::min(nearest, now);
   }
-  return least;
 }
 
 // Whether two ways are of sides in one line.
@@ -213,32 +240,31 @@ bool PartsMeeting::pushed_off(const Way& w, Vec2 force) const {
   return false;
 }
 
-// Over how much of a line the two parts lie beside each other.
-double PartsMeeting::facing_along(Vec2 tangent) const {
-  double low = -kAll, high = kAll;
-  for (const bool of_b : {false, true}) {
-    double first = kAll, last = -kAll;
-    for (size_t k = 0; k < part(of_b).size(); ++k) {
-      const double s = dot(tangent, corner(of_b, k));
-      first = std::min(first, s), last = std::max(last, s);
+// Whether the two parts lie beside each other over more than `by` of a line. Where their sides that met do, they do.
+bool PartsMeeting::faces_along(Vec2 tangent, double by) const {
+  const auto more = [&](const std::array<size_t, 2>& first, const std::array<size_t, 2>& count) {
+    double low = -kAll, high = kAll;
+    for (const bool of_b : {false, true}) {
+      double from = kAll, to = -kAll;
+      for (size_t i = 0, k = first[of_b]; i < count[of_b]; ++i, k = after(k, part(of_b).size())) {
+        const double s = dot(tangent, corner(of_b, k));
+        from = std::min(from, s), to = std::max(to, s);
+      }
+      low = std::max(low, from), high = std::min(high, to);
     }
-    low = std::max(low, first), high = std::min(high, last);
-  }
-  return high - low;
+    return high - low > by;
+  };
+  return more({static_cast<size_t>(met_.side_a), static_cast<size_t>(met_.side_b)}, {2, 2}) ||
+         more({0, 0}, {part_[0].size(), part_[1].size()});
 }
 
-// Of the two sides at the corner of a part that is nearest to a way of the other, the one that faces it the most.
-size_t PartsMeeting::facing_side(bool of_b, const Way& way, Vec2 direction) const {
-  const PartNow& own = part(of_b);
-  size_t nearest = 0;
-  double most = -kAll;
-  for (size_t k = 0; k < own.size(); ++k) {
-    const double depth = depth_of(!of_b, way.side, corner(of_b, k));
-    nearest = pick(depth > most, k, nearest), most = std::max(most, depth);
-  }
-  const size_t before = nearest == 0 ? own.size() - 1 : nearest - 1;
-  return pick(dot(turn_right(own.along[before]), direction) < dot(turn_right(own.along[nearest]), direction),
-              before, nearest);
+// Of the two sides at the corner of the other part that is nearest to a way, the one that faces it the most.
+size_t PartsMeeting::facing_side(const Way& way, Vec2 direction) const {
+  const PartNow& other = part(!way.of_b);
+  const size_t before = ahead_of(way.nearest, other.size());
+  return pick(
+      dot(turn_right(other.along[before]), direction) < dot(turn_right(other.along[way.nearest]), direction),
+      before, way.nearest);
 }
 
 void PartsMeeting::clip() {
@@ -428,14 +454,16 @@ bool PartsMeeting::sum_up() {
 }
 
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
-                                   double rounding, LookFirst first) {
+                                   double rounding, const LookFirst& first) {
   part_[0] = a, part_[1] = b, origin_[1] = shift, rounding_ = rounding, behind_ = first.behind;
   is_strip_ = first.strip && first.way > 0 && static_cast<size_t>(first.way) <= b.size() &&
               measure_strip(true, static_cast<size_t>(first.way) - 1);
   if (is_strip_)
     met_.kind = PartsMet::kOverlap;
+  else if (first.near[0] != 0)
+    find_near_ways(first.near, margin);
   else
-    find_ways(margin, rounding);
+    find_ways(margin);
   return met_;
 }
 

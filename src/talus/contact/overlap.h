@@ -53,11 +53,13 @@ struct WayBefore {
 
 /// Where to look for two parts, which makes no difference to what is found: the way of the step before first, and
 /// whether it was that of a strip that was measured; by how much a way must be behind another one to be behind it at the
-/// end of the step too, and by more than WayBefore::by [m].
+/// end of the step too, and by more than WayBefore::by [m]; the ways that all others are known to be that far behind, as
+/// PartsMeeting::near_ways() tells them; 0: not known.
 struct LookFirst {
   int way = 0;
   bool strip = false;
   double behind = std::numeric_limits<double>::infinity();
+  std::array<int, 2> near{};
 };
 
 /// The part of an overlap that is nearest to one side of a block.
@@ -109,14 +111,23 @@ class PartsMeeting {
   /// @param rounding  overlaps up to this have no shape: the parts are apart, by less than nothing [m]
   /// @param first     makes no difference to what is found. choose_way() wants no strip.
   const PartsMet& look(const PartNow& a, const PartNow& b, Vec2 shift, double margin, double rounding,
-                       LookFirst first = {});
+                       const LookFirst& first = {});
+
+  /// The ways that were not behind by LookFirst::behind, if they are one or two: numbers as PartsMet::way, 0: none.
+  /// @pre  look() found the two apart or in overlap
+  std::array<int, 2> near_ways() const { return near_; }
+
+  /// By how much all other ways are behind the first of those at least [m]; 0: there are more, or sides are tied or cuts.
+  /// @pre  look() without LookFirst::near found them apart or in overlap
+  double lead() const { return lead_; }
 
   /// Normal and sides by the way along which the two are furthest apart, or least in each other, at the end of the
   /// step. What is apart and not along that way is kFar from now on.
-  /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last
+  /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last; seen until the next
+  ///                  look()
   /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
   /// @pre  look() found them apart or in overlap
-  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, WayBefore before = {});
+  void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, const WayBefore& before = {});
 
   /// The sides at the corner where the two meet by the way that was chosen, if a corner of one is on a corner of the other
   /// and no two of them lie on each other or in one line.
@@ -153,8 +164,9 @@ class PartsMeeting {
   struct Way {
     bool of_b;
     size_t side;
-    double gap;       // of its nearest corner, < 0: behind it
-    double then = 0;  // the same at the end of the step
+    double gap;          // of its nearest corner, < 0: behind it
+    double then = 0;     // the same at the end of the step
+    size_t nearest = 0;  // that corner
 
     int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
   };
@@ -166,8 +178,9 @@ class PartsMeeting {
     double s, n;  // along the tangent and the normal [m]
   };
 
-  void find_ways(double margin, double rounding);
-  Way* write_sides(bool of_b, Way* out) const;
+  void find_near_ways(std::array<int, 2> near, double margin);
+  void find_ways(double margin);
+  Way side_before(bool of_b, size_t k) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {
@@ -192,15 +205,15 @@ class PartsMeeting {
   bool share_a_place(size_t cell, size_t other) const;
   bool sum_up();
   Vec2 then_at(bool of_b, Vec2 place) const;
-  double then_before(const Way& w) const;
+  void look_ahead(Way& w) const;
   double side_length(bool of_b, size_t side) const;
   bool in_line(const Way& one, const Way& two) const;
   bool stands_at(const Way& w) const;
   bool pushed_off(const Way& w, Vec2 force) const;
-  double facing_along(Vec2 tangent) const;
+  bool faces_along(Vec2 tangent, double by) const;
   void add_corner_sides(bool of_b, size_t at, double level);
   Vec2 along(const CornerSide& c) const { return part(c.of_b).along[c.side]; }
-  size_t facing_side(bool of_b, const Way& way, Vec2 direction) const;
+  size_t facing_side(const Way& way, Vec2 direction) const;
   void see_face(bool of_b);
   bool see_gaps();
   bool ends_of_sides(Gap& low, Gap& high) const;
@@ -212,9 +225,11 @@ class PartsMeeting {
   /// Of the other part's origin, seen from that of one.
   Vec2 shift_from(bool of_b) const { return origin_[!of_b] - origin_[of_b]; }
 
-  PartNow part_[2];           // a and b
-  Vec2 origin_[2];            // of their places, seen from that of a
-  std::vector<Way> sides_;    // of b, of a; then what of them are ways
+  PartNow part_[2];         // a and b
+  Vec2 origin_[2];          // of their places, seen from that of a
+  std::vector<Way> sides_;  // of b, of a; then what of them are ways
+  std::array<int, 2> near_{};
+  double lead_ = 0;
   std::span<Way> ways_;       // those that are not too far behind
   Polygon region_, bearing_;  // the overlap; the corners of what of it bears
   mutable Polygon work_;
@@ -231,8 +246,8 @@ class PartsMeeting {
   size_t next_piece_ = 0;
   mutable std::vector<double> low_, high_, middle_;
   std::vector<Gap> gaps_;
-  std::vector<Seen> seen_, face_[2];  // all corners of a part; those of a and b that face the other
-  PartMotion motion_[2];              // of a and b
+  std::vector<Seen> seen_, face_[2];           // all corners of a part; those of a and b that face the other
+  std::array<const PartMotion*, 2> motion_{};  // of a and b, as choose_way() was told
   std::vector<CornerSide> corner_sides_;
   // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those
   // and the faces, which part it is that ends, and where its end meets the two faces.

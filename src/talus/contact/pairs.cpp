@@ -193,6 +193,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
     FollowedPair as_followed;
     if (known != before.end() && known->a == a && known->b == b) {
       pair = *known;
+      pair.lead = 0;
       if (!state.followed.empty()) as_followed = state.followed[static_cast<size_t>(known - before.begin())];
     } else {
       pair.a = a, pair.b = b;

@@ -6,7 +6,6 @@
 
 #include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
-#include "talus/contact/overlap.h"
 
 namespace talus {
 
@@ -17,6 +16,9 @@ constexpr size_t kPatchGrain = 256;
 
 // What coordinates are rounded to, a hundred times.
 constexpr double kRounding = 1e-14;
+
+// Copied where a patch begins: cheaper than to begin its many fields one by one.
+const Patch kFresh;
 
 // The fields of two normals are one field while these turn by less than 60 deg.
 constexpr double kSameWay = 0.5;
@@ -48,13 +50,19 @@ class PairSearch {
     highest_ = 0;
     for (const Patch& p : any_rises_ ? known_ : std::span<const Patch>{})
       highest_ = std::max({highest_, rise(p, 0), rise(p, 1)});
-    rounding_ = kRounding * (norm(shift_) + w_.blocks.radius[a] + w_.blocks.radius[b]);
+    distance_ = norm(shift_);
+    rounding_ = kRounding * (distance_ + w_.blocks.radius[a] + w_.blocks.radius[b]);
     margin_ = std::max(kMarginShare * size_, 2 * approach_ + 2 * highest_);
+    gone_ = gone_since_list();
+    lead_ = std::numeric_limits<double>::infinity();
     const Outlines& o = w_.outlines;
     for (int p = o.part_begin[a]; p < o.part_begin[a + 1]; ++p)
       for (int q = o.part_begin[b]; q < o.part_begin[b + 1]; ++q) look_at_parts(p, q, out);
     return margin_;
   }
+
+  // ContactPair::lead of the pair that was looked at, rounded down.
+  float lead() const { return static_cast<float>((1 - 1e-6) * std::max(0.0, lead_)); }
 
   double born() const { return born_; }
 
@@ -73,17 +81,23 @@ class PairSearch {
 
   // By how much a way must be behind another to stay so in this step: twice what any place of one block moves at most as the
   // other one sees it.
-  double behind(Vec2 shift) const {
+  double behind(double lifted) const {
     const auto &a = search_.now_[static_cast<size_t>(pair_->a)],
                &b = search_.now_[static_cast<size_t>(pair_->b)];
-    return 2 * (norm(a.way - b.way) + (a.turns + b.turns) * (norm(shift) + a.reach + b.reach)) +
+    return 2 * (norm(a.motion.way - b.motion.way) +
+                (a.turns + b.turns) * (distance_ + lifted + a.reach + b.reach)) +
            kLevel * size_;
   }
 
-  PartMotion motion(int block) const {
-    const auto& now = search_.now_[static_cast<size_t>(block)];
-    return {now.way, now.turn};
+  // By how much one way may have come nearer to another since the list of pairs was made: twice what any place of one block
+  // moves at most as the other one sees it, whose sides turn too.
+  double gone_since_list() const {
+    const auto &a = search_.now_[static_cast<size_t>(pair_->a)],
+               &b = search_.now_[static_cast<size_t>(pair_->b)];
+    return 2 * (a.gone + b.gone + 2 * (a.turned + b.turned) * (distance_ + a.reach + b.reach));
   }
+
+  const PartMotion& motion(int block) const { return search_.now_[static_cast<size_t>(block)].motion; }
 
   // On block a [N].
   static Vec2 force_of(const Patch& p) {
@@ -153,7 +167,10 @@ class PairSearch {
       lifted = 0.5 * (rise(*before, 0) + rise(*before, 1)), shift += lifted * before->normal;
     const bool measured = elastic_ && before && before->overlaps;
     LookFirst first{.way = before ? before->way : 0, .strip = measured};
-    if (!measured) first.behind = behind(shift);
+    if (!measured) first.behind = behind(lifted);
+    const bool ahead = !measured && before && !several && before->way != 0 && lifted == 0 && a.role.empty() &&
+                       b.role.empty() && static_cast<double>(pair_->lead) - gone_ > first.behind;
+    if (ahead) first.near = near_ways(*before);
     const PartsMet& met = meeting_.look(a, b, shift, margin_, rounding_, first);
     if (met.kind == PartsMet::kFar) return;
     // an overlap of elastic joints has its normal and sides from its cells
@@ -181,13 +198,30 @@ class PairSearch {
     if (!overlaps && met.length() <= kLevel * size_) return;
     Patch& patch = begin_patch(met, p, q, out);
     patch.joint = joint, patch.way = met.way;
+    if (ahead)
+      take_lead(first.near, pair_->lead, patch);
+    else
+      take_lead(meeting_.near_ways(), lifted > 0 ? 0 : meeting_.lead() - gone_, patch);
     finish(met, own(), shift, lifted, soft, patch);
+  }
+
+  // The ways of a patch that all others are behind, in the order in which they are looked at: those of b first.
+  static std::array<int, 2> near_ways(const Patch& p) {
+    const bool first =
+        p.also == 0 || ((p.way > 0) == (p.also > 0) ? std::abs(p.way) < std::abs(p.also) : p.way > 0);
+    return first ? std::array<int, 2>{p.way, p.also} : std::array<int, 2>{p.also, p.way};
+  }
+
+  void take_lead(std::array<int, 2> near, double lead, Patch& patch) {
+    const int also = near[0] == patch.way ? near[1] : near[0];
+    patch.also = static_cast<int16_t>(also);
+    lead_ = std::min(lead_, patch.also == also ? lead : 0);
   }
 
   // Of hard contacts without the ways that a third block fills.
   void choose_way(const Patch* before, Vec2 shift, int p, int q) {
     const WayBefore known{before ? before->way : 0, kLevel * size_, before ? force_of(*before) : Vec2{}};
-    const PartMotion a = motion(pair_->a), b = motion(pair_->b);
+    const PartMotion &a = motion(pair_->a), &b = motion(pair_->b);
     meeting_.choose_way(a, b, known);
     if (elastic_) return;
     const std::span<CornerSide> sides = meeting_.sides_at_corner(known.by);
@@ -230,7 +264,7 @@ class PairSearch {
   }
 
   Patch& begin_patch(const PartsMet& met, int p, int q, std::vector<Patch>& out) const {
-    Patch& patch = out.emplace_back();
+    Patch& patch = out.emplace_back(kFresh);
     patch.block_a = pair_->a, patch.block_b = pair_->b, patch.part_a = p, patch.part_b = q;
     patch.side_a = edge_of(p, met.side_a), patch.side_b = edge_of(q, met.side_b);
     patch.overlaps = met.kind == PartsMet::kOverlap;
@@ -524,6 +558,8 @@ class PairSearch {
   std::span<const Patch> known_;
   double born_ = 0;  // of all pairs: as PatchSearch::born()
   double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
+  double distance_ = 0;         // of the two centroids
+  double gone_ = 0, lead_ = 0;  // that of all patches
   std::vector<SideRole> roles_a_, roles_b_;
   std::vector<std::pair<int, double>> shares_;
 };
@@ -542,7 +578,9 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
                               const State& state) {
   const Outlines& o = world.outlines;
   const BlockSet& blocks = world.blocks;
-  corner_.resize(o.corner.size()), along_.resize(o.corner.size()), tied_to_.resize(o.corner.size());
+  const CandidateList& list = state.candidates;
+  corner_.resize(o.corner.size()), along_.resize(o.corner.size());
+  if (std::find(o.plain.begin(), o.plain.end(), false) != o.plain.end()) tied_to_.resize(o.corner.size());
   bare_.resize(o.plain.size());
   now_.resize(state.strain_part.size());
   workers.for_chunks(static_cast<size_t>(blocks.count), 1024, [&](size_t begin, size_t end) {
@@ -555,9 +593,10 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
       now_[i] = {back,
                  norm(turned) * blocks.radius[i],
                  turning_speed(blocks, ahead.before, i),
-                 ahead.clock.dt * v.a,
-                 turn,
-                 norm(turn)};
+                 {ahead.clock.dt * v.a, turn},
+                 norm(turn),
+                 norm(state.displacement[i] - list.displacement[i]),
+                 norm(h - list.strain_part[i]) * norm(back)};
       for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p)
         place_part(world, state, i, static_cast<size_t>(p));
     }
@@ -599,6 +638,7 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
             pair.from_start && std::binary_search(world.outlines.closed.begin(), world.outlines.closed.end(),
                                                   std::pair(pair.a, pair.b));
       pair.margin = search.look(pair, found);
+      pair.lead = search.lead();
       changed.met += !found.empty();
       if (static_cast<int>(found.size()) == pair.count) {
         std::copy(found.begin(), found.end(), state.patches.begin() + pair.begin);

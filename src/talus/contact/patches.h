@@ -6,6 +6,7 @@
 #include "talus/contact/bonds.h"
 #include "talus/contact/contact_give.h"
 #include "talus/contact/outlines.h"
+#include "talus/contact/overlap.h"
 #include "talus/contact/pairs.h"
 
 namespace talus {
@@ -21,6 +22,10 @@ struct PatchWorld {
 };
 
 /// Memory of the search from step to step; nothing of it matters to the result.
+///
+/// Nor does ContactPair::lead: by how much all ways of a pair were behind those of its patches when the list of pairs was
+/// made, at least; 0: not known. What the two may have moved since then, and then what they move in a step, uses it up
+/// (theory 3.3).
 class PatchSearch {
  public:
   /// Brings state.patches up to date with how the blocks lie (theory 3.2 to 3.8).
@@ -35,12 +40,13 @@ class PatchSearch {
  private:
   std::vector<Vec2> corner_, along_;  // of all parts as they lie, from each block's centroid
   struct BlockNow {
-    Mat2 back;       // F inverted
-    double reach;    // from its centroid, at most [m]
-    double turning;  // speed of its corners beside that of the centroid, at most [m/s]
-    Vec2 way;        // its motion in the step to come: a place x from its centroid by way + turn x [m]
-    Mat2 turn;
-    double turns;  // norm of that
+    Mat2 back;          // F inverted
+    double reach;       // from its centroid, at most [m]
+    double turning;     // speed of its corners beside that of the centroid, at most [m/s]
+    PartMotion motion;  // in the step to come, from its centroid
+    double turns;       // norm of how it turns
+    double gone;        // of its centroid since the list of pairs was made [m]
+    double turned;      // how far it has turned and deformed since then [-]
   };
   std::vector<BlockNow> now_;  // [blocks]
   // Of each side the block that an intact face ties it to, or one of these; of parts that are not bare.

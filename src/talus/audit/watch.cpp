@@ -31,13 +31,14 @@ double least_thickness(const Polygon& p) {
   return least;
 }
 
-// How fast the sides of a block turn or stretch at most in the step that follows [1/s].
-double turning(const Block& block) {
+// How fast the sides of a block turn or stretch at most [1/s].
+double turning(const Block& block, std::vector<Vec2> Block::*velocity) {
   const Polygon& p = block.polygon;
+  const std::vector<Vec2>& v = block.*velocity;
   double most = 0;
-  for (size_t k = 0; k < block.next.size(); ++k) {
+  for (size_t k = 0; k < v.size(); ++k) {
     const size_t after = (k + 1) % p.size();
-    most = std::max(most, norm(block.next[after] - block.next[k]) / norm(p[after] - p[k]));
+    most = std::max(most, norm(v[after] - v[k]) / norm(p[after] - p[k]));
   }
   return most;
 }
@@ -96,7 +97,7 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
   if (step.blocks[a].hold == Hold::kRemoved || step.blocks[b].hold == Hold::kRemoved) return;
   const double size = std::min(step.blocks[a].size, step.blocks[b].size);
   const Block shape_a = step.shape(before.block_a), shape_b = step.shape(before.block_b);
-  if (before.edge < -1) return judge_patch(step, before, mean, shape_a, shape_b, report);
+  if (before.edge < -1) return judge_patch(step, before, now, mean, shape_a, shape_b, report);
   const Vec2 place = shape_a.polygon[static_cast<size_t>(before.corner)];
   const auto e = static_cast<size_t>(before.edge), next = (e + 1) % shape_b.polygon.size();
   const Vec2 side = shape_b.polygon[next] - shape_b.polygon[e], normal = turn_right(side) / norm(side);
@@ -136,38 +137,43 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
                    before.normal_force, depth)});
 }
 
-// A patch without its force: do the two still overlap there, and does nothing else push them apart?
-void Watch::judge_patch(const Step& step, const StepPoint& before, double mean, const Block& a,
-                        const Block& b, Report& report) const {
+// A patch without its force: do the two still overlap where they have carried it to, and does nothing else push them apart?
+void Watch::judge_patch(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
+                        const Block& a, const Block& b, Report& report) const {
   const double size = std::min(step.blocks[static_cast<size_t>(before.block_a)].size,
                                step.blocks[static_cast<size_t>(before.block_b)].size);
+  const Vec2 place = before.place + 0.5 * step.step *
+                                        (velocity_at(a, before.place, &Block::velocity) +
+                                         velocity_at(b, before.place, &Block::velocity));
   const auto moves = [&](std::vector<Vec2> Block::*velocity) {
-    return velocity_at(a, before.place, velocity) - velocity_at(b, before.place, velocity);
+    return velocity_at(a, place, velocity) - velocity_at(b, place, velocity);
   };
   const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
   const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance +
                          rules_.give * before.normal_force + 3 * step.step * speed;
   // both surfaces must lie that deep in the other block
-  const double depth = depth_in(a.polygon, before.place) + depth_in(b.polygon, before.place);
+  const double depth = depth_in(a.polygon, place) + depth_in(b.polygon, place);
   if (depth <= allowed) return;
   // hard, and keeps the overlap that it has: it lets go, but for the arc by which corners leave their tangent in a step
   const auto arc = [&](const Block& x, int block) {
-    const double turn = step.step * turning(x);
+    const double turn = step.step * turning(x, &Block::next);
     return 0.5 * turn * turn * step.blocks[static_cast<size_t>(block)].radius;
   };
-  if (before.hard && step.step * dot(before.normal, moves(&Block::next)) >
+  // the normal has turned with one of the two; one of another way is another contact
+  const double turned = step.step * (turning(a, &Block::velocity) + turning(b, &Block::velocity));
+  const bool same_way = now && norm(now->normal - before.normal) <= turned;
+  if (before.hard && step.step * dot(same_way ? now->normal : before.normal, moves(&Block::next)) >
                          -(2 * rules_.tolerance + arc(a, before.block_a) + arc(b, before.block_b)))
     return;
   const double near = kSamePlace * size + step.step * speed;
   for (const StepPoint& p : step.points) {
     if (p.normal_force <= 0) continue;
     if (pair_of(p) == pair_of(before)) return;
-    if ((p.block_a == before.block_a || p.block_b == before.block_a) && norm(p.place - before.place) <= near)
-      return;
+    if ((p.block_a == before.block_a || p.block_b == before.block_a) && norm(p.place - place) <= near) return;
   }
   const bool invalid = depth > kDeep * size || (depth > kFirm * size && before.normal_force > kCounts * mean);
   report.add(
-      {Defect::kForceVanished, invalid, before.block_a, before.block_b, step.time, before.place, depth / size,
+      {Defect::kForceVanished, invalid, before.block_a, before.block_b, step.time, place, depth / size,
        fmt::format("a force of {:.4g} N is gone from one step to the next, while the two overlap by {:.3g} m",
                    before.normal_force, depth)});
 }

@@ -59,8 +59,8 @@ class Watch {
   void forces_gone(const Step& step, Report& report) const;
   void judge(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
              Report& report) const;
-  void judge_patch(const Step& step, const StepPoint& before, double mean, const Block& a, const Block& b,
-                   Report& report) const;
+  void judge_patch(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
+                   const Block& a, const Block& b, Report& report) const;
   void blocks_through(const Step& step, Report& report) const;
   bool went_through(const Step& step, int i, int j, Vec2& at) const;
 

@@ -114,6 +114,48 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "audit watch: a hard patch that keeps an overlap is judged where the blocks have carried it, along its normal there") {
+  // both move by 8 mm a step; the block turns by 5 mrad a step about its centroid
+  const double d = 0.02, spin = 5, dt = 1e-3;
+  const Vec2 along{8, 0};
+  const auto vanished = [&](double closing, double tilt, bool normal_turns) {
+    Two t;
+    const Vec2 at{0.5, -0.5 * d};
+    for (const bool held : {true, false}) {
+      const Vec2 gone = held ? Vec2{} : dt * along;
+      const double angle = held || !normal_turns ? 0 : tilt;
+      const std::vector<StepPoint> points{
+          {0, 2, 1, -2, held ? 1e5 : 0, -d, true, at + gone, {std::sin(angle), -std::cos(angle)}}};
+      const std::vector<Vec2> centroid{Vec2{0.5, -0.5} + gone, Vec2{0.5, 0.5 - d} + gone};
+      t.watch.look({held ? 1.0 : 2.0, dt, points, centroid, t.blocks,
+                    [&](int i) {
+                      Block block{Hold::kFree,
+                                  i == 0 ? box_polygon(-1 + gone.x, -1, 2 + gone.x, 0)
+                                         : box_polygon(gone.x, -d, 1 + gone.x, 1 - d),
+                                  {}};
+                      for (const Vec2 x : block.polygon) {
+                        // the block turns about the place of the patch, and slides to the left
+                        const Vec2 turns = spin * Vec2{-(x - at - gone).y, (x - at - gone).x};
+                        block.velocity.push_back(i == 0 ? along : along + turns);
+                        block.next.push_back(i == 0 ? along : along + turns + Vec2{-2, -closing});
+                      }
+                      return block;
+                    }},
+                   t.report);
+    }
+    return t.count(Defect::kForceVanished) == 1;
+  };
+  // seen at the place of the step before it closes by 8 mm x 5 / s
+  CHECK(!vanished(0, 0, true));
+  CHECK(vanished(15e-3, 0, true));
+  // a normal that has turned by 4 mrad: what slides at 2 m/s parts along it by 8 mm/s
+  CHECK(!vanished(15e-3, 4e-3, true));
+  CHECK(vanished(15e-3, 4e-3, false));
+  // not so a normal that has turned by more than the blocks
+  CHECK(vanished(15e-3, 30e-3, true));
+}
+
+TEST_CASE(
     "audit watch: how deep the two are in each other, and how large the force was, says whether it counts") {
   struct Gone {
     double depth, force;  // of a block of 1 m, with another force of 1e5 N

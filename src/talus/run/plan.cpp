@@ -10,6 +10,7 @@
 
 #include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
+#include "talus/run/resolution.h"
 #include "talus/run/rigid_step.h"
 #include "talus/step/change.h"
 
@@ -20,18 +21,23 @@ namespace {
 constexpr double kWarnClampShare = 0.03;
 constexpr double kMostSteps = 1e12;
 
-// Value that a share of the deformable blocks is below; infinite without any.
-double share_of_deformable(const BlockSet& blocks, double share, const std::function<double(int)>& value) {
+bool deforms(const BlockSet& blocks, int i) {
+  return blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable;
+}
+
+// Value that a share of some blocks is below; infinite without any.
+double value_of_share(const BlockSet& blocks, double share, bool (*counts)(const BlockSet&, int),
+                      const std::function<double(int)>& value) {
   std::vector<double> values;
   for (int i = 0; i < blocks.count; ++i)
-    if (blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable) values.push_back(value(i));
+    if (counts(blocks, i)) values.push_back(value(i));
   if (values.empty()) return std::numeric_limits<double>::infinity();
   const auto n = static_cast<double>(values.size());
   return value_at_rank(std::move(values), static_cast<size_t>(std::min(share * n, n - 1)));
 }
 
 double median_of_deformable(const BlockSet& blocks, const std::function<double(int)>& value) {
-  return share_of_deformable(blocks, 0.5, value);
+  return value_of_share(blocks, 0.5, deforms, value);
 }
 
 double median_step(const BlockSet& blocks) {
@@ -47,34 +53,52 @@ double crossing_time(const BlockSet& b) {
   });
 }
 
-// Step of implicit stages without local damping, in inverse angular frequencies of a block on its joints:
-// three to a swing.
+// Step without local damping, in inverse angular frequencies of a block on its joints: three to a swing.
 constexpr double kJointSteps = 2;
 
 // Share of the blocks whose swing on their joints a step need not resolve: slivers.
 constexpr double kUnresolved = 0.1;
 
-// Inverse angular frequency of nearly the quickest block on the elastic joints around it: the longest step in
-// which local damping, which opposes the force of now, still brakes and does not drive. Infinite without such
-// joints.
+// Inverse angular frequency of nearly the quickest block, of those that deform or, where none does, of those that move, on
+// the elastic joints around it: the longest step in which local damping, which opposes the force of now, still brakes and
+// does not drive. Infinite without such joints.
 double joint_time(const Scene& scene, const BlockSet& b) {
-  const std::vector<JointLaw>& laws = scene.laws;
-  return share_of_deformable(b, kUnresolved, [&](int i) {
+  const auto stiffness_of = [&](int joint, double area) {
+    if (joint < 0) return 0.0;
+    const JointLaw& law = scene.laws[static_cast<size_t>(joint)];
+    return !law.bonded() && law.is_soft(0) ? law.stiffness(0, area) : 0.0;
+  };
+  // joints between groups go before those of sides
+  const auto of_group = [&](int group, double area) {
+    double most = 0;
+    for (const auto& [pair, joint] : scene.layout.pair_joint)
+      if (pair.first == group || pair.second == group) most = std::max(most, stiffness_of(joint, area));
+    return most;
+  };
+  const bool any_deforms = std::count(b.kind.begin(), b.kind.end(), BlockKind::kDeformable) > 0;
+  const auto moves = [](const BlockSet& blocks, int i) { return blocks.moves_freely(i); };
+  return value_of_share(b, kUnresolved, any_deforms ? deforms : +moves, [&](int i) {
     const auto k = static_cast<size_t>(i);
     const std::vector<int>& joints = scene.layout.blocks[k].edge_joint;
     double stiffness = 0;
     const int corners = b.vertex_begin[k + 1] - b.vertex_begin[k];
     for (int e = 0; e < corners; ++e) {
+      const double area = scene.model.thickness * norm(b.corner({i, (e + 1) % corners}) - b.corner({i, e}));
       const int joint = static_cast<size_t>(e) < joints.size() ? joints[static_cast<size_t>(e)]
                                                                : scene.layout.default_joint;
-      if (joint < 0) continue;
-      const JointLaw& law = laws[static_cast<size_t>(joint)];
-      const double length = norm(b.corner({i, (e + 1) % corners}) - b.corner({i, e}));
-      if (!law.bonded() && law.is_soft(0)) stiffness += law.stiffness(0, length * scene.model.thickness);
+      stiffness += std::max(stiffness_of(joint, area), of_group(b.group[k], area));
     }
     // half of the sides hold it along either direction
     return stiffness > 0 ? std::sqrt(b.mass[k] / (0.5 * stiffness)) : std::numeric_limits<double>::infinity();
   });
+}
+
+// Shortest period of what shakes or pushes in a stage.
+double period_of_histories(const Scene& scene, const StageInput& stage) {
+  double highest = 0;
+  if (stage.kind == StageKind::kDynamic)
+    for (const Resolution& r : resolutions(scene)) highest = std::max(highest, r.frequency);
+  return highest > 0 ? 1 / highest : std::numeric_limits<double>::infinity();
 }
 
 // Conventional DDA has no stable limit, and damps what a step does not resolve. Static stages know no inertia: a block of
@@ -146,14 +170,16 @@ StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& 
           : ColumnStep{};
   double wanted =
       std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
+  const double by_joints = (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks);
   if (scene.model.formulation == Formulation::kPenalty)
     wanted = step_by_penalty(scene.model, blocks, stage, wanted);
   else if (stage.implicit)
-    wanted = std::min(wanted, (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks));
+    wanted = std::min({wanted, by_joints, period_of_histories(scene, stage) / kStepsPerPeriod});
   if (!std::isnan(stage.time_step)) {
     wanted = stage.time_step;
   } else if (bound.block < 0) {
     wanted = std::min(rigid_step(staged, stage), stage.safety * column.dt);
+    if (scene.model.formulation == Formulation::kContactForces) wanted = std::min(wanted, by_joints);
     if (std::isinf(wanted)) {
       findings.error(
           stage.where, path + ".time_step",

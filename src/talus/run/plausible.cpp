@@ -24,8 +24,6 @@ constexpr double kLeastHeld = 0.05, kMostClosing = 0.05;
 // A history that stands beyond its end at more than this share of its peak drives on; one that lasts so many
 // times as long as all stages hardly begins; shaking of so many times gravity is no earthquake.
 constexpr double kDrivesOn = 0.05, kHardlyBegins = 10, kMostShaking = 10;
-// A step that is a larger share of the shortest period of a motion does not follow it.
-constexpr double kStepsPerPeriod = 10;
 
 class Plausible {
  public:
@@ -197,12 +195,11 @@ class Plausible {
       for (size_t i = 0; i < plans_.size(); ++i) {
         const StageInput& stage = model_.stages[i];
         if (stage.kind != StageKind::kDynamic || !(r.frequency > 0)) continue;
-        if (std::isnan(stage.time_step) && !stage.implicit) continue;  // what its blocks ask for
+        if (std::isnan(stage.time_step)) continue;
         const double most = 1 / (kStepsPerPeriod * r.frequency);
         if (plans_[i].dt <= most) continue;
         const History& h = model_.histories[static_cast<size_t>(r.history)];
-        findings_.warning(std::isnan(stage.time_step) ? stage.where : stage.where_step,
-                          "stage." + stage.name + ".time_step",
+        findings_.warning(stage.where_step, "stage." + stage.name + ".time_step",
                           fmt::format("{:.3g} s is long for history \"{}\", which has {:.3g} Hz in it",
                                       plans_[i].dt, h.name, r.frequency),
                           fmt::format("{:.2g} s would be a tenth of its shortest period", most));

@@ -25,6 +25,9 @@ double highest_frequency(const History& history, InputKind kind);
 /// Speed of the slowest plane wave through the ground, of any direction [m/s].
 double slowest_wave(const Ground& ground);
 
+/// Steps to the shortest period of a history: fewer make of it another one.
+inline constexpr double kStepsPerPeriod = 10;
+
 /// How one history's waves stand to the worst block.
 struct Resolution {
   int history = -1;

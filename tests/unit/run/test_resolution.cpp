@@ -185,6 +185,20 @@ TEST_CASE("resolution: blocks per wavelength, the line of check and the warning"
   CHECK(check_of(row_of(1, "kind = \"bonded\"", "static")).list.empty());
 }
 
+TEST_CASE(
+    "resolution: an automatic step of implicit elasticity is a tenth of the shortest period, and is not warned of") {
+  const std::string text = row_of(3) + "elasticity = \"implicit\"\n";
+  Findings findings("m.toml", text);
+  const double dt = prepare_run("m.toml", text, {}, findings).plans.at(0).dt;
+  CHECK(dt == doctest::Approx(0.1 / ricker_highest()).epsilon(0.05));
+  CHECK(findings.render() == "");
+  // a wave crosses two blocks of 2 m in less
+  const std::string still = row_of(3) + "elasticity = \"implicit\"\ntime_step = \"50 ms\"\n";
+  Findings warned("m.toml", still);
+  prepare_run("m.toml", still, {}, warned);
+  CHECK(warned.render().find("0.05 s is long for history \"wave\"") != std::string::npos);
+}
+
 TEST_CASE("resolution: every way to shake or push is seen, once per history; rigid blocks carry no waves") {
   std::string text = row_of(3);
   const size_t formula = text.find("expression"), line_end = text.find('\n', formula);

@@ -48,4 +48,14 @@ TEST_CASE("auto step of rigid blocks: a tenth of the thickness at the end of a f
   CHECK(step_of(1e4, "", 5) == doctest::Approx(0.1 * kThickness / 50).epsilon(1e-3));
 }
 
+TEST_CASE("auto step of rigid blocks: three to a swing on elastic joints, those of groups too") {
+  // 1000 kg; half of 3 m of sides at 10 GPa/m
+  const double wanted = 2 * std::sqrt(1000 / (0.5 * 3 * 10e9));
+  const std::string soft =
+      "[joint.soft]\nfriction_angle = \"30 deg\"\nnormal_stiffness = \"10 GPa/m\"\nshear_stiffness = \"5 GPa/m\"\n";
+  CHECK(step_of(0, soft + "[[contact_pair]]\nbetween = [\"a\", \"floor\"]\njoint = \"soft\"\n") ==
+        doctest::Approx(wanted).epsilon(1e-3));
+  CHECK(step_of(0, soft) > 2 * wanted);
+}
+
 }  // namespace test_rigid_step

@@ -138,12 +138,13 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
                      readable_seconds(r.wall_seconds), readable_seconds(r.cpu_seconds));
   if (r.steps > 0 && r.penalty == 0)
     out += fmt::format(
-        "  contact error   worst {:.2e} m at t = {:.4g} s; {} of {} steps not solved{}; {:.1f} iterations a "
+        "  contact error   worst {:.2e} m at t = {:.4g} s; {} of {} steps not solved{}{}; {:.1f} iterations a "
         "step, at most {}\n",
         r.worst_error, r.worst_error_time, r.failed_steps, r.steps,
         r.loose_steps > 0
             ? fmt::format(", {} loose (above the tolerance, within solver.limit)", r.loose_steps)
             : "",
+        r.cut_steps > 0 ? fmt::format(", {} cut into {} parts", r.cut_steps, r.parts) : "",
         static_cast<double>(r.iterations) / static_cast<double>(r.steps), r.most_iterations);
   if (r.steps > 0) {
     out += fmt::format(

@@ -36,6 +36,9 @@ RunResult::~RunResult() = default;
 
 namespace {
 
+// Into how many parts a dynamic step may be cut that no solver solves.
+constexpr int kMostParts = 64;
+
 // Overlap of a contact, as share of the thinner block, at which a run ends.
 constexpr double kMostClosed = 0.25;
 
@@ -309,6 +312,7 @@ class StagedRun::Runner {
     if (stage.from_rest && state_.time >= out.begin + stage.duration) return false;
     settings_.sharper = state_.rest.sharper;
     StepReport report;
+    double part = plan.dt;
     if (penalty_) {
       report = penalty_->report(state_);
     } else if (stage.from_rest) {
@@ -316,11 +320,14 @@ class StagedRun::Runner {
       if (!kicked) return follow_motion(from_rest_->why_not()), true;
       report = *kicked;
     } else {
-      report = kick(scene_, settings_, plan.dt, work_, state_);
+      report = kick_part(stage, part);
     }
     if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance_ / plan.dt_bound);
     show({scene_, state_, work_, report, plan, advance_, index, out.steps == 0, false, n});
-    go_on_or_fail(index, n, advance_, report);
+    // from the start of the stage, not by adding: the last step ends exactly on the stage's end
+    const double end = stage.from_rest ? state_.time + advance_ : out.begin + stage_time(n + 1);
+    go_on_or_fail(index, n, part < plan.dt ? state_.time + part : end, report);
+    if (part < plan.dt) go_on_in_parts(index, n, part, end, report);
     ++out.steps;
     if (stage.from_rest)
       from_rest_->lengthen(plan.dt, is_relaxed(stage, 0));
@@ -335,6 +342,33 @@ class StagedRun::Runner {
       return false;
     }
     return !watch_rest(stage, report, plan, n);
+  }
+
+  // A step, or of one that no solver solves the longest of its halves, quarters and so on that one does; the shortest
+  // as it is.
+  StepReport kick_part(const StageInput& stage, double& part) {
+    const double shortest = plans_[result_.stages.size() - 1].dt / kMostParts;
+    for (;; part *= 0.5) {
+      settings_.may_shorten = stage.kind == StageKind::kDynamic && scene_.by_patches() && part > shortest;
+      StepReport report = kick(scene_, settings_, part, work_, state_);
+      if (report.taken) return report;
+    }
+  }
+
+  // The rest of a step of which a part is over.
+  void go_on_in_parts(int index, int64_t n, double part, double end, StepReport& report) {
+    const StageInput& stage = scene_.model.stages[static_cast<size_t>(index)];
+    ++result_.cut_steps, ++result_.parts;
+    while (state_.time < end) {
+      const double left = end - state_.time;
+      const bool last = part > (1 - 1e-6) * left;
+      if (last) part = left;
+      double taken = part;
+      report = kick_part(stage, taken);
+      go_on_or_fail(index, n, last && taken == part ? end : state_.time + taken, report);
+      part = taken;
+      ++result_.parts;
+    }
   }
 
   void end_stage() {
@@ -353,13 +387,10 @@ class StagedRun::Runner {
 
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
   // and shown once more with everything in its place.
-  void go_on_or_fail(int index, int64_t n, double advance, StepReport& report) {
+  void go_on_or_fail(int index, int64_t n, double end, StepReport& report) {
     const StagePlan& plan = plans_[static_cast<size_t>(index)];
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
-    // from the start of the stage, not by adding: the last step ends exactly on the stage's end
-    const double end =
-        settings_.from_rest ? state_.time + advance : result_.stages.back().begin + stage_time(n + 1);
     try {
       note(report, state_);
       if (penalty_)
@@ -369,7 +400,7 @@ class StagedRun::Runner {
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
-      observer_.fails({scene_, state_, work_, report, plan, advance, index, n == 0, true, n});
+      observer_.fails({scene_, state_, work_, report, plan, advance_, index, n == 0, true, n});
       throw;
     }
   }

@@ -55,10 +55,10 @@ struct RunResult {
   bool interrupted = false;
   bool no_rest = false;    // a static stage ended without it
   bool mechanism = false;  // as something slides
-  // of conventional DDA: stiffness of its normal springs [N/m], steps cut into parts, parts in all, deepest penetration [m],
-  // largest pivot of its matrix over the smallest
+  int64_t cut_steps = 0, parts = 0;  // steps cut into parts, parts in all
+  // of conventional DDA: stiffness of its normal springs [N/m], deepest penetration [m], largest pivot of its matrix over the
+  // smallest
   double penalty = 0;
-  int64_t cut_steps = 0, parts = 0;
   double penetration = 0, condition = 1;
   std::string failure;  // text of the NumericalError that ended the run, "" otherwise
   double wall_seconds = 0, cpu_seconds = 0;

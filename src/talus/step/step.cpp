@@ -172,6 +172,7 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
     work.rate_expected = state.rate;
     std::fill(state.rate.begin(), state.rate.end(), BlockRate{});
   }
+  work.column_rate_before = state.column_rate;
   add_forces(scene, settings, work, state);
   predict(scene, scheme, work, state);
   profile.go_on_with(Profile::kMargins);
@@ -181,6 +182,11 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   profile.points += static_cast<int64_t>(work.rows.size());
   profile.go_on_with(Profile::kRest);
   solve_rows(scene, settings, work, state, report);
+  if (report.failed && settings.may_shorten) {
+    state.rate = work.rate_before, state.column_rate = work.column_rate_before;
+    report.taken = false;
+    return report;
+  }
   // what a stage does not wait for stays where it was when it was named, and presses as what slides or falls
   if (settings.from_rest)
     for (const int k : state.left_out) state.rate[static_cast<size_t>(k)] = {};

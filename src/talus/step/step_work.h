@@ -25,6 +25,7 @@ struct StepSettings {
   bool from_rest = false;        // backward Euler, and blocks stand after it (theory 4.23)
   bool near_expected = false;    // such a step is likely to end near the rates that the state comes with
   bool by_all = false;           // every solver may try, though a shorter step from rest could be taken
+  bool may_shorten = false;      // a step that is not solved is not taken
   bool keep_guess = false;       // StepWork::guess is wanted, for a problem file
 };
 
@@ -44,6 +45,7 @@ struct StepReport {
   std::string worst;    // name of the row with the worst error
   bool failed = false;  // error above the limit
   bool loose = false;   // above the tolerance, within the limit
+  bool taken = true;    // false: it has failed and may be shortened, and the state moves as before
   Attempts attempts;
   double closed_share = 0;  // largest overlap of a contact, as share of the thinner block there
   int closed_row = -1;      // its row
@@ -71,6 +73,7 @@ struct StepWork {
   std::vector<BlockRate> rate_before;
   std::vector<BlockRate> rate_expected;  // of a step from rest: those of the one before
   ColumnMotion columns;                  // of the free field
+  std::vector<Vec2> column_rate_before;  // State::column_rate before the kick
   KickWork work;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted

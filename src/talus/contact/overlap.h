@@ -123,8 +123,7 @@ class PartsMeeting {
 
   /// Normal and sides by the way along which the two are furthest apart, or least in each other, at the end of the
   /// step. What is apart and not along that way is kFar from now on.
-  /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last; seen until the next
-  ///                  look()
+  /// @param motion_a  in the step to come: parts that are apart meet along the way that is left last
   /// @param before    the way of the step before, and by how much another one must be better to be taken [m]
   /// @pre  look() found them apart or in overlap
   void choose_way(const PartMotion& motion_a, const PartMotion& motion_b, const WayBefore& before = {});
@@ -247,7 +246,7 @@ class PartsMeeting {
   mutable std::vector<double> low_, high_, middle_;
   std::vector<Gap> gaps_;
   std::vector<Seen> seen_, face_[2];           // all corners of a part; those of a and b that face the other
-  std::array<const PartMotion*, 2> motion_{};  // of a and b, as choose_way() was told
+  std::array<const PartMotion*, 2> motion_{};  // of a and b, while choose_way() looks
   std::vector<CornerSide> corner_sides_;
   // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those
   // and the faces, which part it is that ends, and where its end meets the two faces.

@@ -351,6 +351,7 @@ class StagedRun::Runner {
     for (;; part *= 0.5) {
       settings_.may_shorten = stage.kind == StageKind::kDynamic && scene_.by_patches() && part > shortest;
       StepReport report = kick(scene_, settings_, part, work_, state_);
+      settings_.may_shorten = false;  // nobody else could go on with less
       if (report.taken) return report;
     }
   }

@@ -357,7 +357,7 @@ class SnapshotObserver : public Observer {
  public:
   SnapshotObserver(const Problem& problem, const std::vector<StagePlan>& plans, const RunOptions& options)
       : problem_(problem), options_(options) {
-    for (const StagePlan& p : plans) steps_ += p.steps;
+    for (const StagePlan& p : plans) begin_.push_back(steps_), steps_ += p.steps;
   }
 
   void at(const Instant& i) override {
@@ -365,7 +365,9 @@ class SnapshotObserver : public Observer {
     ++summed_;
     add_rows(i, sum_);
     const int64_t every = std::max<int64_t>(1, steps_ / options_.snapshots);
-    if (i.last || (i.state.step % every == 0 && i.state.step > 0)) snapshots.push_back(snapshot(i));
+    // of whole steps: those that no solver solves to such a tolerance are taken in parts
+    const int64_t step = begin_[static_cast<size_t>(i.stage)] + i.steps_before;
+    if (i.last || (step % every == 0 && step > 0)) snapshots.push_back(snapshot(i));
   }
   void keep_state(const Standing& standing, const State& state) override {
     if (stop_here) kept = std::make_unique<std::pair<Standing, State>>(standing, state);
@@ -475,6 +477,7 @@ class SnapshotObserver : public Observer {
 
   const Problem& problem_;
   const RunOptions& options_;
+  std::vector<int64_t> begin_;  // of stages, in steps
   int64_t steps_ = 0;
   std::set<std::pair<int, int>> touched_;
   Snapshot sum_;  // forces since the last snapshot

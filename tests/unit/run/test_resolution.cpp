@@ -187,12 +187,12 @@ TEST_CASE("resolution: blocks per wavelength, the line of check and the warning"
 
 TEST_CASE(
     "resolution: an automatic step of implicit elasticity is a tenth of the shortest period, and is not warned of") {
-  const std::string text = row_of(3) + "elasticity = \"implicit\"\n";
+  // in blocks of 6 m, which a wave crosses two of in 23 ms
+  const std::string text = row_of(1) + "elasticity = \"implicit\"\n";
   Findings findings("m.toml", text);
   const double dt = prepare_run("m.toml", text, {}, findings).plans.at(0).dt;
-  CHECK(dt == doctest::Approx(0.1 / ricker_highest()).epsilon(0.05));
-  CHECK(findings.render() == "");
-  // a wave crosses two blocks of 2 m in less
+  CHECK(std::abs(dt * ricker_highest() / 0.1 - 1) < 0.05);
+  CHECK(findings.render().find("is long for history") == std::string::npos);
   const std::string still = row_of(3) + "elasticity = \"implicit\"\ntime_step = \"50 ms\"\n";
   Findings warned("m.toml", still);
   prepare_run("m.toml", still, {}, warned);

@@ -53,8 +53,8 @@ struct RunResult {
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;
   bool interrupted = false;
-  bool no_rest = false;    // a static stage ended without it
-  bool mechanism = false;  // as something slides
+  bool no_rest = false;              // a static stage ended without it
+  bool mechanism = false;            // as something slides
   int64_t cut_steps = 0, parts = 0;  // steps cut into parts, parts in all
   // of conventional DDA: stiffness of its normal springs [N/m], deepest penetration [m], largest pivot of its matrix over the
   // smallest

@@ -251,6 +251,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
     for (const size_t end : {0U, 1U}) rows.owner[next++] = {Family::kFace, static_cast<int>(2 * f + end)};
   }
 
+  const RowGive row_give(give, blocks, clock);
   const auto add = [&](size_t f, size_t at) {
     const BondFace& face = bonds.faces[f];
     const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
@@ -275,7 +276,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
           add_compliance(law, half_area, true, clock, u[end], p);
           p.partner = static_cast<int>(end == 0 ? at + 1 : at);
         }
-        const double most = give.row_compliance(blocks, face.block_a, face.block_b, clock);
+        const double most = row_give.between(face.block_a, face.block_b);
         p.gives = {most > 0 && !law.is_soft(0), most > 0 && !law.is_soft(1)};
         for (size_t row = 0; row < 2; ++row)
           if (p.gives[row]) p.row[row].compliance = most;

@@ -82,14 +82,19 @@ double ContactGive::per_force(double thickness) const {
   return stress > 0 ? 2 * kGiveClosure / (stress * thickness) : 0;
 }
 
-double ContactGive::row_compliance(const BlockSet& blocks, int a, int b, const StepClock& clock) const {
-  const double one = clock.dt * clock.dt_kick, give = per_force(blocks.thickness) / one;
-  if (give == 0) return 0;
+RowGive::RowGive(const ContactGive& give, const BlockSet& blocks, const StepClock& clock) : blocks_(blocks) {
+  const double one = clock.dt * clock.dt_kick;
+  const double shortest =
+      give.shortest_step > 0 ? give.shortest_step * give.shortest_step : clock.dt * clock.dt;
+  give_ = give.per_force(blocks.thickness) / one, per_yield_ = shortest / one / kLeastYield;
+}
+
+double RowGive::between(int a, int b) const {
+  if (give_ == 0) return 0;
   double yield = 0;  // about what two blocks yield at a corner, together [1/kg]
   for (const int block : {a, b})
-    if (blocks.moves_freely(block)) yield += kYield / blocks.mass[static_cast<size_t>(block)];
-  const double shortest = shortest_step > 0 ? shortest_step * shortest_step : clock.dt * clock.dt;
-  return std::min(give, shortest / one / kLeastYield * yield);
+    if (blocks_.moves_freely(block)) yield += kYield / blocks_.mass[static_cast<size_t>(block)];
+  return std::min(give_, per_yield_ * yield);
 }
 
 ContactGive contact_give(const Model& model, const Layout& layout, const BlockSet& blocks) {

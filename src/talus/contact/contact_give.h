@@ -28,9 +28,19 @@ struct ContactGive {
 
   /// Displacement of one contact point under a force, along the normal and along the tangent, at most [m/N].
   double per_force(double thickness) const;
+};
 
-  /// The same as compliance of a row between two blocks: no more than kLeastYield of them allows [1/kg].
-  double row_compliance(const BlockSet& blocks, int a, int b, const StepClock& clock) const;
+/// The same as compliance of rows in a step.
+class RowGive {
+ public:
+  RowGive(const ContactGive& give, const BlockSet& blocks, const StepClock& clock);
+
+  /// Between two blocks: no more than kLeastYield of them allows [1/kg].
+  double between(int a, int b) const;
+
+ private:
+  const BlockSet& blocks_;
+  double give_, per_yield_;  // [1/kg], [-]
 };
 
 /// By the largest stress that the model gives to be foreseen: of the ground, of its weight and of accelerations

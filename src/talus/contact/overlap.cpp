@@ -44,17 +44,49 @@ PartsMeeting::Way PartsMeeting::side_before(bool of_b, size_t k) const {
   return {of_b, k, cross(along, part(of_b).corner[k] - shift_from(of_b)) - furthest};
 }
 
-// find_ways() where all other ways are known to be behind these.
+PartsMeeting::Face PartsMeeting::face(bool of_b, size_t side) const {
+  const PartNow& own = part(of_b);
+  const bool last = side + 1 == own.size();
+  const size_t first = last ? 0 : side, second = last ? side : side + 1;
+  return {side, {first, second}, own.along[side], {own.corner[first], own.corner[second]}, {}};
+}
+
+// side_before() of a face and the ends of the other one.
+PartsMeeting::Way PartsMeeting::face_before(bool of_b, const Face& own, Face& other) const {
+  const Vec2 begin = own.place[own.corner[0] != own.side];
+  const double from = cross(own.along, begin - shift_from(of_b));
+  const double behind[2]{cross(own.along, other.place[0]), cross(own.along, other.place[1])};
+  other.before[0] = from - behind[0], other.before[1] = from - behind[1];
+  return {of_b, own.side, from - std::max(behind[0], behind[1])};
+}
+
+// By how much all corners of the other part are behind the ends of the side that faces.
+double PartsMeeting::corners_lead(bool of_b, size_t side, size_t facing) const {
+  const PartNow& other = part(!of_b);
+  const Vec2 along = part(of_b).along[side];
+  double ends = -kAll, rest = -kAll;
+  for (size_t k = 0; k < other.size(); ++k) {
+    double& most = k == facing || k == after(facing, other.size()) ? ends : rest;
+    most = std::max(most, cross(along, other.corner[k]));
+  }
+  return ends - rest;
+}
+
+// find_ways() where all other ways, and of one way of each part all other corners, are known to be behind these.
 void PartsMeeting::find_near_ways(std::array<int, 2> near, double margin) {
   met_.kind = PartsMet::kFar;
   sides_.resize(near.size());
-  size_t count = 0;
-  double widest = -kAll;
-  for (const int way : near) {
-    if (way == 0) break;
-    sides_[count] = side_before(way > 0, static_cast<size_t>(std::abs(way)) - 1);
-    widest = std::max(widest, sides_[count++].gap);
+  const auto side_of = [](int way) { return static_cast<size_t>(std::abs(way)) - 1; };
+  along_faces_ = near[0] > 0 && near[1] < 0;
+  size_t count = near[1] == 0 ? 1 : 2;
+  if (along_faces_) {
+    Face a = face(false, side_of(near[1])), b = face(true, side_of(near[0]));
+    sides_[0] = face_before(true, b, a), sides_[1] = face_before(false, a, b);
+    faces_[0] = a, faces_[1] = b;
+  } else {
+    for (size_t i = 0; i < count; ++i) sides_[i] = side_before(near[i] > 0, side_of(near[i]));
   }
+  const double widest = count == 1 ? sides_[0].gap : std::max(sides_[0].gap, sides_[1].gap);
   if (widest > margin) return;
   if (sides_[0].gap < widest - behind_) sides_[0] = sides_[1], count = 1;
   if (count > 1 && sides_[1].gap < widest - behind_) count = 1;
@@ -65,7 +97,7 @@ void PartsMeeting::find_near_ways(std::array<int, 2> near, double margin) {
 // Convex parts overlap unless a side of one has all of the other before it. What is behind the widest way out by more than
 // the step can change is no way.
 void PartsMeeting::find_ways(double margin) {
-  met_.kind = PartsMet::kFar;
+  met_.kind = PartsMet::kFar, along_faces_ = false;
   sides_.resize(part_[0].size() + part_[1].size());
   Way* out = sides_.data();
   for (const bool of_b : {true, false})
@@ -93,6 +125,9 @@ void PartsMeeting::find_ways(double margin) {
   ways_ = {sides_.data(), count};
   const bool all_out = part_[0].role.empty() && part_[1].role.empty();
   lead_ = all_out && count <= near_.size() ? widest_out - rest : 0;
+  if (lead_ > 0 && count == 2 && sides_[0].of_b && !sides_[1].of_b)
+    lead_ = std::min({lead_, corners_lead(true, sides_[0].side, sides_[1].side),
+                      corners_lead(false, sides_[1].side, sides_[0].side)});
   if (count > 0) met_.kind = widest_out >= -rounding_ ? PartsMet::kApart : PartsMet::kOverlap;
 }
 
@@ -115,23 +150,42 @@ bool PartsMeeting::goes_on_free(const Way& w) const {
 // the step. Where that is one that they are level along now and stay so, as corners of level blocks do that slide past
 // each other, nothing keeps them apart; where they would be in each other by more, the way is one that still has a gap.
 // What overlaps by no more than `before.by` touches, and keeps in the same way to the ways that it touches along.
-// Of two sides that lie on each other the longer one has the way: it is the better one as soon as they turn at all.
 void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& motion_b,
                               const WayBefore& before) {
-  motion_ = {&motion_a, &motion_b};
+  comes_ = {motion_a.way - motion_b.way + motion_b.turn * origin_[1], motion_a.turn - motion_b.turn};
+  const Way* best = along_faces_ ? best_face(before) : nullptr;
+  take_way(best ? *best : *best_way(before), before.by);
+}
+
+// Of two sides that lie on each other the longer one has the way: it is the better one as soon as they turn at all.
+bool PartsMeeting::is_better(const Way& w, const Way& than) const {
+  if (std::abs(w.then - than.then) > rounding_) return w.then > than.then;
+  return side_length(w.of_b, w.side) > side_length(than.of_b, than.side);
+}
+
+// What best_way() finds of two faces in one line that both stand, or neither; nullptr: of these best_way() finds it.
+const PartsMeeting::Way* PartsMeeting::best_face(const WayBefore& before) {
+  if (ways_.size() != 2 || !in_line(ways_[0], ways_[1])) return nullptr;
+  const bool apart = met_.kind == PartsMet::kApart;
+  const double in = apart ? rounding_ : before.by;
+  if ((ways_[0].gap >= -in) != (ways_[1].gap >= -in)) return nullptr;
+  look_ahead_from_face(ways_[0]), look_ahead_from_face(ways_[1]);
+  const Way& best = ways_[is_better(ways_[1], ways_[0])];
+  for (const Way& w : ways_)
+    if (!apart && w.number() == before.way && w.then >= best.then - before.by) return &w;
+  return &best;
+}
+
+const PartsMeeting::Way* PartsMeeting::best_way(const WayBefore& before) {
   double widest = -kAll;
   for (const Way& w : ways_) widest = std::max(widest, w.gap);
-  const auto better = [this](const Way& w, const Way& than) {
-    if (std::abs(w.then - than.then) > rounding_) return w.then > than.then;
-    return side_length(w.of_b, w.side) > side_length(than.of_b, than.side);
-  };
   const Way *best = nullptr, *kept = nullptr;
   for (Way& w : ways_) {
     if (w.gap >= widest - behind_)
       look_ahead(w);
     else
       w.then = -kAll;
-    if (!best || better(w, *best)) best = &w;
+    if (!best || is_better(w, *best)) best = &w;
     if (w.number() == before.way) kept = &w;
   }
   const bool apart = met_.kind == PartsMet::kApart;
@@ -142,7 +196,7 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
     for (Way& w : ways_) {
       if (!stands(w) || !may(w)) continue;
       look_ahead(w);
-      if (!found || better(w, *found)) found = &w;
+      if (!found || is_better(w, *found)) found = &w;
     }
     return found;
   };
@@ -154,24 +208,28 @@ void PartsMeeting::choose_way(const PartMotion& motion_a, const PartMotion& moti
   }
   if (apart && !stands(*best)) met_.kind = PartsMet::kFar;
   // what is apart would be struck by a way that it has passed
-  if (!apart && kept && kept->then >= best->then - before.by && (in_line(*kept, *best) || stands_at(*kept))) {
-    const Way* other = nullptr;
-    for (const Way& w : ways_)
-      if (w.then >= best->then - before.by && !in_line(w, *kept) && stands_at(w) &&
-          pushed_off(*kept, before.force) && (!other || better(w, *other)))
-        other = &w;
-    best = other ? other : kept;
-  }
-  met_.tied = part(best->of_b).role_of(best->side) != SideRole::kOut;
-  const Vec2 out = turn_right(part(best->of_b).along[best->side]);
-  met_.way = best->number();
-  met_.normal = best->of_b ? out : -out;
-  (best->of_b ? met_.side_b : met_.side_a) = static_cast<int>(best->side);
-  (best->of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(*best, out));
-  met_.at_corner = false;
+  if (apart || !kept || kept->then < best->then - before.by || !(in_line(*kept, *best) || stands_at(*kept)))
+    return best;
+  const Way* other = nullptr;
   for (const Way& w : ways_)
-    if (!apart && &w != best && w.then >= best->then - before.by)
-      met_.at_corner = met_.at_corner || !faces_along(part(w.of_b).along[w.side], before.by);
+    if (w.then >= best->then - before.by && !in_line(w, *kept) && stands_at(w) &&
+        pushed_off(*kept, before.force) && (!other || is_better(w, *other)))
+      other = &w;
+  return other ? other : kept;
+}
+
+void PartsMeeting::take_way(const Way& best, double by) {
+  met_.tied = part(best.of_b).role_of(best.side) != SideRole::kOut;
+  const Vec2 out = turn_right(part(best.of_b).along[best.side]);
+  met_.way = best.number();
+  met_.normal = best.of_b ? out : -out;
+  (best.of_b ? met_.side_b : met_.side_a) = static_cast<int>(best.side);
+  (best.of_b ? met_.side_a : met_.side_b) = static_cast<int>(facing_side(best, out));
+  met_.at_corner = false;
+  if (met_.kind != PartsMet::kOverlap) return;
+  for (const Way& w : ways_)
+    if (&w != &best && w.then >= best.then - by)
+      met_.at_corner = met_.at_corner || !faces_along(part(w.of_b).along[w.side], by);
 }
 
 double PartsMeeting::side_length(bool of_b, size_t side) const {
@@ -181,27 +239,41 @@ double PartsMeeting::side_length(bool of_b, size_t side) const {
 
 // Where a place of the other part is going to be at the end of the step, seen from the origin of one.
 Vec2 PartsMeeting::then_at(bool of_b, Vec2 place) const {
-  const PartMotion &own = *motion_[of_b], &other = *motion_[!of_b];
-  const Vec2 seen = place + shift_from(of_b);
-  return seen + ((other.way + other.turn * place) - (own.way + own.turn * seen));
+  const Vec2 x = place + origin_[!of_b], comes = comes_.way + comes_.turn * x;
+  return place + shift_from(of_b) + (of_b ? comes : -comes);
 }
 
 // How far the nearest corner of the other part is going to be before a side at the end of the step, one of those that
 // are not further now than the two move; and which is nearest now. What then_at() adds to a distance is linear in the place.
 void PartsMeeting::look_ahead(Way& w) const {
-  const PartMotion &own = *motion_[w.of_b], &other = *motion_[!w.of_b];
-  const Vec2 out = turn_right(part(w.of_b).along[w.side]), shift = shift_from(w.of_b);
-  const double at_origin = dot(out, shift - part(w.of_b).corner[w.side]);
-  const double comes = dot(out, other.way - own.way - own.turn * shift);
-  const Vec2 per_place = transpose(other.turn - own.turn) * out;
+  const PartNow& own = part(w.of_b);
+  const Vec2 out = turn_right(own.along[w.side]), towards = w.of_b ? out : -out;
+  const double at_origin = dot(out, shift_from(w.of_b) - own.corner[w.side]);
+  const Vec2 per_place = transpose(comes_.turn) * towards;
+  const double comes = dot(towards, comes_.way) + dot(per_place, origin_[!w.of_b]);
+  const std::span<const Vec2> corners = part(!w.of_b).corner;
   double nearest = kAll;
   w.then = kAll;
-  const std::span<const Vec2> corners = part(!w.of_b).corner;
   for (size_t k = 0; k < corners.size(); ++k) {
     const double now = at_origin + dot(out, corners[k]), then = now + comes + dot(per_place, corners[k]);
     w.then = std::min(w.then, now - w.gap > behind_ ? kAll : then);
     w.nearest = pick(now < nearest, k, w.nearest), nearest = std::min(nearest, now);
   }
+}
+
+// The same of a face and the ends of the other one.
+void PartsMeeting::look_ahead_from_face(Way& w) const {
+  const Face& other = faces_[!w.of_b];
+  const Vec2 out = turn_right(faces_[w.of_b].along), towards = w.of_b ? out : -out;
+  const Vec2 per_place = transpose(comes_.turn) * towards;
+  const double comes = dot(towards, comes_.way) + dot(per_place, origin_[!w.of_b]);
+  double then[2];
+  for (const size_t end : {0U, 1U}) {
+    const double now = other.before[end];
+    then[end] = now - w.gap > behind_ ? kAll : now + comes + dot(per_place, other.place[end]);
+  }
+  w.then = std::min(then[0], then[1]);
+  w.nearest = pick(other.before[1] < other.before[0], other.corner[1], other.corner[0]);
 }
 
 // Whether two ways are of sides in one line.
@@ -242,20 +314,24 @@ bool PartsMeeting::pushed_off(const Way& w, Vec2 force) const {
 
 // Whether the two parts lie beside each other over more than `by` of a line. Where their sides that met do, they do.
 bool PartsMeeting::faces_along(Vec2 tangent, double by) const {
-  const auto more = [&](const std::array<size_t, 2>& first, const std::array<size_t, 2>& count) {
-    double low = -kAll, high = kAll;
-    for (const bool of_b : {false, true}) {
-      double from = kAll, to = -kAll;
-      for (size_t i = 0, k = first[of_b]; i < count[of_b]; ++i, k = after(k, part(of_b).size())) {
-        const double s = dot(tangent, corner(of_b, k));
-        from = std::min(from, s), to = std::max(to, s);
-      }
-      low = std::max(low, from), high = std::min(high, to);
+  double low = -kAll, high = kAll;
+  for (const bool of_b : {false, true}) {
+    const auto side = static_cast<size_t>(of_b ? met_.side_b : met_.side_a);
+    const double s0 = dot(tangent, corner(of_b, side)),
+                 s1 = dot(tangent, corner(of_b, after(side, part(of_b).size())));
+    low = std::max(low, std::min(s0, s1)), high = std::min(high, std::max(s0, s1));
+  }
+  if (high - low > by) return true;
+  low = -kAll, high = kAll;
+  for (const bool of_b : {false, true}) {
+    double from = kAll, to = -kAll;
+    for (size_t k = 0; k < part(of_b).size(); ++k) {
+      const double s = dot(tangent, corner(of_b, k));
+      from = std::min(from, s), to = std::max(to, s);
     }
-    return high - low > by;
-  };
-  return more({static_cast<size_t>(met_.side_a), static_cast<size_t>(met_.side_b)}, {2, 2}) ||
-         more({0, 0}, {part_[0].size(), part_[1].size()});
+    low = std::max(low, from), high = std::min(high, to);
+  }
+  return high - low > by;
 }
 
 // Of the two sides at the corner of the other part that is nearest to a way, the one that faces it the most.

@@ -53,7 +53,8 @@ struct WayBefore {
 
 /// Where to look for two parts, which makes no difference to what is found: the way of the step before first, and
 /// whether it was that of a strip that was measured; by how much a way must be behind another one to be behind it at the
-/// end of the step too, and by more than WayBefore::by [m]; the ways that all others are known to be that far behind, as
+/// end of the step too, and by more than WayBefore::by [m]; the ways that all others are known to be that far behind, and
+/// of one way of each part the corners at the ends of the other one's side that all others are, as
 /// PartsMeeting::near_ways() tells them; 0: not known.
 struct LookFirst {
   int way = 0;
@@ -117,7 +118,8 @@ class PartsMeeting {
   /// @pre  look() found the two apart or in overlap
   std::array<int, 2> near_ways() const { return near_; }
 
-  /// By how much all other ways are behind the first of those at least [m]; 0: there are more, or sides are tied or cuts.
+  /// By how much all other ways are behind the first of those at least [m], and of one way of each part all other corners
+  /// behind the ends of the two sides; 0: there are more ways, or sides are tied or cuts.
   /// @pre  look() without LookFirst::near found them apart or in overlap
   double lead() const { return lead_; }
 
@@ -180,6 +182,11 @@ class PartsMeeting {
   void find_near_ways(std::array<int, 2> near, double margin);
   void find_ways(double margin);
   Way side_before(bool of_b, size_t k) const;
+  struct Face;
+  Face face(bool of_b, size_t side) const;
+  Way face_before(bool of_b, const Face& own, Face& other) const;
+  void look_ahead_from_face(Way& w) const;
+  double corners_lead(bool of_b, size_t side, size_t facing) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {
@@ -203,6 +210,10 @@ class PartsMeeting {
   void put_with_neighbours(size_t cell);
   bool share_a_place(size_t cell, size_t other) const;
   bool sum_up();
+  const Way* best_way(const WayBefore& before);
+  const Way* best_face(const WayBefore& before);
+  bool is_better(const Way& w, const Way& than) const;
+  void take_way(const Way& best, double by);
   Vec2 then_at(bool of_b, Vec2 place) const;
   void look_ahead(Way& w) const;
   double side_length(bool of_b, size_t side) const;
@@ -227,6 +238,15 @@ class PartsMeeting {
   PartNow part_[2];         // a and b
   Vec2 origin_[2];          // of their places, seen from that of a
   std::vector<Way> sides_;  // of b, of a; then what of them are ways
+  // Where the two meet along two faces: each with its ends, which all other corners are behind, from the origin of the part,
+  // first the one that comes first in the part, and how far before the other face these are.
+  struct Face {
+    size_t side, corner[2];
+    Vec2 along, place[2];
+    double before[2];
+  };
+  Face faces_[2];  // of a and b
+  bool along_faces_ = false;
   std::array<int, 2> near_{};
   double lead_ = 0;
   std::span<Way> ways_;       // those that are not too far behind
@@ -245,8 +265,8 @@ class PartsMeeting {
   size_t next_piece_ = 0;
   mutable std::vector<double> low_, high_, middle_;
   std::vector<Gap> gaps_;
-  std::vector<Seen> seen_, face_[2];           // all corners of a part; those of a and b that face the other
-  std::array<const PartMotion*, 2> motion_{};  // of a and b, while choose_way() looks
+  std::vector<Seen> seen_, face_[2];  // all corners of a part; those of a and b that face the other
+  PartMotion comes_;                  // of a in the step to come, seen from b; places from the origin of a
   std::vector<CornerSide> corner_sides_;
   // Where a strip ends along the side of b, below or above: the next sides of a and b there, the corners between those
   // and the faces, which part it is that ends, and where its end meets the two faces.

@@ -23,13 +23,13 @@ class PatchRows {
         state_(state),
         before_(before),
         clock_(clock),
-        give_(give),
+        give_(give, world.blocks, clock),
         first_(first),
         rows_(rows),
         gaps_(gaps) {}
 
   void add(const ContactPair& pair) const {
-    const double give = pair.count > 0 ? give_.row_compliance(w_.blocks, pair.a, pair.b, clock_) : 0;
+    const double give = pair.count > 0 ? give_.between(pair.a, pair.b) : 0;
     for (int k = 0; k < pair.count; ++k) {
       const auto i = static_cast<size_t>(pair.begin + k);
       std::array<std::array<double, 2>, 2> u{};
@@ -59,7 +59,7 @@ class PatchRows {
     p.arm_a = acting_arm(w_.blocks, state_, a, c.arm_a[end]);
     p.arm_b = acting_arm(w_.blocks, state_, b, c.arm_b[end]);
     const double half_area = 0.5 * c.length * w_.blocks.thickness;
-    const JointStrength bears = strength_of(c, w_.laws, end);
+    const JointStrength bears = strength(c, law, end);
     p.friction = bears.friction, p.lower = 0, p.cohesion = 0;
     const double slop = w_.model.contact.slop * w_.blocks.smaller_size(c.block_a, c.block_b);
     gaps_[2 * i + end] = c.gap[end];
@@ -88,6 +88,21 @@ class PatchRows {
     }
     rows_.impulse[r] = {c.force[end][0] * clock_.dt_kick, c.force[end][1] * clock_.dt_kick};
     rows_.owner[r] = {Family::kContact, static_cast<int>(2 * i + end)};
+  }
+
+  // At an end, by what has slipped there: of its joint, mixed with the other one's where two meet.
+  JointStrength strength(const Patch& c, const JointLaw& law, size_t end) const {
+    const auto one = [&](const JointLaw& of) {
+      return of.between(c.block_a, c.block_b, of.worn(c.slip[end]));
+    };
+    JointStrength s = one(law);
+    if (c.other_share == 0) return s;
+    const JointStrength other = one(c.other_joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.other_joint)]);
+    const double z = c.other_share;
+    s.friction = (1 - z) * s.friction + z * other.friction;
+    s.cohesion = (1 - z) * s.cohesion + z * other.cohesion,
+    s.tension = (1 - z) * s.tension + z * other.tension;
+    return s;
   }
 
   // The two ends share the compliance 2/(k b t) [[2, -1], [-1, 2]] (eq. 3.4), that of a foundation (eq. 4.1a); where two
@@ -130,7 +145,7 @@ class PatchRows {
   const State& state_;
   const std::vector<BlockRate>& before_;
   const StepClock& clock_;
-  const ContactGive& give_;
+  const RowGive give_;
   const size_t first_;
   RowSet& rows_;
   std::vector<double>& gaps_;

@@ -46,7 +46,9 @@ class PairSearch {
         (w_.blocks.centroid[b] - w_.blocks.centroid[a]) + (state_.displacement[b] - state_.displacement[a]);
     known_ = {state_.patches.data() + pair.begin, static_cast<size_t>(pair.count)};
     size_ = std::min(w_.blocks.size[a], w_.blocks.size[b]);
-    approach_ = ahead_.clock.dt * approach_speed(a, b);
+    const auto &now_a = search_.now_[a], &now_b = search_.now_[b];
+    closing_ = norm(now_a.motion.way - now_b.motion.way);
+    approach_ = closing_ + now_a.turning + now_b.turning;
     highest_ = 0;
     for (const Patch& p : any_rises_ ? known_ : std::span<const Patch>{})
       highest_ = std::max({highest_, rise(p, 0), rise(p, 1)});
@@ -74,19 +76,12 @@ class PairSearch {
     return pair.joint == ContactPair::kByEdges ? all_laws_elastic_ : is_elastic(pair.joint);
   }
 
-  double approach_speed(size_t a, size_t b) const {
-    const std::vector<BlockRate>& rate = ahead_.before;
-    return norm(rate[a].a - rate[b].a) + search_.now_[a].turning + search_.now_[b].turning;
-  }
-
   // By how much a way must be behind another to stay so in this step: twice what any place of one block moves at most as the
   // other one sees it.
   double behind(double lifted) const {
     const auto &a = search_.now_[static_cast<size_t>(pair_->a)],
                &b = search_.now_[static_cast<size_t>(pair_->b)];
-    return 2 * (norm(a.motion.way - b.motion.way) +
-                (a.turns + b.turns) * (distance_ + lifted + a.reach + b.reach)) +
-           kLevel * size_;
+    return 2 * (closing_ + (a.turns + b.turns) * (distance_ + lifted + a.reach + b.reach)) + kLevel * size_;
   }
 
   // By how much one way may have come nearer to another since the list of pairs was made: twice what any place of one block
@@ -114,8 +109,8 @@ class PairSearch {
     const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
                n = static_cast<size_t>(o.corners_of(part));
     roles.clear();
-    for (size_t k = 0; k < n && !search_.bare_[static_cast<size_t>(part)]; ++k)
-      roles.push_back(role_of(search_.tied_to_[begin + k], other));
+    if (!search_.bare_[static_cast<size_t>(part)])
+      for (size_t k = 0; k < n; ++k) roles.push_back(role_of(search_.tied_to_[begin + k], other));
     return {{search_.corner_.data() + begin, n}, {search_.along_.data() + begin, n}, roles};
   }
 
@@ -312,6 +307,7 @@ class PairSearch {
   }
 
   int joint_met(int p, int q) const {
+    if (pair_->joint != ContactPair::kByEdges) return pair_->joint;
     const PartsMet& met = meeting_.met();
     return joint_between(edge_of(p, met.side_a), edge_of(q, met.side_b));
   }
@@ -367,6 +363,12 @@ class PairSearch {
             p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_};
   }
 
+  // Where the ends of a chord before lie on a new one, as shares of its length, and how often it goes into that.
+  struct OldChord {
+    double s0, s1, per;
+    OldChord(double begin, double end) : s0(begin), s1(end), per(end > begin ? 1 / (end - begin) : 0) {}
+  };
+
   // The field of elastic slip on a new chord as it is added up: moments over the chord, and which span of it has
   // its own already, as shares of its length.
   struct Field {
@@ -374,18 +376,18 @@ class PairSearch {
     double from = 0, to = 0;
 
     // A piece [u, v] of a linear field that is e0 at s0 and e1 at s1.
-    void add(double u, double v, double s0, double s1, const std::array<double, 2>& e) {
+    void add(double u, double v, const OldChord& old, const std::array<double, 2>& e) {
       if (!(v > u)) return;
-      const double slope = (e[1] - e[0]) / (s1 - s0), eu = e[0] + (u - s0) * slope,
-                   ev = e[0] + (v - s0) * slope;
+      const double slope = (e[1] - e[0]) * old.per, eu = e[0] + (u - old.s0) * slope,
+                   ev = e[0] + (v - old.s0) * slope;
       m0 += (v - u) * 0.5 * (eu + ev), m1 += (v - u) * (u * (2 * eu + ev) + v * (eu + 2 * ev)) / 6;
     }
     // All of it within the chord that no field before it has.
-    void take(double s0, double s1, const std::array<double, 2>& reach, const std::array<double, 2>& e) {
-      const double u = std::max(s0 - reach[0], 0.0), v = std::min(s1 + reach[1], 1.0);
+    void take(const OldChord& old, const std::array<double, 2>& reach, const std::array<double, 2>& e) {
+      const double u = std::max(old.s0 - reach[0], 0.0), v = std::min(old.s1 + reach[1], 1.0);
       if (!(v > u)) return;
-      if (!(to > from)) return from = u, to = v, add(u, v, s0, s1, e);
-      add(u, std::min(v, from), s0, s1, e), add(std::max(u, to), v, s0, s1, e);
+      if (!(to > from)) return from = u, to = v, add(u, v, old, e);
+      add(u, std::min(v, from), old, e), add(std::max(u, to), v, old, e);
       from = std::min(from, u), to = std::max(to, v);
     }
     std::array<double, 2> ends() const { return {4 * m0 - 6 * m1, 6 * m1 - 2 * m0}; }
@@ -403,12 +405,12 @@ class PairSearch {
     const auto take = [&](const Patch& old) {
       if (dot(old.normal, patch.normal) < kSameWay) return;
       const Carried one = carried(old, 0), two = carried(old, 1);
-      const double s0 = share * dot(t, one.place() - x0), s1 = share * dot(t, two.place() - x0);
+      const OldChord at(share * dot(t, one.place() - x0), share * dot(t, two.place() - x0));
       patch.touched = patch.touched || old.touched;
-      if (const double common = std::min(s1, 1.0) - std::max(s0, 0.0); &old == own || common > nearest)
-        nearest = &old == own ? 1 : common, take_slip(old, s0, s1, patch);
+      if (const double common = std::min(at.s1, 1.0) - std::max(at.s0, 0.0); &old == own || common > nearest)
+        nearest = &old == own ? 1 : common, take_slip(old, at, patch);
       const auto slid = [&](const Carried& c) { return 0.5 * share * std::abs(dot(t, c.by_a - c.by_b)); };
-      field.take(s0, s1, {slid(one), slid(two)}, old.stretch);
+      field.take(at, {slid(one), slid(two)}, old.stretch);
     };
     if (own) take(*own);
     for (const Patch& old : known_)
@@ -427,10 +429,9 @@ class PairSearch {
   }
 
   // Slip is of all of a joint: beyond the ends of the old chord it is that of the end.
-  static void take_slip(const Patch& old, double s0, double s1, Patch& patch) {
-    const double per = s1 > s0 ? 1 / (s1 - s0) : 0;
+  static void take_slip(const Patch& old, const OldChord& at, Patch& patch) {
     for (size_t end = 0; end < 2; ++end) {
-      const double z = std::min(std::max((static_cast<double>(end) - s0) * per, 0.0), 1.0);
+      const double z = std::min(std::max((static_cast<double>(end) - at.s0) * at.per, 0.0), 1.0);
       patch.slip[end] = (1 - z) * old.slip[0] + z * old.slip[1];
       patch.slip_signed[end] = (1 - z) * old.slip_signed[0] + z * old.slip_signed[1];
     }
@@ -455,10 +456,10 @@ class PairSearch {
         as_patch.stretch[end] = face.elastic_shear ? broken.offset[from] : 0;
         as_patch.slip[end] = std::abs(gone), as_patch.slip_signed[end] = gone;
       }
-      const double s0 = dot(t, place_on(face, forward ? 0 : 1) - x0) / patch.length,
-                   s1 = dot(t, place_on(face, forward ? 1 : 0) - x0) / patch.length;
-      if (nearest <= 0) take_slip(as_patch, s0, s1, patch);
-      if (face.elastic_shear) field.take(s0, s1, {0, 0}, as_patch.stretch);
+      const OldChord at(dot(t, place_on(face, forward ? 0 : 1) - x0) / patch.length,
+                        dot(t, place_on(face, forward ? 1 : 0) - x0) / patch.length);
+      if (nearest <= 0) take_slip(as_patch, at, patch);
+      if (face.elastic_shear) field.take(at, {0, 0}, as_patch.stretch);
     }
   }
   Vec2 place_on(const BondFace& face, int end) const {
@@ -559,6 +560,7 @@ class PairSearch {
   double born_ = 0;  // of all pairs: as PatchSearch::born()
   double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
   double distance_ = 0;         // of the two centroids
+  double closing_ = 0;          // of these in the step to come, at most
   double gone_ = 0, lead_ = 0;  // that of all patches
   std::vector<SideRole> roles_a_, roles_b_;
   std::vector<std::pair<int, double>> shares_;
@@ -592,7 +594,7 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
       const Mat2 turn = ahead.clock.dt * (blocks.kind[i] == BlockKind::kDeformable ? v.G * back : v.G);
       now_[i] = {back,
                  norm(turned) * blocks.radius[i],
-                 turning_speed(blocks, ahead.before, i),
+                 ahead.clock.dt * turning_speed(blocks, ahead.before, i),
                  {ahead.clock.dt * v.a, turn},
                  norm(turn),
                  norm(state.displacement[i] - list.displacement[i]),
@@ -684,21 +686,6 @@ void PatchSearch::put_together(State& state) {
     }
   }
   state.patches = std::move(all);
-}
-
-JointStrength strength_of(const Patch& patch, const std::vector<JointLaw>& laws, size_t end) {
-  const auto one = [&](int joint) {
-    if (joint < 0) return JointStrength();
-    const JointLaw& law = laws[static_cast<size_t>(joint)];
-    return law.between(patch.block_a, patch.block_b, law.worn(patch.slip[end]));
-  };
-  JointStrength s = one(patch.joint);
-  if (patch.other_share == 0) return s;
-  const JointStrength other = one(patch.other_joint);
-  const double z = patch.other_share;
-  s.friction = (1 - z) * s.friction + z * other.friction;
-  s.cohesion = (1 - z) * s.cohesion + z * other.cohesion, s.tension = (1 - z) * s.tension + z * other.tension;
-  return s;
 }
 
 }  // namespace talus

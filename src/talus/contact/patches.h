@@ -42,7 +42,7 @@ class PatchSearch {
   struct BlockNow {
     Mat2 back;          // F inverted
     double reach;       // from its centroid, at most [m]
-    double turning;     // speed of its corners beside that of the centroid, at most [m/s]
+    double turning;     // how far its corners move in it beside the centroid, at most [m]
     PartMotion motion;  // in the step to come, from its centroid
     double turns;       // norm of how it turns
     double gone;        // of its centroid since the list of pairs was made [m]
@@ -69,9 +69,5 @@ class PatchSearch {
   void put_together(State& state);
   friend class PairSearch;
 };
-
-/// Law of the strength at an end of a patch: of its joint, mixed with the other one's where two meet.
-/// @param end  0 or 1
-JointStrength strength_of(const Patch& patch, const std::vector<JointLaw>& laws, size_t end);
 
 }  // namespace talus

@@ -60,19 +60,9 @@ PartsMeeting::Way PartsMeeting::face_before(bool of_b, const Face& own, Face& ot
   return {of_b, own.side, from - std::max(behind[0], behind[1])};
 }
 
-// By how much all corners of the other part are behind the ends of the side that faces.
-double PartsMeeting::corners_lead(bool of_b, size_t side, size_t facing) const {
-  const PartNow& other = part(!of_b);
-  const Vec2 along = part(of_b).along[side];
-  double ends = -kAll, rest = -kAll;
-  for (size_t k = 0; k < other.size(); ++k) {
-    double& most = k == facing || k == after(facing, other.size()) ? ends : rest;
-    most = std::max(most, cross(along, other.corner[k]));
-  }
-  return ends - rest;
-}
-
-// find_ways() where all other ways, and of one way of each part all other corners, are known to be behind these.
+// find_ways() where all other ways are known to be behind these. Of one way of each part the ends of the two sides are the
+// corners that may be nearest: before the far corner of the side beyond an end comes nearer than that end, the two turn by
+// the angle of that corner, which makes a way of the side beyond it, and it is known to be none.
 void PartsMeeting::find_near_ways(std::array<int, 2> near, double margin) {
   met_.kind = PartsMet::kFar;
   sides_.resize(near.size());
@@ -125,9 +115,6 @@ void PartsMeeting::find_ways(double margin) {
   ways_ = {sides_.data(), count};
   const bool all_out = part_[0].role.empty() && part_[1].role.empty();
   lead_ = all_out && count <= near_.size() ? widest_out - rest : 0;
-  if (lead_ > 0 && count == 2 && sides_[0].of_b && !sides_[1].of_b)
-    lead_ = std::min({lead_, corners_lead(true, sides_[0].side, sides_[1].side),
-                      corners_lead(false, sides_[1].side, sides_[0].side)});
   if (count > 0) met_.kind = widest_out >= -rounding_ ? PartsMet::kApart : PartsMet::kOverlap;
 }
 

@@ -53,8 +53,7 @@ struct WayBefore {
 
 /// Where to look for two parts, which makes no difference to what is found: the way of the step before first, and
 /// whether it was that of a strip that was measured; by how much a way must be behind another one to be behind it at the
-/// end of the step too, and by more than WayBefore::by [m]; the ways that all others are known to be that far behind, and
-/// of one way of each part the corners at the ends of the other one's side that all others are, as
+/// end of the step too, and by more than WayBefore::by [m]; the ways that all others are known to be that far behind, as
 /// PartsMeeting::near_ways() tells them; 0: not known.
 struct LookFirst {
   int way = 0;
@@ -118,8 +117,7 @@ class PartsMeeting {
   /// @pre  look() found the two apart or in overlap
   std::array<int, 2> near_ways() const { return near_; }
 
-  /// By how much all other ways are behind the first of those at least [m], and of one way of each part all other corners
-  /// behind the ends of the two sides; 0: there are more ways, or sides are tied or cuts.
+  /// By how much all other ways are behind the first of those at least [m]; 0: there are more, or sides are tied or cuts.
   /// @pre  look() without LookFirst::near found them apart or in overlap
   double lead() const { return lead_; }
 
@@ -186,7 +184,6 @@ class PartsMeeting {
   Face face(bool of_b, size_t side) const;
   Way face_before(bool of_b, const Face& own, Face& other) const;
   void look_ahead_from_face(Way& w) const;
-  double corners_lead(bool of_b, size_t side, size_t facing) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {
@@ -238,8 +235,8 @@ class PartsMeeting {
   PartNow part_[2];         // a and b
   Vec2 origin_[2];          // of their places, seen from that of a
   std::vector<Way> sides_;  // of b, of a; then what of them are ways
-  // Where the two meet along two faces: each with its ends, which all other corners are behind, from the origin of the part,
-  // first the one that comes first in the part, and how far before the other face these are.
+  // Where the two meet along two faces: each with its ends, from the origin of the part, first the one that comes first in
+  // the part, and how far before the other face these are.
   struct Face {
     size_t side, corner[2];
     Vec2 along, place[2];

@@ -6,6 +6,7 @@
 
 #include "talus/base/error.h"
 #include "talus/blocks/in_situ.h"
+#include "talus/contact/patch_memory.h"
 
 namespace talus {
 
@@ -20,16 +21,13 @@ constexpr double kRounding = 1e-14;
 // Copied where a patch begins: cheaper than to begin its many fields one by one.
 const Patch kFresh;
 
-// The fields of two normals are one field while these turn by less than 60 deg.
-constexpr double kSameWay = 0.5;
-
 }  // namespace
 
 // One pair of blocks on its way to patches.
 class PairSearch {
  public:
   PairSearch(const PatchWorld& world, const LookAhead& ahead, const PatchSearch& search, const State& state)
-      : w_(world), ahead_(ahead), search_(search), state_(state) {
+      : w_(world), ahead_(ahead), search_(search), state_(state), memory_(world, state) {
     all_laws_elastic_ = is_elastic(w_.layout.default_joint);
     for (const JointLaw& law : w_.laws) {
       all_laws_elastic_ = all_laws_elastic_ && law.is_soft(0);
@@ -45,6 +43,7 @@ class PairSearch {
     shift_ =
         (w_.blocks.centroid[b] - w_.blocks.centroid[a]) + (state_.displacement[b] - state_.displacement[a]);
     known_ = {state_.patches.data() + pair.begin, static_cast<size_t>(pair.count)};
+    memory_.look_at(pair, known_, shift_);
     size_ = std::min(w_.blocks.size[a], w_.blocks.size[b]);
     const auto &now_a = search_.now_[a], &now_b = search_.now_[b];
     closing_ = norm(now_a.motion.way - now_b.motion.way);
@@ -270,7 +269,8 @@ class PairSearch {
   void finish(const PartsMet& met, const Patch* before, Vec2 shift, double lifted, bool soft, Patch& patch) {
     write_place(met, shift, patch);
     for (size_t end = 0; end < 2; ++end) patch.gap[end] = lifted - met.closure[end];
-    remember(before, patch);
+    memory_.recall(before, patch);
+    if (state_.step == 0) stretch_by_ground(patch);
     for (size_t end = 0; end < 2; ++end)
       if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
     if (soft)
@@ -291,9 +291,7 @@ class PairSearch {
 
   // Of the patches that two parts had the one nearest to a place, seen from block a.
   const Patch* known_near(int p, int q, Vec2 place) const {
-    const auto off = [&](const Patch& c) {
-      return norm(0.5 * (carried(c, 0).place() + carried(c, 1).place()) - place);
-    };
+    const auto off = [&](const Patch& c) { return norm(memory_.middle_of(c) - place); };
     const Patch* nearest = nullptr;
     for (const Patch& c : known_)
       if (c.part_a == p && c.part_b == q && (!nearest || off(c) < off(*nearest))) nearest = &c;
@@ -350,120 +348,6 @@ class PairSearch {
     for (size_t end = 0; end < 2; ++end)
       patch.arm_a[end] = search_.now_[a].back * x[end],
       patch.arm_b[end] = search_.now_[b].back * (x[end] - met.across[end] * met.normal - shift);
-  }
-
-  // Where the two blocks have carried an end of a known chord: its place is half way between, somewhere between at least.
-  struct Carried {
-    Vec2 by_a, by_b;
-    Vec2 place() const { return 0.5 * (by_a + by_b); }
-  };
-  Carried carried(const Patch& p, size_t end) const {
-    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
-    return {p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
-            p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_};
-  }
-
-  // Where the ends of a chord before lie on a new one, as shares of its length, and how often it goes into that.
-  struct OldChord {
-    double s0, s1, per;
-    OldChord(double begin, double end) : s0(begin), s1(end), per(end > begin ? 1 / (end - begin) : 0) {}
-  };
-
-  // The field of elastic slip on a new chord as it is added up: moments over the chord, and which span of it has
-  // its own already, as shares of its length.
-  struct Field {
-    double m0 = 0, m1 = 0;
-    double from = 0, to = 0;
-
-    // A piece [u, v] of a linear field that is e0 at s0 and e1 at s1.
-    void add(double u, double v, const OldChord& old, const std::array<double, 2>& e) {
-      if (!(v > u)) return;
-      const double slope = (e[1] - e[0]) * old.per, eu = e[0] + (u - old.s0) * slope,
-                   ev = e[0] + (v - old.s0) * slope;
-      m0 += (v - u) * 0.5 * (eu + ev), m1 += (v - u) * (u * (2 * eu + ev) + v * (eu + 2 * ev)) / 6;
-    }
-    // All of it within the chord that no field before it has.
-    void take(const OldChord& old, const std::array<double, 2>& reach, const std::array<double, 2>& e) {
-      const double u = std::max(old.s0 - reach[0], 0.0), v = std::min(old.s1 + reach[1], 1.0);
-      if (!(v > u)) return;
-      if (!(to > from)) return from = u, to = v, add(u, v, old, e);
-      add(u, std::min(v, from), old, e), add(std::max(u, to), v, old, e);
-      from = std::min(from, u), to = std::max(to, v);
-    }
-    std::array<double, 2> ends() const { return {4 * m0 - 6 * m1, 6 * m1 - 2 * m0}; }
-  };
-
-  // What the patches before remember at the place of this one: its own first, then what others of its parts and on the
-  // same sides say of places that this one has not (theory 3.7).
-  void remember(const Patch* own, Patch& patch) const {
-    const auto a = static_cast<size_t>(patch.block_a);
-    const Vec2 t = turn_right(patch.normal);
-    const Vec2 x0 = patch.arm_a[0] + state_.strain_part[a] * patch.arm_a[0];
-    Field field;
-    double nearest = -1;
-    const double share = 1 / patch.length;
-    const auto take = [&](const Patch& old) {
-      if (dot(old.normal, patch.normal) < kSameWay) return;
-      const Carried one = carried(old, 0), two = carried(old, 1);
-      const OldChord at(share * dot(t, one.place() - x0), share * dot(t, two.place() - x0));
-      patch.touched = patch.touched || old.touched;
-      if (const double common = std::min(at.s1, 1.0) - std::max(at.s0, 0.0); &old == own || common > nearest)
-        nearest = &old == own ? 1 : common, take_slip(old, at, patch);
-      const auto slid = [&](const Carried& c) { return 0.5 * share * std::abs(dot(t, c.by_a - c.by_b)); };
-      field.take(at, {slid(one), slid(two)}, old.stretch);
-    };
-    if (own) take(*own);
-    for (const Patch& old : known_)
-      if (&old != own && ((old.part_a == patch.part_a && old.part_b == patch.part_b) ||
-                          (old.side_a == patch.side_a && old.side_b == patch.side_b)))
-        take(old);
-    if (pair_->face >= 0) take_from_faces(t, x0, nearest, field, patch);
-    patch.stretch = field.ends();
-    if (own) {
-      patch.force = own->force, patch.root_kept = own->root_kept;
-      // what has come out of an overlap does not go in again, be it by a turn
-      for (size_t end = 0; end < 2; ++end)
-        patch.allowed[end] = std::max(0.0, std::min(own->allowed[end], patch.closure[end]));
-    }
-    if (state_.step == 0) stretch_by_ground(patch);
-  }
-
-  // Slip is of all of a joint: beyond the ends of the old chord it is that of the end.
-  static void take_slip(const Patch& old, const OldChord& at, Patch& patch) {
-    for (size_t end = 0; end < 2; ++end) {
-      const double z = std::min(std::max((static_cast<double>(end) - at.s0) * at.per, 0.0), 1.0);
-      patch.slip[end] = (1 - z) * old.slip[0] + z * old.slip[1];
-      patch.slip_signed[end] = (1 - z) * old.slip_signed[0] + z * old.slip_signed[1];
-    }
-  }
-
-  // A face on the same sides that broke in the step before hands over what it has slipped, and the shear of an elastic
-  // one, at the places that no patch before has had.
-  void take_from_faces(Vec2 t, Vec2 x0, double nearest, Field& field, Patch& patch) const {
-    for (auto f = static_cast<size_t>(pair_->face); f < w_.bonds.faces.size(); ++f) {
-      const BondFace& face = w_.bonds.faces[f];
-      if (face.block_a != pair_->a || face.block_b != pair_->b) break;
-      const FaceState& broken = state_.face[f];
-      if (!broken.broken || face.edge_a != patch.side_a || face.edge_b != patch.side_b) continue;
-      patch.touched = true;
-      if (broken.broken_step + 1 != state_.step) continue;
-      Patch as_patch = patch;
-      // along the tangent: from b's normal turned clockwise the face runs the other way
-      const bool forward = dot(t, place_on(face, 1) - place_on(face, 0)) > 0;
-      for (size_t end = 0; end < 2; ++end) {
-        const size_t from = forward ? end : 1 - end;
-        const double gone = face.elastic_shear ? broken.slip[from] : broken.offset[from];
-        as_patch.stretch[end] = face.elastic_shear ? broken.offset[from] : 0;
-        as_patch.slip[end] = std::abs(gone), as_patch.slip_signed[end] = gone;
-      }
-      const OldChord at(dot(t, place_on(face, forward ? 0 : 1) - x0) / patch.length,
-                        dot(t, place_on(face, forward ? 1 : 0) - x0) / patch.length);
-      if (nearest <= 0) take_slip(as_patch, at, patch);
-      if (face.elastic_shear) field.take(at, {0, 0}, as_patch.stretch);
-    }
-  }
-  Vec2 place_on(const BondFace& face, int end) const {
-    return face.arm_a[end] + state_.strain_part[static_cast<size_t>(face.block_a)] * face.arm_a[end];
   }
 
   // What the stress of the ground has closed and slipped at an end, along normal and tangent (theory 1.7).
@@ -552,6 +436,7 @@ class PairSearch {
   const PatchSearch& search_;
   const State& state_;
   PartsMeeting meeting_;
+  PatchMemory memory_;
   const ContactPair* pair_ = nullptr;
   Vec2 shift_;
   bool all_laws_elastic_ = false, elastic_ = false;  // all joints, those of this pair

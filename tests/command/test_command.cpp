@@ -9,6 +9,7 @@
 #include <string>
 
 #include "support/command.h"
+#include "support/relative.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
 #include "talus/output/files.h"
@@ -259,7 +260,7 @@ TEST_CASE("command: Ctrl-C ends a run with valid results and exit code 130") {
   CHECK(summary["status"] == "interrupted");
   const CsvTable histories = read_csv(fs::path(out) / "histories.csv");
   CHECK(histories.rows() > 2);
-  CHECK(histories.values[0].back() == doctest::Approx(summary["stages"][0]["end [s]"].get<double>()));
+  CHECK(histories.values[0].back() == approx(summary["stages"][0]["end [s]"].get<double>()));
 }
 
 TEST_CASE("command: plot draws a column, several runs, and names what is missing") {
@@ -285,8 +286,13 @@ TEST_CASE("command: plot draws a column, several runs, and names what is missing
   CHECK(fs::file_size(out + "/pair.png") > 5000);
   const Outcome no_stage = overlay("-c impact.force_x --stage nothing -o " + out + "/stage");
   CHECK(no_stage.code == 2);
-  CHECK(overlay("-c impact.force_x --stage impact -o " + out + "/stage").code == 0);
+  CHECK(overlay("-c impact.force_x --stage impact -o " + out + "/stage.png").code == 0);
   CHECK(fs::file_size(out + "/stage.png") > 5000);
+  CHECK(fs::exists(out + "/stage.svg"));
+  CHECK(overlay("-c impact.force_x -x impact.normal_force -o " + out + "/over").code == 0);
+  has(read_text_file(out + "/over.svg"), "normal force");
+  CHECK(overlay("-x impact.normal_force").code == 2);
+  has(overlay("-c impact.force_x -x impact.nothing").text, "there is no column \"impact.nothing\"");
   has(no_stage.text, "has no stage \"nothing\"; there is");
   const Outcome all = shell(f, fmt::format("$talus plot {}", out));
   CHECK(all.code == 0);
@@ -309,8 +315,7 @@ TEST_CASE("command: one step is dumped and replayed by either solver") {
   CHECK(newton.code == 0);
   CHECK(sweeps.code == 0);
   const auto normal = [](const Outcome& o) { return std::stod(o.text.substr(o.text.find("normal ") + 7)); };
-  CHECK(normal(sweeps) ==
-        doctest::Approx(normal(newton)).epsilon(1e-6));  // the bar's rows are independent: unique
+  CHECK(normal(sweeps) == approx(normal(newton)).epsilon(1e-6));  // the bar's rows are independent: unique
   const Outcome wrong = shell(f, fmt::format("$talus replay {}/summary.json", out));
   CHECK(wrong.code == 4);
   has(wrong.text, "is no step written by talus run --dump-step");

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "support/command.h"
+#include "support/relative.h"
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
 
@@ -88,14 +89,13 @@ TEST_CASE("import: bulge, circle, arc, spline and block insert of a DXF come out
   // bulge: a quarter circle around (9, 5) over the chord of 6 m, in nine pieces of 10 degrees
   REQUIRE(m.regions.size() == 1);
   const double r = 3 * std::numbers::sqrt2;
-  CHECK(signed_area(m.regions[0].polygon) ==
-        doctest::Approx(96 + 0.5 * r * r * (9 * sin10(1) - 1)).epsilon(1e-7));
+  CHECK(signed_area(m.regions[0].polygon) == approx(96 + 0.5 * r * r * (9 * sin10(1) - 1)).epsilon(1e-7));
   int on_arc = 0;
   for (const Vec2 p : m.regions[0].polygon) on_arc += std::abs(norm(p - Vec2{9, 5}) - r) < 1e-6;
   CHECK(on_arc == 10);
   // circle: 36 pieces
   REQUIRE(m.openings.size() == 1);
-  CHECK(std::abs(signed_area(m.openings[0].polygon)) == doctest::Approx(18 * sin10(1)).epsilon(1e-6));
+  CHECK(std::abs(signed_area(m.openings[0].polygon)) == approx(18 * sin10(1)).epsilon(1e-6));
   // insert, twice as large as the block: its line of layer 0 is on the layer of the insert
   REQUIRE(traces(m, "STEEP").lines.size() == 2);
   CHECK(is_line(traces(m, "STEEP").lines[0], {5, -1}, {5, 9}));
@@ -132,7 +132,7 @@ TEST_CASE("import: bulge, circle, arc, spline and block insert of a DXF come out
   CHECK(!findings.has_errors());
   double area = 0;
   for (const CutBlock& b : cut.whole) area += signed_area(cut.polygon(b));
-  CHECK(area == doctest::Approx(signed_area(m.regions[0].polygon)).epsilon(1e-7));
+  CHECK(area == approx(signed_area(m.regions[0].polygon)).epsilon(1e-7));
   CHECK(cut.taken_out >= 1);
 }
 
@@ -171,7 +171,7 @@ TEST_CASE("import: polylines of R12, and a file of ogr2ogr, which calls all unit
   INFO(o.text);
   REQUIRE(o.code == 0);
   const Model m = model_of(read_text_file(folder / "r12.toml"));
-  CHECK(signed_area(m.regions[0].polygon) == doctest::Approx(96 + 9 * (9 * sin10(1) - 1)).epsilon(1e-7));
+  CHECK(signed_area(m.regions[0].polygon) == approx(96 + 9 * (9 * sin10(1) - 1)).epsilon(1e-7));
 
   // it calls everything inches, whatever it is
   has(shell(folder, "$talus import " + kMaps + "ogr2ogr.dxf --as A=joints").text,

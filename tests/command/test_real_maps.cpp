@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/command.h"
+#include "support/relative.h"
 #include "support/shortest_tree.h"
 #include "talus/geometry/polygon.h"
 
@@ -129,7 +130,7 @@ TEST_CASE("real trace maps: live joints, short cuts, no crumbs") {
     const Counted c = count((out / "cut" / "blocks.json").string());
     MESSAGE(name, ": live ", c.live, " m of ", live, "; cuts ", c.cuts, " m, ", c.cuts / (2 * c.tree),
             " times twice the tree; smallest block ", c.smallest, " m2, face ", c.smallest_face, " m2");
-    CHECK(c.live == doctest::Approx(live).epsilon(0.005));
+    CHECK(c.live == approx(live).epsilon(0.005));
     CHECK(c.cuts <= 1.3 * 2 * c.tree);
     CHECK(c.smallest >= 0.25 * c.smallest_face);
   }

@@ -11,6 +11,7 @@
 
 #include "support/command.h"
 #include "support/record_text.h"
+#include "support/relative.h"
 #include "talus/base/text_file.h"
 #include "talus/output/csv.h"
 #include "talus/output/files.h"
@@ -61,10 +62,9 @@ TEST_CASE("command: record reads, processes, draws and writes a motion that a mo
   CHECK(json["unit"] == "g");
   CHECK(json["samples"] == 1001);
   CHECK(json["steps"].size() == 6);
-  CHECK(json["steps"][0]["mean [m/s2]"].get<double>() == doctest::Approx(0.002 * 9.80665).epsilon(1e-2));
+  CHECK(json["steps"][0]["mean [m/s2]"].get<double>() == approx(0.002 * 9.80665).epsilon(1e-2));
   CHECK(json["steps"][2]["high-pass corner [Hz]"] == 0.1);
-  CHECK(json["before"]["end_velocity [m/s]"].get<double>() ==
-        doctest::Approx(0.002 * 9.80665 * 12).epsilon(1e-2));
+  CHECK(json["before"]["end_velocity [m/s]"].get<double>() == approx(0.002 * 9.80665 * 12).epsilon(1e-2));
   CHECK(std::abs(json["after"]["end_displacement [m]"].get<double>()) < 1e-13);
 
   // and the motion drives a table
@@ -103,7 +103,7 @@ TEST_CASE("command: record converts without a step, and makes motions from a see
   CHECK(shell(f, "$talus record a.AT2 --raw --out raw").code == 0);
   const CsvTable raw = read_csv(f / "raw/motion.csv");
   CHECK(raw.rows() == 1201);
-  CHECK(raw.values[1][0] == doctest::Approx(0.002 * 9.80665).epsilon(1e-6));
+  CHECK(raw.values[1][0] == approx(0.002 * 9.80665).epsilon(1e-6));
 
   const std::string make =
       "$talus record --synthetic --seed 5 --pga 2 --duration 10 --dt 0.02 --rise 1 --strong 3 --decay 4";
@@ -162,8 +162,7 @@ TEST_CASE(
   CHECK(o.code == 0);
   const CsvTable motion = read_csv(f / "out/motion.csv");
   for (size_t i = 0; i < 400; i += 37)
-    CHECK(motion.column("acceleration")[i] ==
-          doctest::Approx(std::sin(0.2 * static_cast<double>(i))).epsilon(1e-9));
+    CHECK(motion.column("acceleration")[i] == approx(std::sin(0.2 * static_cast<double>(i))).epsilon(1e-9));
   has(read_text_file(f / "out/spectrum.csv"), "period [s],sa [m/s2]\n0.02,");
   CHECK(shell(f, "$talus record n.csv --second e.csv --section 40 --raw --out x").code == 2);
   CHECK(shell(f, "$talus record n.csv --second e.csv --azimuths 0 60 --section 40 --raw --out x").code == 3);

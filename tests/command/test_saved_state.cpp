@@ -10,6 +10,7 @@
 
 #include "support/closing_jaws.h"
 #include "support/command.h"
+#include "support/relative.h"
 #include "support/results.h"
 #include "support/shaken_bricks.h"
 #include "talus/base/clock.h"
@@ -227,7 +228,7 @@ TEST_CASE(
   has(o.text, "  not waited for  stage \"rest\": 1 block, 0.01 m2");
   const auto stage = nlohmann::json::parse(read_text_file(folder / "out/summary.json"))["stages"][0];
   CHECK(stage["at_rest"] == true);
-  CHECK(stage["left_out_share"].get<double>() == doctest::Approx(0.01 / 6.01));
+  CHECK(stage["left_out_share"].get<double>() == approx(0.01 / 6.01));
   const Outcome waits = shell(folder, "$talus run model.toml -o waits --set stage.rest.strict_rest=true");
   has(waits.text, "followed by damped motion");
   const Outcome on = shell(folder, "$talus run model.toml --from out/saved/stage_01.h5 -o on");

@@ -8,6 +8,7 @@
 
 #include "support/block_scene.h"
 #include "support/box_polygon.h"
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "talus/base/text.h"
 #include "talus/corners/corner_rows.h"
@@ -94,7 +95,7 @@ TEST_CASE("regression: a corner in a notch keeps both sides when it touches them
     for (const ContactKey key :
          {ContactKey{1, 0, 0, 2}, ContactKey{1, 0, 0, 3}, ContactKey{1, 1, 0, 2}, ContactKey{1, 3, 0, 3}}) {
       REQUIRE(find(key) != out.end());
-      CHECK(find(key)->length == doctest::Approx(0.3).epsilon(1e-4));
+      CHECK(find(key)->length == approx(0.3).epsilon(1e-4));
     }
     CHECK(out.size() == 4);
   }

@@ -4,6 +4,7 @@
 // sub-blocks, found beforehand with an independent one-dimensional program.
 
 #include "impact_bar/measure.h"
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/source_file.h"
 #include "support/tolerance.h"
@@ -37,13 +38,12 @@ void check_energy(const std::string& what, const CaseResult& r) {
 TEST_CASE("A1 bar impact: exact solution against the closed forms") {
   // F/F0 = exp(-alpha tau) before tau = 2; second peak 2 + exp(-2 alpha); separation (alpha = 1.5) 2.68326
   const example::BarImpact exact(1.5);
-  CHECK(exact.force(1.2) == doctest::Approx(std::exp(-1.8)).epsilon(1e-12));
-  CHECK(exact.force(2.5) ==
-        doctest::Approx(std::exp(-3.75) + 2 * std::exp(-0.75) * (1 - 0.75)).epsilon(1e-12));
-  CHECK(exact.second_peak() == doctest::Approx(2 + std::exp(-3.0)).epsilon(1e-12));
-  CHECK(exact.separation() == doctest::Approx(2 + (1 + std::exp(-3.0) / 2) / 1.5).epsilon(1e-9));
-  CHECK(exact.rebound() == doctest::Approx(0.7177).epsilon(1e-4));
-  CHECK(BarCase::kAlpha == doctest::Approx(1.5).epsilon(1e-14));
+  CHECK(exact.force(1.2) == approx(std::exp(-1.8)).epsilon(1e-12));
+  CHECK(exact.force(2.5) == approx(std::exp(-3.75) + 2 * std::exp(-0.75) * (1 - 0.75)).epsilon(1e-12));
+  CHECK(exact.second_peak() == approx(2 + std::exp(-3.0)).epsilon(1e-12));
+  CHECK(exact.separation() == approx(2 + (1 + std::exp(-3.0) / 2) / 1.5).epsilon(1e-9));
+  CHECK(exact.rebound() == approx(0.7177).epsilon(1e-4));
+  CHECK(BarCase::kAlpha == approx(1.5).epsilon(1e-14));
 }
 
 TEST_CASE("A1 bar impact: impulse, separation, rebound and mean force for 10 to 80 sub-blocks") {

@@ -16,6 +16,7 @@
 #include "support/contact_jumps.h"
 #include "support/contact_paths.h"
 #include "support/contact_paths_laws.h"
+#include "support/relative.h"
 #include "talus/audit/shapes.h"
 #include "talus/geometry/polygon_check.h"
 
@@ -161,19 +162,19 @@ TEST_CASE("contact paths: a planted jump is found where it is, a steep rise is n
       CHECK(none.whole.size == 0);
       CHECK(none.without_overlap == 0);
       CHECK(none.without_force == 0);
-      CHECK(none.force_by_area == doctest::Approx(1));
+      CHECK(none.force_by_area == approx(1));
 
       const double place = 0.2345678912 + 0.1 * static_cast<double>(seed);
       const PathFindings jump = walk(path, PlantedForces(smooth, {1e-3 * none.load, place, 0, false}));
       CHECK(std::abs(jump.normal.size / 1e-3 - 1) < 0.12);  // of a change just before it settles
-      CHECK(jump.normal.at == doctest::Approx(place).epsilon(1e-6));
+      CHECK(jump.normal.at == approx(place).epsilon(1e-6));
       CHECK(jump.whole.size == 0);  // less than counts
       const PathFindings steep = walk(path, PlantedForces(smooth, {1e-3 * none.load, place, 1e-4, false}));
       CHECK(steep.normal.size == 0);
       const PathFindings slip = walk(path, PlantedForces(smooth, {2e-2 * none.load, place, 0, true}));
       CHECK(slip.normal.size == 0);
       CHECK(std::abs(slip.whole.size / 2e-2 - 1) < 0.12);
-      CHECK(slip.whole.at == doctest::Approx(place).epsilon(1e-6));
+      CHECK(slip.whole.at == approx(place).epsilon(1e-6));
     }
 }
 
@@ -208,10 +209,10 @@ TEST_CASE("contact paths: patches bear the overlap of a face, and its shear up t
   constexpr int kSteps = 100;  // of 0.1 mm
   for (int i = 0; i <= kSteps; ++i) {
     now = law->at(static_cast<double>(i) / kSteps, 1.0 / kSteps);
-    CHECK(now.normal[1].force.y == doctest::Approx(1e-3));
-    CHECK(now.normal[0].force.y == doctest::Approx(-1e-3));
-    CHECK(now.load[1] == doctest::Approx(1e-3));
-    CHECK(now.whole[1].force.x == doctest::Approx(-std::min(1e-4 * i, 6e-4)));
+    CHECK(now.normal[1].force.y == approx(1e-3));
+    CHECK(now.normal[0].force.y == approx(-1e-3));
+    CHECK(now.load[1] == approx(1e-3));
+    CHECK(now.whole[1].force.x == approx(-std::min(1e-4 * i, 6e-4)));
   }
 }
 

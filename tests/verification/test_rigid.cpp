@@ -5,6 +5,7 @@
 
 #include "support/box_polygon.h"
 #include "support/model_text.h"
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -93,7 +94,7 @@ TEST_CASE("A3b two equal blocks collide, a rigid block lands flat") {
   const CaseResult flat =
       run_case(text, {}, [&](const Instant& i) { v[0] = centre_velocity(i.scene, i.state, 1, 2); });
   check_below("A3b rigid block, velocity after landing flat", std::abs(v[0]), 1e-2, 1e-9);
-  CHECK(flat.run.energy.work[Cause::kContactClosing] == doctest::Approx(-0.5 * 2000).epsilon(1e-6));
+  CHECK(flat.run.energy.work[Cause::kContactClosing] == approx(-0.5 * 2000).epsilon(1e-6));
 }
 
 TEST_CASE("A3d a square hung at a corner swings with the exact period") {

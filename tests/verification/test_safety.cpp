@@ -2,6 +2,7 @@
 // alone and with cohesion, and the columns of Goodman and Bray.
 
 #include "support/limit_models.h"
+#include "support/relative.h"
 #include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/model/joint_law.h"
@@ -176,8 +177,8 @@ TEST_CASE("reduced strength: tangents and stresses divided, dilation kept below 
   j.friction_angle = radians(45), j.cohesion = 6, j.tensile_strength = 4, j.dilation_angle = radians(20);
   j.residual_friction_angle = radians(30), j.residual_cohesion = 2, j.residual_tensile_strength = 1;
   const JointProperty half = reduced(j, 2);
-  CHECK(std::tan(half.friction_angle) == doctest::Approx(0.5));
-  CHECK(std::tan(half.residual_friction_angle) == doctest::Approx(0.5 / std::sqrt(3.0)));
+  CHECK(std::tan(half.friction_angle) == approx(0.5));
+  CHECK(std::tan(half.residual_friction_angle) == approx(0.5 / std::sqrt(3.0)));
   CHECK(half.cohesion == 3);
   CHECK(half.tensile_strength == 2);
   CHECK(half.residual_cohesion == 1);

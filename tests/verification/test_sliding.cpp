@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -99,7 +100,7 @@ TEST_CASE("A2a block on an incline") {
               ? 0.5 * kG *
                     (std::sin(radians(c.angle)) - std::tan(radians(c.friction)) * std::cos(radians(c.angle)))
               : 0;
-      CHECK(2 * exact == doctest::Approx(c.acceleration).epsilon(1e-4));
+      CHECK(2 * exact == approx(c.acceleration).epsilon(1e-4));
       check_close(fmt::format("A2a {} {:g}/{:g} deg, slip at 1 s", solver, c.angle, c.friction),
                   slip_at(r, 1), exact, 1e-3, 1e-6, exact > 0 ? 0 : 1e-3);
       check_below("A2a energy left over / largest term", r.run.largest_energy > 1e-12 ? r.run.closure() : 0,
@@ -116,7 +117,7 @@ TEST_CASE("A2a block on an incline") {
 TEST_CASE("A2b cohesion threshold of a face") {
   // gravity ramped over 1 s: a rigid block has no period of its own
   const double critical = 2600 * kG * (std::sin(radians(30)) - std::tan(radians(20)) * std::cos(radians(30)));
-  CHECK(critical == doctest::Approx(4713.32).epsilon(1e-5));
+  CHECK(critical == approx(4713.32).epsilon(1e-5));
   const std::string ramp = shaking(30, "0", "t < 1 ? 9.81*t : 9.81", 3);
   for (const double share : {1.005, 1.0001, 0.9999, 0.995}) {
     Slope s{30, 20, 3, 1e-3, share * critical, ramp, false};

@@ -14,7 +14,9 @@ namespace {
 
 // Measured sizes of one cell or item in result files [bytes], from runs of the examples.
 constexpr double kCsvCell = 23, kVtkCorner = 102, kVtkBlock = 110, kVtkContact = 152, kVtkFile = 1900,
-                 kJointRow = 200;
+                 kJointRow = 200, kPictureFile = 51e3;
+// Of the state at the end of a stage, and of each block in it [bytes].
+constexpr double kSavedFile = 220e3, kSavedBlock = 1200;
 
 int64_t rows_of(double duration, int64_t steps, double interval) {
   if (interval <= 0) return steps;
@@ -53,11 +55,13 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
       (2.0 * static_cast<double>(breakable) + p.contacts) * static_cast<double>(plans.size());
   const double columns = static_cast<double>(Histories(scene, nullptr).columns().size());
   const double frame = kVtkCorner * corners + kVtkBlock * p.blocks + kVtkContact * points + 2 * kVtkFile;
-  p.output = kCsvCell * (columns * static_cast<double>(p.history_rows) +
-                         static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
-             frame * static_cast<double>(p.frames) + kJointRow * joint_rows + 5000 +
-             2 * (900 + 50 * corners + 60.0 * p.blocks) +
-             static_cast<double>(paraview_view().size());  // tables, frames, summary, two pictures, the view
+  p.output =
+      kCsvCell * (columns * static_cast<double>(p.history_rows) +
+                  static_cast<double>(step_columns().size()) * static_cast<double>(p.step_rows)) +
+      frame * static_cast<double>(p.frames) + kJointRow * joint_rows + 5000 +
+      2 * (kPictureFile + 50 * corners + 60.0 * p.blocks) +
+      static_cast<double>(plans.size()) * (kSavedFile + kSavedBlock * p.blocks) +
+      static_cast<double>(paraview_view().size());  // tables, frames, summary, two pictures, states, the view
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies
   const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include "support/box_polygon.h"
+#include "support/relative.h"
 #include "talus/audit/read_results.h"
 #include "talus/audit/tip.h"
 
@@ -71,7 +72,7 @@ TEST_CASE("audit: a face whose two ends account for its overlap is clean, at a c
     const FrameResult r = face(closure, 1e5).look();
     CHECK(r.findings.empty());
     CHECK(r.unexplained_share < 1e-12);
-    CHECK(r.closure_share == doctest::Approx(closure));
+    CHECK(r.closure_share == approx(closure));
   }
   // of the thinner: 3 m wide and 1 m high against 1 m x 1 m
   CHECK(has(face(0.06, 1e5).look(), Defect::kDeepClosure, false));
@@ -89,9 +90,9 @@ TEST_CASE("audit: an overlap that no point accounts for is named with its pair, 
   CHECK(f.block_a == 0);
   CHECK(f.block_b == 1);
   CHECK(f.time == 2);
-  CHECK(f.share == doctest::Approx(0.02));
-  CHECK(f.place.x == doctest::Approx(0.5));
-  CHECK(f.place.y == doctest::Approx(-0.01));
+  CHECK(f.share == approx(0.02));
+  CHECK(f.place.x == approx(0.5));
+  CHECK(f.place.y == approx(-0.01));
 
   c = face(1e-3, 1e5);
   c.frame.points.clear();
@@ -103,7 +104,7 @@ TEST_CASE("audit: an overlap that no point accounts for is named with its pair, 
   // points that tell too small a depth explain only that
   c = face(0.02, 1e5);
   for (Point& p : c.frame.points) p.gap = -0.005;
-  CHECK(c.look().unexplained_share == doctest::Approx(0.015).epsilon(1e-4));
+  CHECK(c.look().unexplained_share == approx(0.015).epsilon(1e-4));
 }
 
 TEST_CASE(
@@ -115,7 +116,7 @@ TEST_CASE(
   CHECK(c.look().findings.empty());
   CHECK(c.look().unexplained_share < 1e-9);
   c.frame.points.clear();
-  CHECK(c.look().unexplained_area == doctest::Approx(d * d));
+  CHECK(c.look().unexplained_area == approx(d * d));
 
   // four blocks at a crossing of two joints closed by 2 cm: 0 and 3 overlap by 2 cm x 2 cm, at no point
   const double k = 0.02;
@@ -151,7 +152,7 @@ TEST_CASE("audit: prescribed blocks that overlap are not valid") {
   REQUIRE(r.findings.size() == 1);
   CHECK(r.findings[0].defect == Defect::kPrescribedOverlap);
   CHECK(r.findings[0].invalid);
-  CHECK(r.findings[0].share == doctest::Approx(0.1));
+  CHECK(r.findings[0].share == approx(0.1));
   CHECK(r.unexplained_share == 0);
   c.frame.blocks[1].polygon = box_polygon(1, 0, 2, 1);
   CHECK(c.look().findings.empty());
@@ -554,7 +555,7 @@ TEST_CASE("audit: findings do not depend on threads, nor on where the model lies
   CHECK(one.findings[0].share == two.findings[0].share);
   for (Block& b : c.frame.blocks)
     for (Vec2& p : b.polygon) p += Vec2{1048576, -1048576};
-  CHECK(c.look().findings[0].share == doctest::Approx(one.findings[0].share).epsilon(1e-6));
+  CHECK(c.look().findings[0].share == approx(one.findings[0].share).epsilon(1e-6));
 }
 
 }  // namespace test_check_frame

@@ -147,7 +147,7 @@ TEST_CASE("stress around an initial one is the derivative of its energy, turns a
                           elastic_state(kModuli, H - step * d, kT0).density) /
                          (2 * step);
     // second differences of an energy of 1e7: 1e-6^2 of it, and round-off 1e-16 / 1e-6
-    CHECK(slope == doctest::Approx(contract(p, d)).epsilon(1e-6));
+    CHECK(slope == approx(contract(p, d)).epsilon(1e-6));
   }
   const Mat2 tau = p * transpose(kIdentity + H);
   CHECK(std::abs(tau.xy - tau.yx) <= 1e-14 * size_of(tau));
@@ -172,11 +172,11 @@ TEST_CASE("pressure of the ground grows with depth, k0 gives the horizontal one"
   in.given = in.with_depth = true;
   in.level = 100, in.pressure = 1e6, in.density = 2000, in.k0 = 0.4;
   const Mat2 s = in_situ_stress(in, {0, -10}, 50);
-  CHECK(s.yy == doctest::Approx(-2e6).epsilon(1e-15));
-  CHECK(s.xx == doctest::Approx(-0.8e6).epsilon(1e-15));
+  CHECK(s.yy == approx(-2e6).epsilon(1e-15));
+  CHECK(s.xx == approx(-0.8e6).epsilon(1e-15));
   in.k0 = std::nan("");
   in.horizontal_pressure = 3e5, in.horizontal_gradient = 1e4;
-  CHECK(in_situ_stress(in, {0, -10}, 50).xx == doctest::Approx(-8e5).epsilon(1e-15));
+  CHECK(in_situ_stress(in, {0, -10}, 50).xx == approx(-8e5).epsilon(1e-15));
 }
 
 TEST_CASE("ground laid with its stress is at rest, with the gradient of gravity") {

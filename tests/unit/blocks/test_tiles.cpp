@@ -1,5 +1,6 @@
 // Tiles of blocks that lie together.
 
+#include "support/relative.h"
 #include "talus/blocks/tiles.h"
 
 #include <doctest/doctest.h>
@@ -49,14 +50,14 @@ TEST_CASE("a square of 64 x 64 falls into rectangles of 8 x 16") {
     CAPTURE(index);
     CHECK(e.count == 128);
     const Vec2 cells = (1 / 2.5) * (e.high - e.low) + Vec2{1, 1};
-    CHECK(cells.x * cells.y == doctest::Approx(128));
-    CHECK(std::max(cells.x, cells.y) == doctest::Approx(16));
+    CHECK(cells.x * cells.y == test::approx(128));
+    CHECK(std::max(cells.x, cells.y) == test::approx(16));
     // the curve never jumps: where a tile ends the next one begins
     if (index == 0) continue;
     const Extent& before = tiles[index - 1];
     const Vec2 apart{std::max(e.low.x - before.high.x, before.low.x - e.high.x),
                      std::max(e.low.y - before.high.y, before.low.y - e.high.y)};
-    CHECK(std::max(apart.x, apart.y) <= doctest::Approx(2.5));
+    CHECK(std::max(apart.x, apart.y) <= test::approx(2.5));
   }
 }
 

@@ -1,5 +1,6 @@
 // What the stress is that hard contacts give by, and who gives (theory 4.22).
 
+#include "support/relative.h"
 #include "talus/contact/contact_give.h"
 
 #include <doctest/doctest.h>
@@ -30,7 +31,7 @@ PreparedRun prepared(const std::string& model, const std::string& more = "",
 }
 
 void check_give(const PreparedRun& run, double stress, const std::string& cause) {
-  CHECK(run.scene.give.stress == doctest::Approx(stress).epsilon(1e-9));
+  CHECK(run.scene.give.stress == test::approx(stress).epsilon(1e-9));
   CHECK(run.scene.give.cause == cause);
 }
 
@@ -72,7 +73,7 @@ TEST_CASE("contact give: a face of length l closes by 1e-5 l under the stress") 
   const ContactGive give{3e6, "", 0};
   // two points bear l t times the stress
   const double l = 0.7, thickness = 2, force = 0.5 * l * thickness * give.stress;
-  CHECK(force * give.per_force(thickness) == doctest::Approx(1e-5 * l));
+  CHECK(force * give.per_force(thickness) == test::approx(1e-5 * l));
   CHECK(ContactGive{}.per_force(1) == 0);
 }
 
@@ -96,7 +97,7 @@ TEST_CASE("contact give: no stage is shorter than the step that it is limited by
   PreparedRun slow = prepared(kGravity);
   slow.plans[0].dt = 0.1;
   const double per_force = 2e-5 / 20000, mass = 4000;
-  CHECK(yields_more(slow.scene, slow.plans) == doctest::Approx(4 / mass * 0.01 / per_force));
+  CHECK(yields_more(slow.scene, slow.plans) == test::approx(4 / mass * 0.01 / per_force));
 }
 
 }  // namespace test_contact_give

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/convex_parts.h"
+#include "support/relative.h"
 
 namespace test_face_ends {
 
@@ -47,7 +48,7 @@ TEST_CASE("parts apart: face against face has the common stretch, half way acros
   // seen from the block's origin, which lies at (0.1, gap)
   CHECK(norm(e.met.begin - Vec2{-0.5, -0.5 * gap}) < kPlace);
   CHECK(norm(e.met.end - Vec2{0.5, -0.5 * gap}) < kPlace);
-  for (const double closure : e.met.closure) CHECK(closure == doctest::Approx(-gap));
+  for (const double closure : e.met.closure) CHECK(closure == approx(-gap));
   const Ends exchanged = ends_of(floor_body(), block_over(1, -gap), kMargin);
   CHECK(norm(exchanged.met.normal - Vec2{0, -1}) < kPlace);
   CHECK(norm(exchanged.met.begin - Vec2{0.6, 0.5 * gap}) < kPlace);
@@ -76,8 +77,8 @@ TEST_CASE(
       // the slope along the floor is the tangent of the tilt; a place is half way between floor and block
       CHECK(norm(from - Vec2{0, -0.5 * gap}) < kPlace);
       CHECK(norm(to - Vec2{sign * most * run / rise, 0.5 * (most - gap)}) < 100 * kPlace);
-      CHECK(e.met.closure[near] == doctest::Approx(-gap));
-      CHECK(e.met.closure[1 - near] == doctest::Approx(-gap - most));
+      CHECK(e.met.closure[near] == approx(-gap));
+      CHECK(e.met.closure[1 - near] == approx(-gap - most));
     }
   }
 }
@@ -92,11 +93,11 @@ TEST_CASE("parts apart: a corner over a face has the corner and a place that bea
     // sides rise by as much as they run: reach along the tangent, to the one side or the other
     const bool begins = std::abs(e.met.closure[0] + gap) < kPlace;
     CHECK(norm((begins ? e.met.begin : e.met.end) - Vec2{0, -0.5 * gap}) < kPlace);
-    CHECK(e.met.closure[begins ? 1 : 0] == doctest::Approx(-gap - reach));
-    CHECK(e.met.length() == doctest::Approx(reach));
+    CHECK(e.met.closure[begins ? 1 : 0] == approx(-gap - reach));
+    CHECK(e.met.length() == approx(reach));
     const Ends turned = ends_of(floor_body(), square, reach);
     REQUIRE(turned.any);
-    CHECK(turned.met.length() == doctest::Approx(reach));
+    CHECK(turned.met.length() == approx(reach));
   }
 }
 
@@ -126,10 +127,9 @@ TEST_CASE("parts apart: hard contacts in overlap stand on the ends of their face
   const Ends e = ends_of(block_over(1, c), floor_body(), kMargin);
   CHECK(e.met.kind == PartsMet::kOverlap);
   REQUIRE(e.any);
-  CHECK(e.met.begin.x == doctest::Approx(-0.5));
-  CHECK(e.met.end.x == doctest::Approx(0.5));
-  for (const double closure : e.met.closure)
-    CHECK(closure == doctest::Approx(c).epsilon(1e-9));  // 1e-16 m of c
+  CHECK(e.met.begin.x == approx(-0.5));
+  CHECK(e.met.end.x == approx(0.5));
+  for (const double closure : e.met.closure) CHECK(closure == approx(c).epsilon(1e-9));  // 1e-16 m of c
 }
 
 TEST_CASE("parts apart: corners of level blocks that slide past each other over a slanted joint are far") {
@@ -255,7 +255,7 @@ TEST_CASE("overlap: a chord ends at the corner where a side along the normal beg
       CAPTURE(further);
       CHECK(std::abs(met.closure[0]) <= 1e-15);
       CHECK(std::abs(met.closure[1]) <= 1e-15);
-      CHECK(met.length() == doctest::Approx(0.5).epsilon(1e-12));
+      CHECK(met.length() == approx(0.5).epsilon(1e-12));
     }
 }
 
@@ -269,7 +269,7 @@ TEST_CASE("parts apart: a tilted face has the same length from either side") {
     REQUIRE(meeting.look(one.now(), two.now(), {}, kMargin, kRounding).kind == PartsMet::kApart);
     meeting.choose_way({}, {}, {});
     REQUIRE(meeting.face_ends(kMargin));
-    CHECK(meeting.met().length() == doctest::Approx(1).epsilon(1e-12));
+    CHECK(meeting.met().length() == approx(1).epsilon(1e-12));
   }
 }
 
@@ -323,7 +323,7 @@ TEST_CASE("parts apart: of the two sides of one interface one that a corner hang
       const PartMotion still, turns{{}, {0, 3 * lean, -3 * lean, 0}};
       meeting.choose_way(exchanged ? turns : still, exchanged ? still : turns, {0, kLevel});
       CHECK(meeting.met().kind == PartsMet::kApart);
-      CHECK(std::abs(meeting.met().normal.y) == doctest::Approx(1).epsilon(1e-9));
+      CHECK(std::abs(meeting.met().normal.y) == approx(1).epsilon(1e-9));
     }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/block_scene.h"
+#include "support/relative.h"
 #include "talus/contact/pairs.h"
 #include "talus/contact/patch_rows.h"
 
@@ -249,13 +250,13 @@ TEST_CASE("patch memory: what opens loses its share of the shear, for good; what
   for (int k = 1; k <= kSteps; ++k)
     blocks.put(rocked(blocks, 2 * kClosure * k / kSteps, kSheared * kClosure));
   REQUIRE(blocks.count() == 1);
-  CHECK(blocks.patches()[0].length == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(blocks.patches()[0].length == approx(0.5).epsilon(1e-3));
   // a turn by 2 c moves places in the overlap, c above the corner at most, by 2 c^2: 4e-3 of the shear
   CHECK(off(blocks.between(0, 1).shear, 0.5 * before) < 1e-2);
   for (int k = kSteps - 1; k >= 0; --k)
     blocks.put(rocked(blocks, 2 * kClosure * k / kSteps, kSheared * kClosure));
   CHECK(off(blocks.between(0, 1).shear, 0.5 * before) < 1e-2);
-  CHECK(blocks.patches()[0].length == doctest::Approx(1).epsilon(1e-6));
+  CHECK(blocks.patches()[0].length == approx(1).epsilon(1e-6));
 }
 
 TEST_CASE("patch memory: accumulated slip is kept when the patch shortens and lengthens again") {
@@ -271,7 +272,7 @@ TEST_CASE("patch memory: accumulated slip is kept when the patch shortens and le
   CHECK(off(blocks.patches()[0].slip[1], 0.2) < kFound);
   CHECK(off(blocks.patches()[0].slip_signed[1], 0.05) < 4 * kFound);
   for (int k = kSteps - 1; k >= 0; --k) blocks.put(rocked(blocks, 2 * kClosure * k / kSteps, 0));
-  CHECK(blocks.patches()[0].length == doctest::Approx(1).epsilon(1e-6));
+  CHECK(blocks.patches()[0].length == approx(1).epsilon(1e-6));
   CHECK(off(blocks.patches()[0].slip[0], 0.1) < kFound);
   CHECK(off(blocks.patches()[0].slip[1], 0.2) < kFound);  // that of the old end
 }
@@ -533,7 +534,7 @@ TEST_CASE("patch memory: each of two patches beside an intact face remembers its
   for (FaceState& face : blocks.faces()) face.broken = true;
   blocks.put(turned_by(0.02 * kSteps, {-0.5 * c, -c}));
   REQUIRE(blocks.count() == 1);
-  CHECK(blocks.patches()[0].length == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(blocks.patches()[0].length == approx(0.5).epsilon(1e-3));
 }
 
 }  // namespace test_patch_memory

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/block_scene.h"
+#include "support/relative.h"
 #include "talus/corners/follow.h"
 
 namespace test_covered {
@@ -173,7 +174,7 @@ TEST_CASE("an end of an interface keeps its memory when another corner comes to 
     // it moved by 2 mm to the left; along the tangent of the upper block's corners that is less, of the lower
     // one's more
     const double now = -over.along - c.anchor, moved = std::abs(now - off[static_cast<size_t>(c.face.end)]);
-    CHECK(moved == doctest::Approx(2e-3).epsilon(1e-9));
+    CHECK(moved == approx(2e-3).epsilon(1e-9));
   }
 }
 
@@ -184,7 +185,7 @@ TEST_CASE("an overlap that a hard point was born with is kept for now") {
   state.displacement[1].y = -2e-5;
   update(scene, state);
   REQUIRE(state.contacts.size() == 2);
-  for (const Contact& c : state.contacts) CHECK(c.allowed == doctest::Approx(2e-5).epsilon(1e-9));
+  for (const Contact& c : state.contacts) CHECK(c.allowed == approx(2e-5).epsilon(1e-9));
 }
 
 }  // namespace test_covered

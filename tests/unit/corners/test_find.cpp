@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/block_scene.h"
+#include "support/relative.h"
 #include "talus/corners/corner_rows.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/step/scene.h"
@@ -96,7 +97,7 @@ TEST_CASE("a face that stands open like a wedge has two ends, wherever its corne
         CHECK(points[0].partner == 1);
         CHECK(points[1].partner == 0);
         // all of the face but what has slid past, and what the turn takes
-        CHECK(points[0].length + points[1].length == doctest::Approx(1).epsilon(2e-3));
+        CHECK(points[0].length + points[1].length == approx(1).epsilon(2e-3));
         CHECK(points[0].length == points[1].length);
       }
 }
@@ -112,7 +113,7 @@ TEST_CASE("a short overlap that stands open like a wedge has two ends") {
       INFO("turned " << turned << ", over " << over);
       REQUIRE(points.size() == 2);
       CHECK(points[0].partner == 1);
-      CHECK(points[0].length + points[1].length == doctest::Approx(over).epsilon(0.1));
+      CHECK(points[0].length + points[1].length == approx(over).epsilon(0.1));
     }
 }
 
@@ -159,7 +160,7 @@ TEST_CASE("corners that come over an edge within the step take nothing of the fa
   for (const int k : {0, 1}) {
     const ContactPoint& end = points[static_cast<size_t>(ends[k])];
     CHECK(end.partner == ends[1 - k]);
-    CHECK(end.length == doctest::Approx(0.5 * 0.9995).epsilon(1e-9));
+    CHECK(end.length == approx(0.5 * 0.9995).epsilon(1e-9));
     CHECK(points[static_cast<size_t>(coming[k])].partner == -1);
     CHECK(points[static_cast<size_t>(coming[k])].length == 0);
   }
@@ -410,7 +411,7 @@ TEST_CASE("a corner at the thin end of a block does not act on the far side of t
     const Polygon a{corner, {corner.x, -0.5}, {1.5, -0.5}, {1.5, corner.y}};
     const auto points = touch({a, b});
     CHECK(points.size() >= 2);
-    for (const ContactPoint& p : points) CHECK(p.gap == doctest::Approx(-5e-5).epsilon(1e-6));
+    for (const ContactPoint& p : points) CHECK(p.gap == approx(-5e-5).epsilon(1e-6));
   }
 }
 
@@ -444,7 +445,7 @@ TEST_CASE("a force at two corners that slide past each other deep inside passes 
     CHECK(points[0].key.block_a == 1);
     CHECK(points[0].key.vertex == 0);
     CHECK(points[0].key.edge == 2);
-    CHECK(points[0].gap == doctest::Approx(gap_over(lower, 2, upper[0])).epsilon(1e-9));
+    CHECK(points[0].gap == approx(gap_over(lower, 2, upper[0])).epsilon(1e-9));
   }
 }
 
@@ -462,8 +463,7 @@ TEST_CASE("two sides that turn out of line leave no corner on the far side of th
   ContactSearch search;
   const auto& points = search.touch(s.blocks, start_state(s), 0, 1, range).points;
   REQUIRE(points.size() >= 1);
-  for (const ContactPoint& p : points)
-    CHECK(p.gap == doctest::Approx(gap_over(right, 1, left[0])).epsilon(1e-9));
+  for (const ContactPoint& p : points) CHECK(p.gap == approx(gap_over(right, 1, left[0])).epsilon(1e-9));
 }
 
 TEST_CASE(
@@ -530,11 +530,11 @@ TEST_CASE(
     ContactSearch search;
     for (const ContactPoint& c : search.touch(scene.blocks, start_state(scene), 0, 1, range).points) {
       if (std::abs(c.normal.x) < 0.9) continue;
-      CHECK(c.gap == doctest::Approx(-deep).epsilon(1e-12));
+      CHECK(c.gap == approx(-deep).epsilon(1e-12));
       length += c.length;
     }
     // the mean length over the depth: exact for a parallelogram
-    CHECK(length * deep == doctest::Approx(common.area).epsilon(1e-9));
+    CHECK(length * deep == approx(common.area).epsilon(1e-9));
   }
 }
 

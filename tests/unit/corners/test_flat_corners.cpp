@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/block_scene.h"
+#include "support/relative.h"
 #include "talus/corners/corner_rows.h"
 #include "talus/step/scene.h"
 
@@ -45,8 +46,8 @@ TEST_CASE("a face over a flat corner has two ends, and both stand for half of it
     const auto points = touch(s, 0, 1);
     REQUIRE(points.size() == 2);
     for (const ContactPoint& p : points) {
-      CHECK(p.key.block_a == 1);  // the upper block's corners act on the lower's top
-      CHECK(p.length == doctest::Approx(1.25).epsilon(1e-5));  // the bump tilts the face by 1e-6
+      CHECK(p.key.block_a == 1);                      // the upper block's corners act on the lower's top
+      CHECK(p.length == approx(1.25).epsilon(1e-5));  // the bump tilts the face by 1e-6
     }
     CHECK(points[0].partner == 1);
     CHECK(points[1].partner == 0);
@@ -63,7 +64,7 @@ TEST_CASE("flat corners on both sides at different places: still one face of two
   const Scene s = scene_of({lower(0), {{0.5, 1}, {1.5, 1}, {3, 1}, {3, 2}, {0.5, 2}}});
   const auto points = touch(s, 0, 1);
   REQUIRE(points.size() == 2);
-  CHECK(total_length(points) == doctest::Approx(2.5).epsilon(1e-14));
+  CHECK(total_length(points) == approx(2.5).epsilon(1e-14));
 }
 
 TEST_CASE("two blocks whose joint ends at a flat corner: a face of two points each") {
@@ -74,7 +75,7 @@ TEST_CASE("two blocks whose joint ends at a flat corner: a face of two points ea
     for (const int other : {1, 2}) {
       const auto points = touch(s, 0, other);
       REQUIRE(points.size() == 2);
-      CHECK(total_length(points) == doctest::Approx(2).epsilon(1e-12));
+      CHECK(total_length(points) == approx(2).epsilon(1e-12));
       CHECK(std::abs(points[0].gap) < 1e-15);
       CHECK(std::abs(points[1].gap) < 1e-15);
     }
@@ -86,7 +87,7 @@ TEST_CASE("a corner that comes down on a flat corner touches one edge") {
   const auto points = touch(s, 0, 1);
   REQUIRE(points.size() == 1);
   CHECK(points[0].key.block_a == 1);
-  CHECK(points[0].gap == doctest::Approx(0.001).epsilon(1e-12));
+  CHECK(points[0].gap == approx(0.001).epsilon(1e-12));
 }
 
 TEST_CASE("a corner that turns by more than the limit is a corner") {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "support/cut_case.h"
+#include "support/relative.h"
 
 namespace test_cut_traces {
 
@@ -55,12 +56,12 @@ TEST_CASE("cut along surveyed traces: lines with their bends, dead ends taken ba
   CHECK(cut.surveys[0].lines == 3);
   CHECK(cut.surveys[0].inside == 2);
   // 6 m level, then to the side at (12, 20/7): sqrt(6^2 + (6/7)^2); 5 m steep
-  CHECK(cut.surveys[0].length == doctest::Approx(6 + std::sqrt(36 + 36.0 / 49) + 5).epsilon(1e-9));
-  CHECK(cut.dead_end_length == doctest::Approx(3).epsilon(1e-6));
+  CHECK(cut.surveys[0].length == approx(6 + std::sqrt(36 + 36.0 / 49) + 5).epsilon(1e-9));
+  CHECK(cut.dead_end_length == approx(3).epsilon(1e-6));
   double below = 0;
   for (const CutBlock& b : cut.blocks)
     if (cut.point[static_cast<size_t>(b.point[0])].y == 0) below += signed_area(cut.polygon(b));
-  CHECK(below == doctest::Approx(12 + 6 * 2 + 0.5 * 6 * 6.0 / 7 - 0.0 * 8).epsilon(1e-6));
+  CHECK(below == approx(12 + 6 * 2 + 0.5 * 6 * 6.0 / 7 - 0.0 * 8).epsilon(1e-6));
   const auto weak = std::find_if(cut.origins.begin(), cut.origins.end(),
                                  [](const Origin& o) { return o.name == "survey"; });
   REQUIRE(weak != cut.origins.end());

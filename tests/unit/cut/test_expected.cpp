@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "support/relative.h"
 #include "support/told.h"
 #include "talus/cut/layout.h"
 #include "talus/model/read_model.h"
@@ -78,7 +79,7 @@ TEST_CASE("expected blocks: what sections will make, before anything is drawn") 
     const Numbers n = numbers(kRock + more);
     INFO(what, ": ", n.expected, " expected, ", n.cut);
     CHECK(n.cut > 500);
-    CHECK(n.expected == doctest::Approx(n.cut).epsilon(0.25));
+    CHECK(n.expected == approx(n.cut).epsilon(0.25));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "support/cut_case.h"
+#include "support/relative.h"
 
 namespace test_joint_set {
 
@@ -98,32 +99,30 @@ void check_places(const JointSetInput& set) {
 
 TEST_CASE("apparent dip: tan of it is tan dip times cos of the angle to the section") {
   // tan 75 cos(302.5 - 60) = -1.7232: the trace rises towards +x at 59.87 deg
-  CHECK(apparent_dip(degrees(75), degrees(302.5), degrees(60)).angle ==
-        doctest::Approx(degrees(59.87)).epsilon(1e-4));
-  CHECK(apparent_dip(degrees(55), 0, degrees(60)).angle == doctest::Approx(degrees(-35.53)).epsilon(1e-4));
+  CHECK(apparent_dip(degrees(75), degrees(302.5), degrees(60)).angle == approx(degrees(59.87)).epsilon(1e-4));
+  CHECK(apparent_dip(degrees(55), 0, degrees(60)).angle == approx(degrees(-35.53)).epsilon(1e-4));
   for (double dip = 5; dip < 90; dip += 17) {
     for (double to = 0; to < 360; to += 37) {
       const ApparentDip a = apparent_dip(degrees(dip), degrees(to), degrees(60));
       const double slope = std::tan(degrees(dip)) * std::cos(degrees(to - 60));
-      CHECK(std::tan(a.angle) == doctest::Approx(-slope).epsilon(kRound));
+      CHECK(std::tan(a.angle) == approx(-slope).epsilon(kRound));
       // planes 1 m apart: the pole less its part across the section is what the traces are spaced by
       const double across = std::sin(degrees(dip)) * std::sin(degrees(to - 60));
-      CHECK(a.widening == doctest::Approx(1 / std::sqrt(1 - across * across)).epsilon(kRound));
+      CHECK(a.widening == approx(1 / std::sqrt(1 - across * across)).epsilon(kRound));
     }
   }
 }
 
 TEST_CASE("apparent dip: along the dip direction the true dip, along the strike level") {
   const ApparentDip along = apparent_dip(degrees(40), degrees(110), degrees(110));
-  CHECK(along.angle == doctest::Approx(degrees(-40)).epsilon(kRound));
-  CHECK(along.widening == doctest::Approx(1).epsilon(kRound));
-  CHECK(apparent_dip(degrees(40), degrees(110), degrees(290)).angle ==
-        doctest::Approx(degrees(40)).epsilon(kRound));
+  CHECK(along.angle == approx(degrees(-40)).epsilon(kRound));
+  CHECK(along.widening == approx(1).epsilon(kRound));
+  CHECK(apparent_dip(degrees(40), degrees(110), degrees(290)).angle == approx(degrees(40)).epsilon(kRound));
   const ApparentDip strike = apparent_dip(degrees(40), degrees(110), degrees(200));
   CHECK(std::abs(strike.angle) < kRound);
-  CHECK(strike.widening == doctest::Approx(1 / std::cos(degrees(40))).epsilon(kRound));
+  CHECK(strike.widening == approx(1 / std::cos(degrees(40))).epsilon(kRound));
   CHECK(apparent_dip(0, 0, 1).angle == 0);
-  CHECK(std::abs(apparent_dip(degrees(90), 0.3, 0.3).angle) == doctest::Approx(degrees(90)).epsilon(kRound));
+  CHECK(std::abs(apparent_dip(degrees(90), 0.3, 0.3).angle) == approx(degrees(90)).epsilon(kRound));
 }
 
 TEST_CASE("a joint set in space is widened and tells its apparent dip") {
@@ -131,8 +130,8 @@ TEST_CASE("a joint set in space is widened and tells its apparent dip") {
   set.in_space = true;
   set.dip = degrees(40), set.dip_direction = degrees(110);
   const JointSetNote note = describe(set, degrees(200));
-  CHECK(note.spacing == doctest::Approx(3 / std::cos(degrees(40))).epsilon(kRound));
-  CHECK(describe(set, degrees(110)).apparent_dip == doctest::Approx(degrees(40)).epsilon(kRound));
+  CHECK(note.spacing == approx(3 / std::cos(degrees(40))).epsilon(kRound));
+  CHECK(describe(set, degrees(110)).apparent_dip == approx(degrees(40)).epsilon(kRound));
   set.dip = degrees(90);
   const Box box{{0, 0}, {10, 10}};
   CHECK(joint_set_defect(set, describe(set, degrees(200)), box).text.find("parallel to the section") !=

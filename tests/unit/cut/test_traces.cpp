@@ -9,6 +9,7 @@
 #include <set>
 
 #include "support/cut_case.h"
+#include "support/relative.h"
 #include "talus/cut/layout.h"
 
 namespace test_traces {
@@ -222,7 +223,7 @@ TEST_CASE("a joint set of one region leaves the others whole, also where they ov
   }();
   REQUIRE(traces.joint_sets.size() == 1);
   CHECK(traces.joint_sets[0].traces == 10);
-  CHECK(traces.joint_sets[0].length == doctest::Approx(4 * 10 + 6 * 5).epsilon(1e-12));
+  CHECK(traces.joint_sets[0].length == approx(4 * 10 + 6 * 5).epsilon(1e-12));
 }
 
 }  // namespace test_traces

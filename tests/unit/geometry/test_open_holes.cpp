@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/box_polygon.h"
+#include "support/relative.h"
 #include "support/shortest_tree.h"
 #include "talus/base/random.h"
 #include "talus/geometry/arrangement.h"
@@ -84,10 +85,10 @@ TEST_CASE("cuts that open a hole: two, straight across the gap, and far apart") 
   const std::vector<Polyline> rings{box_polygon(0, 0, 10, 10), box_polygon(4, 1, 6, 3)};
   const auto cuts = opening_cuts(rings, 0.1, 1e-9);
   REQUIRE(cuts.size() == 2);
-  CHECK(length_of(cuts) == doctest::Approx(2));  // down to the side 1 m below
+  CHECK(length_of(cuts) == approx(2));  // down to the side 1 m below
   CHECK(faces(rings, cuts).size() == 3);
   // from corner to corner: the piece between them is as large as the gap
-  CHECK(std::abs(cuts[0][0].x - cuts[1][0].x) == doctest::Approx(2));
+  CHECK(std::abs(cuts[0][0].x - cuts[1][0].x) == approx(2));
 }
 
 TEST_CASE("cuts that open a hole: longer where the piece beside them would be a sliver") {

@@ -1,3 +1,4 @@
+#include "support/relative.h"
 #include "talus/geometry/shapes.h"
 
 #include <doctest/doctest.h>
@@ -40,7 +41,7 @@ TEST_CASE("a circle of any number of segments has the area of the circle, regula
   // three segments by hand: half the side of a triangle of area pi is sqrt(pi / sqrt 3), R = 2 / sqrt 3 times
   // that
   const Polygon three = circle_polygon({0, 0}, 2, 3);
-  CHECK(three[0].x == doctest::Approx(2 / std::sqrt(3.0) * std::sqrt(kPi / std::sqrt(3.0))).epsilon(kRound));
+  CHECK(three[0].x == test::approx(2 / std::sqrt(3.0) * std::sqrt(kPi / std::sqrt(3.0))).epsilon(kRound));
 }
 
 TEST_CASE("a horseshoe has the area of the half circle on its walls") {

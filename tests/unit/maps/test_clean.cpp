@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/relative.h"
 #include "talus/base/random.h"
 #include "talus/maps/clean.h"
 
@@ -46,7 +47,7 @@ TEST_CASE("clean: an end that stops short is brought to the line, straight on, a
   const Vec2 end = lines[1].points.back();
   CHECK(std::abs(end.y) < 1e-12);
   // on the line through (3, 4) and (3.9, 0.05)
-  CHECK(end.x == doctest::Approx(3.9 + 0.9 * 0.05 / 3.95).epsilon(1e-12));
+  CHECK(end.x == test::approx(3.9 + 0.9 * 0.05 / 3.95).epsilon(1e-12));
   CHECK(has_point(lines[0].points, end));
   CHECK(lines[0].points.size() == 3);
 }

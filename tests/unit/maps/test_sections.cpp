@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "support/relative.h"
 #include "talus/base/error.h"
 #include "talus/maps/expand.h"
 #include "talus/maps/import.h"
@@ -181,7 +182,7 @@ TEST_CASE("maps: areas are outlines, openings or stones, of any kind; as joints 
   REQUIRE(model.blocks.size() == 2);
   CHECK(model.blocks[1].name == "stone-2");
   CHECK(model.blocks[1].kind == BlockKind::kFixed);
-  CHECK(std::abs(signed_area(model.blocks[1].polygon)) == doctest::Approx(1));
+  CHECK(std::abs(signed_area(model.blocks[1].polygon)) == test::approx(1));
   CHECK(model.regions[0].kind == BlockKind::kRigid);
 
   maps.list.back() = map_of("rims", "wall", MapUse::kJoints);

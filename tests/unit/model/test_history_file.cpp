@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "support/record_text.h"
+#include "support/relative.h"
 #include "talus/model/read_model.h"
 
 namespace test_history_file {
@@ -64,7 +65,7 @@ TEST_CASE("history file: columns by title, name and quantity become SI; steps ma
   const History& h = model.histories[0];
   CHECK(h.time == std::vector<double>{0, 0.01, 0.04});
   CHECK(h.value == std::vector<double>{1, 2, 4});
-  CHECK(h.integral[2] == doctest::Approx(0.015 + 0.09));
+  CHECK(h.integral[2] == approx(0.015 + 0.09));
   CHECK(c.read("file = \"m.csv\"\ncolumn = \"velocity\"\n").histories[0].value ==
         std::vector<double>{0.1, 0.2, 0.4});
   CHECK(c.read("file = \"m.csv\"\ncolumn = \"v_cm_s\"\n").histories[0].value ==
@@ -79,7 +80,7 @@ TEST_CASE("history file: columns by title, name and quantity become SI; steps ma
 TEST_CASE("history file: scale, and the only column") {
   Case c;
   c.write("m.csv", "t [s],x_g\n0,0\n1,0.5\n");
-  CHECK(c.read("file = \"m.csv\"\nscale = -2\n").histories[0].value[1] == doctest::Approx(-9.80665));
+  CHECK(c.read("file = \"m.csv\"\nscale = -2\n").histories[0].value[1] == approx(-9.80665));
   CHECK(c.read("time = [0, 1]\nvalue = [1, 2]\nscale = 3\n").histories[0].value == std::vector<double>{3, 6});
   CHECK(c.message == "");
 }
@@ -90,11 +91,11 @@ TEST_CASE("history file: bare values take their step and unit from the model") {
   const Model model = c.read("file = \"bare.txt\"\ndt = \"20 ms\"\nunit = \"gal\"\n");
   CHECK(c.message == "");
   CHECK(model.histories[0].time == std::vector<double>{0, 0.02, 0.04});
-  CHECK(model.histories[0].value[2] == doctest::Approx(-0.03));
+  CHECK(model.histories[0].value[2] == approx(-0.03));
   CHECK(c.read("file = \"bare.txt\"\ndt = \"1 s\"\nunit = \"N\"\n").histories[0].value ==
         std::vector<double>{1, 2, -3});
   c.write("table.csv", "t [s],ax\n0,1\n1,5\n");
-  CHECK(c.read("file = \"table.csv\"\nunit = \"cm/s2\"\n").histories[0].value[1] == doctest::Approx(0.05));
+  CHECK(c.read("file = \"table.csv\"\nunit = \"cm/s2\"\n").histories[0].value[1] == approx(0.05));
   CHECK(c.message == "");
   // without them, or against what the file says
   c.read("file = \"bare.txt\"\n");
@@ -117,7 +118,7 @@ TEST_CASE("history file: records are read as talus record reads them") {
   const Model model = c.read("file = \"a.AT2\"\n");
   CHECK(c.message == "");
   CHECK(model.histories[0].time == std::vector<double>{0, 0.5, 1, 1.5});
-  CHECK(model.histories[0].value[2] == doctest::Approx(1.96133));
+  CHECK(model.histories[0].value[2] == approx(1.96133));
   c.read("file = \"a.AT2\"\ncolumn = \"velocity\"\n");
   CHECK(c.message.find("there is no column \"velocity\" in this PEER file") != std::string::npos);
   c.write("j.csv", jma_text({1, 2, 3}, 100));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/relative.h"
 #include "talus/model/joint_law.h"
 
 namespace test_joint_law {
@@ -25,16 +26,16 @@ TEST_CASE("joint law: strength before and after, over areas and times") {
   CHECK(law.residual().friction == law.peak().friction);  // none of its own
   const JointStrength force = law.peak().over(0.5);
   CHECK(force.tension == 2);
-  CHECK(force.limit(10) == doctest::Approx(13).epsilon(1e-14));
-  CHECK(force.limit(-1) == doctest::Approx(2).epsilon(1e-14));
+  CHECK(force.limit(10) == test::approx(13).epsilon(1e-14));
+  CHECK(force.limit(-1) == test::approx(2).epsilon(1e-14));
   CHECK(force.limit(-4) == 0);
-  CHECK(law.residual().over(0.5).over(0.1).cohesion == doctest::Approx(0.1));
+  CHECK(law.residual().over(0.5).over(0.1).cohesion == test::approx(0.1));
 
   j.cohesion = j.tensile_strength = 0;
   CHECK_FALSE(JointLaw(j).can_break());
   j.residual_friction_angle = 30 * kDegree;  // what is lost is friction
   CHECK(JointLaw(j).can_break());
-  CHECK(JointLaw(j).residual().friction == doctest::Approx(1 / std::sqrt(3.0)).epsilon(1e-14));
+  CHECK(JointLaw(j).residual().friction == test::approx(1 / std::sqrt(3.0)).epsilon(1e-14));
   j.bonded = true;
   CHECK_FALSE(JointLaw(j).can_break());
   CHECK(JointLaw(j).holds());
@@ -46,8 +47,8 @@ TEST_CASE("joint law: rise, give and the closure under a stress") {
   j.dilation_angle = 45 * kDegree, j.dilation_slip = 0.01;
   j.normal_stiffness = 100;
   const JointLaw law(j);
-  CHECK(law.rise(0.004) == doctest::Approx(0.004).epsilon(1e-14));
-  CHECK(law.rise(0.04) == doctest::Approx(0.01).epsilon(1e-14));
+  CHECK(law.rise(0.004) == test::approx(0.004).epsilon(1e-14));
+  CHECK(law.rise(0.04) == test::approx(0.01).epsilon(1e-14));
   CHECK(JointLaw().rise(1) == 0);
   CHECK(law.is_soft(0));
   CHECK_FALSE(law.is_soft(1));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/relative.h"
 #include "talus/base/text_file.h"
 #include "talus/model/read_model.h"
 #include "talus/model/schema.h"
@@ -22,14 +23,14 @@ TEST_CASE("units: numbers with units become SI") {
   };
   CHECK(value("5 GPa", Dimension::kStress) == 5e9);
   CHECK(value("5GPa", Dimension::kStress) == 5e9);
-  CHECK(value(" 0.4 g ", Dimension::kAcceleration) == doctest::Approx(0.4 * 9.80665));
-  CHECK(value("180 deg", Dimension::kAngle) == doctest::Approx(M_PI).epsilon(1e-15));
-  CHECK(value("-3e2 mm", Dimension::kLength) == doctest::Approx(-0.3));
-  CHECK(value("2.7 t/m3", Dimension::kDensity) == doctest::Approx(2700));
-  CHECK(value("26 kN/m3", Dimension::kDensity) == doctest::Approx(26e3 / 9.80665).epsilon(1e-15));
+  CHECK(value(" 0.4 g ", Dimension::kAcceleration) == test::approx(0.4 * 9.80665));
+  CHECK(value("180 deg", Dimension::kAngle) == test::approx(M_PI).epsilon(1e-15));
+  CHECK(value("-3e2 mm", Dimension::kLength) == test::approx(-0.3));
+  CHECK(value("2.7 t/m3", Dimension::kDensity) == test::approx(2700));
+  CHECK(value("26 kN/m3", Dimension::kDensity) == test::approx(26e3 / 9.80665).epsilon(1e-15));
   CHECK(value("40 kPa/m", Dimension::kStiffness) == 4e4);
-  CHECK(value("10 ft", Dimension::kLength) == doctest::Approx(3.048).epsilon(1e-15));
-  CHECK(value("1000 psi", Dimension::kStress) == doctest::Approx(6.894757293168361e6).epsilon(1e-15));
+  CHECK(value("10 ft", Dimension::kLength) == test::approx(3.048).epsilon(1e-15));
+  CHECK(value("1000 psi", Dimension::kStress) == test::approx(6.894757293168361e6).epsilon(1e-15));
   CHECK(value("7", Dimension::kTime) == 7);
   CHECK(value("0", Dimension::kAngle) == 0);
   CHECK(parse_quantity("1.5", Dimension::kAngle).error != "");
@@ -49,9 +50,9 @@ TEST_CASE("histories: linear between points, held outside, integral exact") {
   CHECK(h.value_at(2) == 0);
   CHECK(h.value_at(5) == -2);
   CHECK(h.integral_at(0) == 0);
-  CHECK(h.integral_at(0.5) == doctest::Approx(0.25));
-  CHECK(h.integral_at(2) == doctest::Approx(2));
-  CHECK(h.integral_at(4) == doctest::Approx(1 - 2));  // held at -2 after t = 3
+  CHECK(h.integral_at(0.5) == test::approx(0.25));
+  CHECK(h.integral_at(2) == test::approx(2));
+  CHECK(h.integral_at(4) == test::approx(1 - 2));  // held at -2 after t = 3
 
   // a table that begins later: held before, and the integral still counts from t = 0
   History late;
@@ -59,7 +60,7 @@ TEST_CASE("histories: linear between points, held outside, integral exact") {
   late.value = {3, 3};
   late.integral = {0, 6};
   CHECK(late.integral_at(0) == 0);
-  CHECK(late.integral_at(5) == doctest::Approx(15));
+  CHECK(late.integral_at(5) == test::approx(15));
 }
 
 TEST_CASE("defaults are those the schema publishes") {

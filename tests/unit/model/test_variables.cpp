@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/relative.h"
 #include "support/told.h"
 #include "talus/model/read_model.h"
 #include "talus/run/model_keys.h"
@@ -42,14 +43,14 @@ TEST_CASE("variables stand for values of any type, within texts and in expressio
   const Model m = read(text);
   CHECK(m.title == "wall for $ 5, 3 times");
   CHECK(m.gravity.y == -9.81);
-  CHECK(m.joints.at(0).friction_angle == doctest::Approx(std::numbers::pi / 6).epsilon(1e-15));
-  CHECK(m.joints.at(0).residual_friction_angle == doctest::Approx(std::numbers::pi / 12).epsilon(1e-15));
+  CHECK(m.joints.at(0).friction_angle == approx(std::numbers::pi / 6).epsilon(1e-15));
+  CHECK(m.joints.at(0).residual_friction_angle == approx(std::numbers::pi / 12).epsilon(1e-15));
   CHECK(m.solver.max_iterations == 7);
   CHECK(m.histories.at(0).time.at(1) == 2);
   CHECK(m.supports.at(0).x.history == 0);
   // what stands on a variable follows it
   const Model other = read(text, {"variables.phi=20 deg", "variables.count=8"});
-  CHECK(other.joints.at(0).residual_friction_angle == doctest::Approx(std::numbers::pi / 18).epsilon(1e-15));
+  CHECK(other.joints.at(0).residual_friction_angle == approx(std::numbers::pi / 18).epsilon(1e-15));
   CHECK(other.solver.max_iterations == 17);
   // and a key that is overridden may name one
   CHECK(read(text, {"solver.max_iterations=$(count)"}).solver.max_iterations == 3);

@@ -1,6 +1,7 @@
 // A frame of blocks becomes, for each block, how it has moved: exactly, whatever the motion, and from the
 // state in which displacements were set to zero.
 
+#include "support/relative.h"
 #include "talus/output/read_frames.h"
 
 #include <doctest/doctest.h>
@@ -94,7 +95,7 @@ TEST_CASE("frames: displacement and its gradient of a turned and sheared block, 
   CHECK(f.stress[0].yy == 2e6);
   CHECK(norm(reader.shapes()[0].centre[1] - Vec2{1, 1}) < 1e-15);
   const std::vector<Span> spans = f.spans();
-  CHECK(spans[0].most == doctest::Approx(norm(u)));
+  CHECK(spans[0].most == test::approx(norm(u)));
   CHECK(spans[0].least == 0);
 }
 

@@ -159,7 +159,7 @@ TEST_CASE("a frame of blocks holds F - I and the rates of each block") {
   CHECK(h[6] == relative(std::sin(1.0), 1e-15));
   // against places now: block a is half as long again; a rigid block's rate is against them already
   const std::vector<double> expected{4 / 1.5, 0, 8 / 1.5, 0, 0, -2, 2, 0};
-  for (size_t i = 0; i < l.size(); ++i) CHECK(l[i] == doctest::Approx(expected[i]).epsilon(1e-15));
+  for (size_t i = 0; i < l.size(); ++i) CHECK(l[i] == approx(expected[i]).epsilon(1e-15));
 
   // displacements counted from a state in between: F F0^-1 - I
   s.state.displacement_start = {{0.5, 0}, {0, 1}};

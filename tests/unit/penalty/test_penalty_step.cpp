@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "support/model_text.h"
+#include "support/relative.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
 
@@ -80,7 +81,7 @@ TEST_CASE("penalty: one mass on one spring loses what the spectral radius of New
     // u[n+2] = trace u[n+1] - det u[n], twice
     const double below = u[1] * u[1] - u[0] * u[2];
     const double det = (u[2] * u[2] - u[1] * u[3]) / below;
-    CHECK(std::sqrt(det) == doctest::Approx(std::sqrt(2 / (2 + w * w))).epsilon(1e-6));
+    CHECK(std::sqrt(det) == approx(std::sqrt(2 / (2 + w * w))).epsilon(1e-6));
   }
 }
 
@@ -93,7 +94,7 @@ TEST_CASE("penalty: the mean acceleration keeps the amplitude") {
            how);
   std::array<double, 5> u{};
   for (double& place : u) c.step(0.3 / omega), place = c.moved(0).x;
-  CHECK((u[2] * u[2] - u[1] * u[3]) / (u[1] * u[1] - u[0] * u[2]) == doctest::Approx(1).epsilon(1e-6));
+  CHECK((u[2] * u[2] - u[1] * u[3]) / (u[1] * u[1] - u[0] * u[2]) == approx(1).epsilon(1e-6));
 }
 
 TEST_CASE(
@@ -108,7 +109,7 @@ TEST_CASE(
       c.step(dt);
       const double growth = std::sqrt(det(kIdentity + c.state.strain_part[0]));
       const double expected = exact ? 1 : std::pow(1 + omega * omega * dt * dt, 0.5 * n);
-      CHECK(growth == doctest::Approx(expected).epsilon(1e-6));
+      CHECK(growth == approx(expected).epsilon(1e-6));
     }
   }
 }
@@ -117,15 +118,15 @@ TEST_CASE("penalty: a rigid block keeps its spin, and a load beside its middle t
   PenaltySettings how;
   Course spin(kHead + block_text("b", kUnit, "rigid", "spin = 3"), how);
   for (int n = 0; n < 100; ++n) spin.step(0.01);
-  CHECK(spin.state.rate[0].G.yx == doctest::Approx(3).epsilon(1e-9));
-  CHECK(spin.state.angle[0] == doctest::Approx(3).epsilon(1e-9));
+  CHECK(spin.state.rate[0].G.yx == approx(3).epsilon(1e-9));
+  CHECK(spin.state.angle[0] == approx(3).epsilon(1e-9));
   // 100 N upwards at its right side: 50 N m on 2000 kg / 6 m2; the force keeps its direction, the arm turns by little
   Course load(
       kHead + block_text("b", kUnit, "rigid") + "[[load]]\nname = \"l\"\npoint = [1, 0.5]\nforce_y = 100\n",
       how);
   for (int n = 0; n < 100; ++n) load.step(0.01);
-  CHECK(load.state.angle[0] == doctest::Approx(0.5 * 50 / (2000.0 / 6)).epsilon(2e-3));
-  CHECK(load.moved(0).y == doctest::Approx(0.5 * 100 / 2000).epsilon(1e-9));
+  CHECK(load.state.angle[0] == approx(0.5 * 50 / (2000.0 / 6)).epsilon(2e-3));
+  CHECK(load.moved(0).y == approx(0.5 * 100 / 2000).epsilon(1e-9));
 }
 
 TEST_CASE("penalty: by the mean acceleration a fall is exact from the first step on") {
@@ -135,8 +136,8 @@ TEST_CASE("penalty: by the mean acceleration a fall is exact from the first step
                block_text("b", kUnit, "deformable"),
            how);
   for (int n = 0; n < 100; ++n) c.step(0.01);
-  CHECK(c.moved(0).y == doctest::Approx(-5).epsilon(1e-9));
-  CHECK(c.state.rate[0].a.y == doctest::Approx(-10).epsilon(1e-9));
+  CHECK(c.moved(0).y == approx(-5).epsilon(1e-9));
+  CHECK(c.state.rate[0].a.y == approx(-10).epsilon(1e-9));
 }
 
 TEST_CASE("penalty: a block sinks by its weight over the stiffness of the springs under it") {
@@ -149,10 +150,10 @@ TEST_CASE("penalty: a block sinks by its weight over the stiffness of the spring
                block_text("b", kUnit, "rigid"),
            how);
   for (int n = 0; n < 200; ++n) c.step(0.02);
-  CHECK(c.moved(1).y == doctest::Approx(-weight / (2 * stiffness)).epsilon(1e-6));  // two corners
+  CHECK(c.moved(1).y == approx(-weight / (2 * stiffness)).epsilon(1e-6));  // two corners
   double carried = 0;
   for (const Contact& contact : c.state.contacts) carried += contact.force[0];
-  CHECK(carried == doctest::Approx(weight).epsilon(1e-6));
+  CHECK(carried == approx(weight).epsilon(1e-6));
   CHECK(std::abs(c.moved(1).x) < 1e-12);
 }
 
@@ -163,8 +164,8 @@ TEST_CASE("penalty: a free block pushed from rest goes as far as by hand, whatev
              {});
     const int n = static_cast<int>(std::lround(1 / dt));
     for (int k = 0; k < n; ++k) c.step(dt);
-    CHECK(c.moved(0).x == doctest::Approx(5.5555556).epsilon(1e-7));
-    CHECK(c.state.rate[0].a.x == doctest::Approx(11.111111).epsilon(1e-7));
+    CHECK(c.moved(0).x == approx(5.5555556).epsilon(1e-7));
+    CHECK(c.state.rate[0].a.x == approx(11.111111).epsilon(1e-7));
     const StepReport r = c.steps.report(c.state);
     CHECK(std::abs(r.energy.left_over) < 1e-9 * r.energy.kinetic);
   }
@@ -189,7 +190,7 @@ TEST_CASE("penalty: a block on an incline stays below its friction angle and sli
     if (a < 0)
       CHECK(std::abs(c.moved(1).x) < 1e-4);
     else
-      CHECK(c.moved(1).x == doctest::Approx(0.5 * a * t * t).epsilon(0.02));
+      CHECK(c.moved(1).x == approx(0.5 * a * t * t).epsilon(0.02));
   }
 }
 

@@ -1,5 +1,6 @@
 // Pictures of blocks: what is drawn where, against what displacements are told, and moving ones.
 
+#include "support/relative.h"
 #include "talus/plot/block_picture.h"
 
 #include <doctest/doctest.h>
@@ -118,14 +119,14 @@ TEST_CASE("pictures: displacements told against a block, a support, a free field
   p.quantity = "displacement_y";
   p.against_name = "right";
   p.against = Against{{{7, 1.0}}, ""};
-  CHECK(scenery_of(p).shapes[0].value == doctest::Approx(-0.1).epsilon(1e-15));
+  CHECK(scenery_of(p).shapes[0].value == test::approx(-0.1).epsilon(1e-15));
   CHECK(scenery_of(p).shapes[1].value == 0);
   p.deformation = 10;  // what is told against moves with it: the right block lies where it is
   CHECK(norm(scenery_of(p).shapes[1].polygon[0] - Vec2{1, 0.1}) < 1e-15);
   CHECK(norm(scenery_of(p).shapes[0].polygon[0] - Vec2{0, -0.9}) < 1e-15);
   p.deformation = 1;
   p.against = Against{{}, "level"};  // half a metre up it has moved by half of the metre at the top
-  CHECK(scenery_of(p).shapes[0].value == doctest::Approx(-0.5).epsilon(1e-15));
+  CHECK(scenery_of(p).shapes[0].value == test::approx(-0.5).epsilon(1e-15));
   p.quantity = "displacement_x";
   p.against = Against{{}, "base"};
   CHECK(scenery_of(p).shapes[1].value == -0.5);
@@ -142,13 +143,13 @@ TEST_CASE("pictures: crosses of principal stresses and chains of forces") {
   p.overlays = {Overlay::kPrincipal, Overlay::kForces};
   const Scenery s = scenery_of(p);
   REQUIRE(s.crosses.size() == 2);
-  CHECK(s.crosses[1].first == doctest::Approx(3));
-  CHECK(s.crosses[1].second == doctest::Approx(-1));
-  CHECK(std::abs(s.crosses[1].axis.x) == doctest::Approx(std::sqrt(0.5)));
+  CHECK(s.crosses[1].first == test::approx(3));
+  CHECK(s.crosses[1].second == test::approx(-1));
+  CHECK(std::abs(s.crosses[1].axis.x) == test::approx(std::sqrt(0.5)));
   CHECK(s.crosses[1].axis.x * s.crosses[1].axis.y > 0);
   CHECK(s.crosses[0].first == -1);  // along y
   CHECK(std::abs(s.crosses[0].axis.x) < 1e-15);
-  CHECK(s.stress == doctest::Approx(3));
+  CHECK(s.stress == test::approx(3));
   REQUIRE(s.chains.size() == 1);
   CHECK(s.force == 5);
   REQUIRE(s.chains[0].places.size() == 3);

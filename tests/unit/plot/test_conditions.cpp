@@ -1,5 +1,6 @@
 // What acts on a model, as symbols on its picture: which, where and how many.
 
+#include "support/relative.h"
 #include "talus/plot/conditions.h"
 
 #include <doctest/doctest.h>
@@ -93,7 +94,7 @@ stages = ["rest"]
   CHECK(pins.symbol == Symbol::kPin);
   CHECK(pins.marks.size() == 16);  // 400 px, at least 24 apart
   for (const Mark& m : pins.marks) {
-    CHECK(m.at.y == doctest::Approx(600));
+    CHECK(m.at.y == test::approx(600));
     CHECK(near(m.direction, {0, 1}));  // downwards on the sheet
   }
   const Condition& rollers = s.labelled("held along x: sides");
@@ -157,7 +158,7 @@ convergence = [[-2, 0], [2, 0]]
   const Condition& band = s.labelled("viscous boundary: below");
   REQUIRE(band.marks.size() == 1);
   CHECK(near(band.marks[0].at, {300, 600}));
-  CHECK(band.marks[0].length == doctest::Approx(400));
+  CHECK(band.marks[0].length == test::approx(400));
   const Condition& waves = s.labelled("waves along x come in: below");
   for (const Mark& m : waves.marks) CHECK(near(m.direction, {0, -1}));  // into the rock
   const Condition& pressure = s.labelled("pressure: weight");
@@ -176,7 +177,7 @@ convergence = [[-2, 0], [2, 0]]
   REQUIRE(bolts.marks.size() == 1);
   CHECK(near(bolts.marks[0].at, {700, 500}));
   CHECK(near(bolts.marks[0].direction, {-1, 0}));
-  CHECK(bolts.marks[0].length == doctest::Approx(300));
+  CHECK(bolts.marks[0].length == test::approx(300));
   CHECK(s.labelled("measured length: width").marks.size() == 1);
 }
 

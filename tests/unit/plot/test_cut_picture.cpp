@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/folder.h"
+#include "support/relative.h"
 #include "talus/cut/check_places.h"
 #include "talus/cut/cut.h"
 #include "talus/model/read_model.h"
@@ -120,12 +121,12 @@ TEST_CASE("write_cut_picture draws a joint where it is, in true proportion") {
   REQUIRE(joint.size() == 2);
   const double width = span(outline[0].x), height = span(outline[0].y);
   CHECK(width > 1000);
-  CHECK(height / width == doctest::Approx(0.5).epsilon(1e-3));  // coordinates are multiples of 1/256 px
-  REQUIRE(joint[0].x.size() == 2);                              // shared by two blocks, drawn once
+  CHECK(height / width == approx(0.5).epsilon(1e-3));  // coordinates are multiples of 1/256 px
+  REQUIRE(joint[0].x.size() == 2);                     // shared by two blocks, drawn once
   const double left = *std::min_element(outline[0].x.begin(), outline[0].x.end());
-  CHECK((joint[0].x[0] - left) / width == doctest::Approx(0.25).epsilon(1e-3));
+  CHECK((joint[0].x[0] - left) / width == approx(0.25).epsilon(1e-3));
   CHECK(span(joint[0].x) == doctest::Approx(0).epsilon(0.01));
-  CHECK(span(joint[0].y) == doctest::Approx(height).epsilon(1e-3));
+  CHECK(span(joint[0].y) == approx(height).epsilon(1e-3));
 }
 
 TEST_CASE("write_cut_picture draws every trace as one line and every origin as one path") {
@@ -154,7 +155,7 @@ TEST_CASE("write_cut_picture leaves openings blank and shows kept rock in a tint
   CHECK(paths(kept, kYellow).size() == 2);  // and its sample
   const auto circle = paths(removed, kBlack);
   REQUIRE(circle.size() == 4);  // outline, opening, two samples
-  CHECK(span(circle[1].x) == doctest::Approx(span(circle[0].x) * 4 / 20).epsilon(0.01));
+  CHECK(span(circle[1].x) == approx(span(circle[0].x) * 4 / 20).epsilon(0.01));
   const std::string fill = paths(removed, kSand)[0].data;
   CHECK(std::count(fill.begin(), fill.end(), 'Z') == 2);  // around and around the hole
   CHECK(paths(removed, "stroke-dasharray").size() == 2);  // the cut that opens the ring
@@ -167,7 +168,7 @@ TEST_CASE("write_cut_picture draws dead ends in grey") {
   const auto grey = paths(svg_of(region(kBox) + through + dead), kGrey);
   REQUIRE(grey.size() == 2);  // and its sample
   CHECK(grey[0].x.size() == 2);
-  CHECK(span(grey[0].y) == doctest::Approx(1080 * 3.0 / 20).epsilon(1e-3));  // px per m as the width gives
+  CHECK(span(grey[0].y) == approx(1080 * 3.0 / 20).epsilon(1e-3));  // px per m as the width gives
   // not in an empty opening
   const std::string pit =
       "[[opening]]\nname = \"pit\"\nshape = \"polygon\"\npolygon = [[6, 2], [8, 2], [8, 8], [6, 8]]\n";
@@ -194,7 +195,7 @@ TEST_CASE("write_cut_picture draws no edge that merging has taken away") {
       svg_of(region(kBox) + "[cut]\nslivers = \"merge\"\nmerge_along = [\"strip\"]\n" + lines);
   CHECK(paths(kept, red).empty());
   CHECK(length(paths(merged, third)) < 0.51 * length(paths(kept, third)));
-  CHECK(length(paths(merged, red)) == doctest::Approx(length(paths(merged, third))));
+  CHECK(length(paths(merged, red)) == approx(length(paths(merged, third))));
 }
 
 TEST_CASE("write_cut_picture marks monitored points in sight") {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "support/relative.h"
 #include "support/tolerance.h"
 #include "talus/record/measures.h"
 #include "talus/record/process.h"
@@ -41,11 +42,11 @@ TEST_CASE("kobe: raw peak and residuals") {
   const auto r = raw();
   if (!r) return;
   CHECK(r->value.size() == 2567);
-  CHECK(r->dt == doctest::Approx(0.02).epsilon(1e-12));
+  CHECK(r->dt == approx(0.02).epsilon(1e-12));
   const Motion m = integrate(r->value, r->dt);
   const Measures x = measure(m);
   check_close("kobe raw: PGA [m/s2]", x.pga, 8.1802, 5e-4, 5e-5, 1);
-  CHECK(x.pga_time == doctest::Approx(4.82));
+  CHECK(x.pga_time == approx(4.82));
   // given to three decimals
   check_close("kobe raw: v(T) [m/s]", x.end_velocity, 0.017, 5e-4, 5e-4, 1);
   check_close("kobe raw: d(T) [m]", x.end_displacement, 0.643, 5e-4, 5e-4, 1);

@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "support/record_text.h"
+#include "support/relative.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/record/read_record.h"
@@ -58,9 +59,9 @@ TEST_CASE("networks: values, step, unit and what was done to them") {
     CHECK(r.format == n.format);
     CHECK(name_of(r.format) == n.name);
     CHECK(r.quantity == Quantity::kAcceleration);
-    CHECK(r.dt == doctest::Approx(n.format == Format::kGeonet  ? 0.02
-                                  : n.format == Format::kCsmip ? 0.01
-                                                               : 0.005)
+    CHECK(r.dt == approx(n.format == Format::kGeonet  ? 0.02
+                         : n.format == Format::kCsmip ? 0.01
+                                                      : 0.005)
                       .epsilon(1e-12));
     REQUIRE(r.value.size() == kValues.size());
     for (size_t i = 0; i < kValues.size(); ++i)
@@ -77,7 +78,7 @@ TEST_CASE("networks: a file of several components asks which one") {
     ReadOptions options;
     options.column = n.format == Format::kGeonet ? "up" : "180 deg";
     const Record r = read_record_text("file", n.text, options);
-    CHECK(peak_of(r) == doctest::Approx(2 * n.unit * 250.5).epsilon(1e-9));
+    CHECK(peak_of(r) == approx(2 * n.unit * 250.5).epsilon(1e-9));
     options.column = "west";
     CHECK_THROWS_WITH_AS(read_record_text("file", n.text, options), doctest::Contains("\"west\""),
                          InputError);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/relative.h"
 #include "support/tolerance.h"
 #include "talus/base/error.h"
 #include "talus/base/random.h"
@@ -46,8 +47,8 @@ TEST_CASE("motion: integrals of a linear acceleration are exact at any step") {
     const Motion m = integrate(a, dt);
     for (size_t i = 0; i < a.size(); ++i) {
       const double t = dt * static_cast<double>(i);
-      CHECK(m.velocity[i] == doctest::Approx(3 * t - t * t).epsilon(1e-12));
-      CHECK(m.displacement[i] == doctest::Approx(1.5 * t * t - t * t * t / 3).epsilon(1e-12));
+      CHECK(m.velocity[i] == approx(3 * t - t * t).epsilon(1e-12).scale(1));
+      CHECK(m.displacement[i] == approx(1.5 * t * t - t * t * t / 3).epsilon(1e-12).scale(1));
     }
   }
 }
@@ -75,16 +76,15 @@ TEST_CASE("filter: gain at corners, an octave off and far off") {
   const Band band{0.5, 10, 4, Corner::k3dB};
   for (const double f : {0.1, 0.25, 0.5, 1.0, 3.0, 10.0, 20.0}) {
     const double high = 1 / std::sqrt(1 + std::pow(0.5 / f, 8)), low = 1 / std::sqrt(1 + std::pow(f / 10, 8));
-    CHECK(butterworth_gain(band, f) == doctest::Approx(high * low).epsilon(1e-14));
+    CHECK(butterworth_gain(band, f) == approx(high * low).epsilon(1e-14));
   }
-  CHECK(butterworth_gain({0.5, 0, 4, Corner::k3dB}, 0.5) == doctest::Approx(std::sqrt(0.5)).epsilon(1e-14));
-  CHECK(butterworth_gain({0.5, 0, 4, Corner::k6dB}, 0.5) == doctest::Approx(0.5).epsilon(1e-14));
-  CHECK(butterworth_gain({0.5, 0, 4, Corner::k6dB}, 0.25) == doctest::Approx(1 / 17.0).epsilon(1e-14));
+  CHECK(butterworth_gain({0.5, 0, 4, Corner::k3dB}, 0.5) == approx(std::sqrt(0.5)).epsilon(1e-14));
+  CHECK(butterworth_gain({0.5, 0, 4, Corner::k6dB}, 0.5) == approx(0.5).epsilon(1e-14));
+  CHECK(butterworth_gain({0.5, 0, 4, Corner::k6dB}, 0.25) == approx(1 / 17.0).epsilon(1e-14));
   // order n: n x 6.02 dB per octave far from the corner, with either convention
   for (const Corner corner : {Corner::k3dB, Corner::k6dB}) {
     const Band low{0, 1, 6, corner};
-    CHECK(butterworth_gain(low, 200) / butterworth_gain(low, 100) ==
-          doctest::Approx(std::pow(0.5, 6)).epsilon(1e-9));
+    CHECK(butterworth_gain(low, 200) / butterworth_gain(low, 100) == approx(std::pow(0.5, 6)).epsilon(1e-9));
   }
   CHECK(butterworth_gain(band, 0) == 0);
   CHECK(butterworth_gain({0, 0, 4, Corner::k3dB}, 0) == 1);
@@ -124,7 +124,7 @@ TEST_CASE("process: tapers rise as a cosine and leave the middle alone") {
   std::vector<double> a(100, 1);
   taper_ends(a, 0.1);
   for (size_t i = 0; i < 10; ++i) {
-    CHECK(a[i] == doctest::Approx(std::pow(std::sin(kPi * static_cast<double>(i) / 20), 2)));
+    CHECK(a[i] == approx(std::pow(std::sin(kPi * static_cast<double>(i) / 20), 2)).scale(1));
     CHECK(a[99 - i] == a[i]);
   }
   for (size_t i = 10; i < 90; ++i) CHECK(a[i] == 1);
@@ -154,8 +154,8 @@ TEST_CASE("process: the window ends in zero and keeps the rest") {
   CHECK(whole.size() == 101);
   CHECK(whole.front() == 2);
   CHECK(whole.back() == 0);
-  CHECK(whole[90] == doctest::Approx(2 * 0.5 * (1 + std::cos(kPi * 0.0))));
-  CHECK(whole[95] == doctest::Approx(2 * 0.5 * (1 + std::cos(kPi * 0.5))));
+  CHECK(whole[90] == approx(2 * 0.5 * (1 + std::cos(kPi * 0.0))));
+  CHECK(whole[95] == approx(2 * 0.5 * (1 + std::cos(kPi * 0.5))));
   const auto part = cut_window(a, 0.1, 2, 5, 1);
   CHECK(part.size() == 51);
   CHECK(part.front() == 0);
@@ -172,7 +172,7 @@ TEST_CASE("process: the end is at rest, and both ends of the acceleration stay")
   check_below("v(T) of noise brought to rest [m/s]", std::abs(m.velocity.back()), 1e-13, 1e-14);
   check_below("d(T) of noise brought to rest [m]", std::abs(m.displacement.back()), 1e-12, 1e-14);
   CHECK(a.front() == first);
-  CHECK(a.back() == doctest::Approx(last).epsilon(1e-12));
+  CHECK(a.back() == approx(last).epsilon(1e-12));
 
   // a pure combination of the two shapes is found again
   std::vector<double> shape;
@@ -182,8 +182,8 @@ TEST_CASE("process: the end is at rest, and both ends of the acceleration stay")
     shape.push_back(3e-3 * t * (T - t) - 2e-4 * t * (T - t) * (T - 2 * t));
   }
   const auto [A, B] = pin_end(shape, dt);
-  CHECK(A == doctest::Approx(-3e-3).epsilon(1e-9));
-  CHECK(B == doctest::Approx(2e-4).epsilon(1e-9));
+  CHECK(A == approx(-3e-3).epsilon(1e-9));
+  CHECK(B == approx(2e-4).epsilon(1e-9));
   CHECK(largest(shape) < 1e-12);
 }
 

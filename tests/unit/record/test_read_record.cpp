@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "support/record_text.h"
+#include "support/relative.h"
 #include "support/tolerance.h"
 #include "talus/record/motion_file.h"
 #include "talus/record/synthetic.h"
@@ -104,7 +105,7 @@ TEST_CASE("record: K-NET counts, with the offset of the logger taken off") {
   CHECK(r.dt == 0.02);
   CHECK(r.title == "CHB002 E-W 1996/09/11 11:37:43");
   const double count = 0.01 * 3920 / 6182761;  // [m/s2]
-  CHECK(r.offset == doctest::Approx(-4711 * count).epsilon(1e-3));
+  CHECK(r.offset == approx(-4711 * count).epsilon(1e-3));
   CHECK(largest_error(r, part) <= count);  // half a count of rounding, and its mean
 }
 
@@ -136,7 +137,7 @@ TEST_CASE("record: CSV with units in the title, in g, cm/s2 and m/s2") {
     INFO(c.titles);
     const Record r = read_record_text("a.csv", csv_text(c.titles, a, 0.02, c.factor));
     CHECK(r.format == Format::kCsv);
-    CHECK(r.dt == doctest::Approx(0.02).epsilon(1e-12));
+    CHECK(r.dt == approx(0.02).epsilon(1e-12));
     CHECK(largest_error(r, a) <= 1e-15 * 3 / std::min(c.factor, 1.0) * 1e-2 + 2e-15);  // rounding only
   }
   const Record v = read_record_text("v.csv", csv_text("t [s],v_cm_s", motion().velocity, 0.02, 0.01));
@@ -151,7 +152,7 @@ TEST_CASE("record: CSV with several columns, other separators, bare numbers") {
   };
   const std::string three = "time [ms];x_gal;y_gal\n0;1;2\n10;3;4\n20;5;6\n";
   CHECK(read(three, "y").value == std::vector<double>{0.02, 0.04, 0.06});
-  CHECK(read(three, "x_gal").dt == doctest::Approx(0.01));
+  CHECK(read(three, "x_gal").dt == approx(0.01));
   CHECK(read("# made by hand\n\na [m/s2]\n1\n2\n3\n", "", "", 0.5).value == std::vector<double>{1, 2, 3});
   CHECK(read("0 1\n1 2\n2 3\n", "2", "gal", 0.1).value == std::vector<double>{0.01, 0.02, 0.03});
   // times rounded beyond use: the step is told
@@ -168,7 +169,7 @@ TEST_CASE("record: the written motion comes back bit by bit") {
                         : r.quantity == Quantity::kVelocity   ? m.velocity
                                                               : m.displacement;
     CHECK(r.value == exact);
-    CHECK(r.dt == doctest::Approx(m.dt).epsilon(1e-12));
+    CHECK(r.dt == approx(m.dt).epsilon(1e-12));
   }
 }
 
@@ -178,10 +179,10 @@ TEST_CASE("record: acceleration from velocity and displacement by differences") 
   r.dt = 0.1;
   r.quantity = Quantity::kVelocity;
   for (int i = 0; i <= 10; ++i) r.value.push_back(0.5 * (0.1 * i) * (0.1 * i));
-  CHECK(acceleration_of(r)[5] == doctest::Approx(0.5));
-  CHECK(acceleration_of(r)[0] == doctest::Approx(0.05));
+  CHECK(acceleration_of(r)[5] == approx(0.5));
+  CHECK(acceleration_of(r)[0] == approx(0.05));
   r.quantity = Quantity::kDisplacement;
-  CHECK(acceleration_of(r)[5] == doctest::Approx(1));
+  CHECK(acceleration_of(r)[5] == approx(1));
   r.quantity = Quantity::kAcceleration;
   CHECK(acceleration_of(r) == r.value);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/relative.h"
 #include "support/tolerance.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
@@ -60,8 +61,7 @@ TEST_CASE("synthetic: matches the target, ends at rest") {
     double sum = 0;
     for (size_t i = 0; i < periods.size(); ++i)
       sum += std::pow(std::log(sa[i] / in.target.at(periods[i])), 2);
-    CHECK(std::sqrt(sum / static_cast<double>(periods.size())) ==
-          doctest::Approx(s.rms_misfit).epsilon(1e-9));
+    CHECK(std::sqrt(sum / static_cast<double>(periods.size())) == approx(s.rms_misfit).epsilon(1e-9));
   }
 }
 
@@ -104,19 +104,19 @@ TEST_CASE("synthetic: examples/record/motion.csv is what its README says") {
 TEST_CASE("synthetic: envelope and built-in target at their corners") {
   const Envelope e{3, 7, 8};
   CHECK(e.at(0) == 0);
-  CHECK(e.at(1.5) == doctest::Approx(0.25));
+  CHECK(e.at(1.5) == approx(0.25));
   CHECK(e.at(3) == 1);
   CHECK(e.at(10) == 1);
-  CHECK(e.at(18) == doctest::Approx(0.05));
-  CHECK(e.at(14) == doctest::Approx(std::sqrt(0.05)));
+  CHECK(e.at(18) == approx(0.05));
+  CHECK(e.at(14) == approx(std::sqrt(0.05)));
 
   // log-linear between 100 points a decade: 1e-3 of the value where the formula bends
   const TargetSpectrum t = code_spectrum(2);
-  CHECK(t.at(0.075) == doctest::Approx(2 * 1.75).epsilon(1e-3));
-  CHECK(t.at(0.15) == doctest::Approx(5).epsilon(5e-3));
-  CHECK(t.at(0.3) == doctest::Approx(5).epsilon(1e-3));
-  CHECK(t.at(1) == doctest::Approx(2.5).epsilon(1e-3));
-  CHECK(t.at(4) == doctest::Approx(2 * 2.5 * 0.5 * 2 / 16).epsilon(1e-3));
+  CHECK(t.at(0.075) == approx(2 * 1.75).epsilon(1e-3));
+  CHECK(t.at(0.15) == approx(5).epsilon(5e-3));
+  CHECK(t.at(0.3) == approx(5).epsilon(1e-3));
+  CHECK(t.at(1) == approx(2.5).epsilon(1e-3));
+  CHECK(t.at(4) == approx(2 * 2.5 * 0.5 * 2 / 16).epsilon(1e-3));
 }
 
 TEST_CASE("synthetic: a target from a file, and what is wrong with one") {
@@ -136,8 +136,8 @@ TEST_CASE("synthetic: a target from a file, and what is wrong with one") {
   };
   const TargetSpectrum t = read("sa [g],period [s]\n0.5,0.1\n0.5,0.5\n0.125,2\n");
   CHECK(t.period == std::vector<double>{0.1, 0.5, 2});
-  CHECK(t.at(1) == doctest::Approx(0.25 * kStandardGravity));  // halfway in ln T and in ln Sa
-  CHECK(t.at(9) == doctest::Approx(0.125 * kStandardGravity));
+  CHECK(t.at(1) == approx(0.25 * kStandardGravity));  // halfway in ln T and in ln Sa
+  CHECK(t.at(9) == approx(0.125 * kStandardGravity));
 
   SyntheticInput in;
   in.target = t;

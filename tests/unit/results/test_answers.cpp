@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/told.h"
 #include "support/tolerance.h"
@@ -113,8 +114,8 @@ crack = [[0, 0], [1, 0]]
   // relative to the centre it never goes further than a diameter: that is reached after half a turn, within a step
   const double farthest = answer(h, 1, "corner.displacement_x").least;
   check_below("farthest from its place", std::abs(farthest + 0.5 + radius), 1e-5, 1e-12);
-  CHECK(answer(h, 1, "gauge.sliding").greatest == doctest::Approx(1).epsilon(1e-5));  // a bar of 1 m turned
-  CHECK(answer(h, 1, "gauge.opening").least == doctest::Approx(-2).epsilon(1e-5));
+  CHECK(answer(h, 1, "gauge.sliding").greatest == approx(1).epsilon(1e-5));  // a bar of 1 m turned
+  CHECK(answer(h, 1, "gauge.opening").least == approx(-2).epsilon(1e-5));
   const Histories::Spectra spectra = h.spectra();
   REQUIRE(spectra.columns.size() == 3);
   CHECK(spectra.columns[1] == "corner.Sa_x [m/s2]");
@@ -135,11 +136,10 @@ TEST_CASE("answers go by every step, whatever the rows of histories are, and by 
   // v = 0.1 sin(4 pi t): greatest 0.1 at 0.125 s
   const Answer& v = answer(h, 0, "base.velocity_x");
   check_below("greatest velocity", std::abs(v.greatest - 0.1), 1e-4, 1e-9);
-  CHECK(answer(h, 0, "base.acceleration_x").greatest ==
-        doctest::Approx(0.4 * std::numbers::pi).epsilon(1e-3));
+  CHECK(answer(h, 0, "base.acceleration_x").greatest == approx(0.4 * std::numbers::pi).epsilon(1e-3));
   REQUIRE(h.touches().size() == 1);
   CHECK(h.touches()[0].first == 0);
-  CHECK(h.touches()[0].last == doctest::Approx(2).epsilon(1e-9));
+  CHECK(h.touches()[0].last == approx(2).epsilon(1e-9));
   const std::string csv = h.answers().csv();
   CHECK(csv.find("base,velocity_x,m/s,shake hard,") != std::string::npos);
 }

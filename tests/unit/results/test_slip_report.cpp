@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "talus/base/text_file.h"
 #include "talus/results/progress.h"
@@ -150,8 +151,8 @@ TEST_CASE("slips.csv: joints that have slipped, greatest residual slip first; th
     CHECK(rows[i].set == expected[i].set);
     CHECK(rows[i].joint == "face");
     // rigid blocks in hard joints that give nothing: slip is the way they were pushed, to the solver's tolerance (1e-8 m)
-    CHECK(rows[i].residual == doctest::Approx(expected[i].residual).epsilon(1e-5));
-    CHECK(rows[i].slip == doctest::Approx(expected[i].slip).epsilon(1e-5));
+    CHECK(rows[i].residual == test::approx(expected[i].residual).epsilon(1e-5));
+    CHECK(rows[i].slip == test::approx(expected[i].slip).epsilon(1e-5));
     CHECK(rows[i].state == "slipped");
   }
 
@@ -207,7 +208,7 @@ time_step = 1e-3
   for (const FramePoint& p : points) {
     if (p.normal_force <= 0) continue;
     ++closed;
-    CHECK(std::abs(p.slip_signed) == doctest::Approx(gone).epsilon(1e-3));
+    CHECK(std::abs(p.slip_signed) == test::approx(gone).epsilon(1e-3));
     CHECK(p.slip < 0.5 * gone);  // on the joint
   }
   CHECK(closed > 0);

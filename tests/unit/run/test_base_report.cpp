@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/relative.h"
 #include "talus/run/base_report.h"
 
 namespace test_base_report {
@@ -32,7 +33,7 @@ TEST_CASE("the main frequency of a motion does not go by the length of its recor
 
 // The spectrum of half a sine is largest at 0 Hz, where it tells the mean; a record tells nothing below one wave in it.
 TEST_CASE("the main frequency of a pulse is not below one wave in its record") {
-  CHECK(dominant_frequency(sine(1, 0.5)) == doctest::Approx(2).epsilon(1e-12));
+  CHECK(dominant_frequency(sine(1, 0.5)) == test::approx(2).epsilon(1e-12));
 }
 
 TEST_CASE("what does not move has no main frequency") { CHECK(dominant_frequency(sine(0, 1)) == 0); }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "support/relative.h"
 #include "support/run_case.h"
 
 namespace test_hard_rest {
@@ -84,7 +85,7 @@ TEST_CASE("what stands on the free part of a side that a tie covers the rest of 
   double borne = 0;
   for (const Patch& p : r.state.patches)
     if (p.block_a == 3 || p.block_b == 3) borne += p.force[0][0] + p.force[1][0];
-  CHECK(borne == doctest::Approx(0.8 * 2500 * 10).epsilon(1e-6));
+  CHECK(borne == approx(0.8 * 2500 * 10).epsilon(1e-6));
 }
 
 }  // namespace test_hard_rest

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "support/folder.h"
+#include "support/relative.h"
 #include "talus/audit/read_results.h"
 #include "talus/base/error.h"
 #include "talus/output/csv.h"
@@ -138,7 +139,7 @@ TEST_CASE("loose steps: the run goes on over them, and counts them") {
   CHECK(solved.result.loose_steps == 0);
   // all solvers have tried: that no step is solved makes none worse
   CHECK(loose.result.worst_error <= solved.result.worst_error);
-  CHECK(loose.state.displacement[2].x == doctest::Approx(solved.state.displacement[2].x).epsilon(1e-4));
+  CHECK(loose.state.displacement[2].x == approx(solved.state.displacement[2].x).epsilon(1e-4));
 }
 
 TEST_CASE("loose steps: above the limit a step fails, and a limit that is the tolerance leaves none loose") {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/text_file.h"
@@ -51,7 +52,7 @@ TEST_CASE("mass-proportional damping slows a free block as exp(-a t)") {
 TEST_CASE("local damping leaves a block in uniform motion alone and opposes a force by its share") {
   const CaseResult alone = run_case(
       thrown("[[stage]]\nname='s'\nkind='dynamic'\nduration=1\ntime_step=0.01\ndamping_local=0.5\n"));
-  CHECK(alone.column("p.velocity_x").back() == doctest::Approx(2).epsilon(1e-12));
+  CHECK(alone.column("p.velocity_x").back() == approx(2).epsilon(1e-12));
   // falling from rest: the first step starts, then half the weight acts
   const CaseResult fall = run_case(thrown("[model]\ngravity=[0,-10]\n[[stage]]\nname='s'\nkind='dynamic'"
                                           "\nduration=1\ntime_step=0.001\ndamping_local=0.5\n"),
@@ -66,10 +67,10 @@ TEST_CASE("stages follow each other with their own steps and end exactly on thei
              "[[stage]]\nname='b'\nkind='dynamic'\nduration=0.7\ntime_step=0.0031\n"));
   REQUIRE(r.run.stages.size() == 2);
   CHECK(r.run.stages[0].end == 0.3);
-  CHECK(r.run.stages[1].end == doctest::Approx(1).epsilon(1e-15));
+  CHECK(r.run.stages[1].end == approx(1).epsilon(1e-15));
   CHECK(r.run.stages[0].steps == 43);
   // constant acceleration stays exact across the change of step
-  CHECK(r.column("p.displacement_y").back() == doctest::Approx(-5).epsilon(1e-12));
+  CHECK(r.column("p.displacement_y").back() == approx(-5).epsilon(1e-12));
 }
 
 TEST_CASE("a support with a velocity history moves its point by the integral of the history") {
@@ -89,10 +90,10 @@ duration = 1
 time_step = 0.01
 )"),
                                 {"block.b.velocity=[0,0]"});
-  CHECK(r.column("p.displacement_x").back() == doctest::Approx(2).epsilon(1e-12));
+  CHECK(r.column("p.displacement_x").back() == approx(2).epsilon(1e-12));
   const auto &t = r.column("t [s]"), &y = r.column("p.displacement_y");
   for (size_t i = 0; i < t.size(); ++i)
-    CHECK(y[i] == doctest::Approx(t[i] < 0.5 ? 8 * t[i] : 8 * (1 - t[i])).epsilon(1e-9));
+    CHECK(y[i] == approx(t[i] < 0.5 ? 8 * t[i] : 8 * (1 - t[i])).epsilon(1e-9));
 }
 
 TEST_CASE("a driven block pushes a free one, and the work shows as support work") {
@@ -129,11 +130,11 @@ point = [0.5, 0.5]
 )");
   // 1000 kg at 1 m/s2
   const auto& f = r.column("f.force_x");
-  CHECK(f[50] == doctest::Approx(1000).epsilon(1e-9));
-  CHECK(r.column("f.mean_force_x")[50] == doctest::Approx(1000).epsilon(1e-9));
-  CHECK(r.column("f.impulse_x").back() == doctest::Approx(1000 * 0.995).epsilon(1e-2));
-  CHECK(r.column("p.displacement_x").back() == doctest::Approx(0.5).epsilon(1e-9));
-  CHECK(r.run.energy.work[Cause::kSupports] == doctest::Approx(500).epsilon(0.02));
+  CHECK(f[50] == approx(1000).epsilon(1e-9));
+  CHECK(r.column("f.mean_force_x")[50] == approx(1000).epsilon(1e-9));
+  CHECK(r.column("f.impulse_x").back() == approx(1000 * 0.995).epsilon(1e-2));
+  CHECK(r.column("p.displacement_x").back() == approx(0.5).epsilon(1e-9));
+  CHECK(r.run.energy.work[Cause::kSupports] == approx(500).epsilon(0.02));
   check_below("driven block, energy left over / largest term", r.run.closure(), 1e-2, 1e-3);
 }
 
@@ -169,10 +170,10 @@ window = 0.2
 )");
   const auto &t = r.column("t [s]"), &mean = r.column("f.mean_force_y"), &raw = r.column("f.force_y");
   for (size_t i = 0; i < t.size(); ++i) {
-    CHECK(raw[i] == doctest::Approx(1000).epsilon(1e-9));
+    CHECK(raw[i] == approx(1000).epsilon(1e-9));
     // before t = 0.1 the window reaches before the start, where there was no force
     const double exact = t[i] < 0.1 ? 1000 * (t[i] + 0.1) / 0.2 : 1000;
-    CHECK(mean[i] == doctest::Approx(exact).epsilon(1e-9));
+    CHECK(mean[i] == approx(exact).epsilon(1e-9));
   }
 }
 
@@ -257,7 +258,7 @@ TEST_CASE("the predicted output size is that of the run within a third") {
     double written = 0;
     for (const auto& e : std::filesystem::recursive_directory_iterator(folder))
       if (e.is_regular_file()) written += static_cast<double>(e.file_size());
-    CHECK(predicted / written == doctest::Approx(1).epsilon(0.33));
+    CHECK(predicted / written == approx(1).epsilon(0.33));
   }
   std::filesystem::remove_all(folder);
 }

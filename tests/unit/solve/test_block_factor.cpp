@@ -1,3 +1,4 @@
+#include "support/relative.h"
 #include "talus/solve/block_factor.h"
 
 #include <doctest/doctest.h>
@@ -174,7 +175,7 @@ TEST_CASE("block factor: the ratio of its pivots") {
     BlockFactor factor;
     factor.analyse({}, std::vector<Vec2>(static_cast<size_t>(count)));
     REQUIRE(factor.factorize(diagonal, {}, Workers()));
-    CHECK(factor.pivot_ratio() == doctest::Approx((19.5 + count) / 20).epsilon(1e-12));
+    CHECK(factor.pivot_ratio() == test::approx((19.5 + count) / 20).epsilon(1e-12));
   }
 }
 

@@ -617,7 +617,7 @@ TEST_CASE("a tower at rest carries its weight") {
     const auto k = static_cast<size_t>(2 * i);
     const double sum = s.set.impulse[k][0] + s.set.impulse[k + 1][0];
     // errors of the speeds add up from course to course: ten times 1e-7 of 0.01
-    CHECK(sum == doctest::Approx(square * (kCount - 1 - i + 5)).epsilon(kCount * kTolerance / 0.01));
+    CHECK(sum == test::approx(square * (kCount - 1 - i + 5)).epsilon(kCount * kTolerance / 0.01));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/random_rows.h"
+#include "support/relative.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/contact_problem.h"
 #include "talus/solve/newton.h"
@@ -88,7 +89,7 @@ TEST_CASE("the normal law as printed is eq. 26 of metres and newtons") {
     p << unit(random) * kKick, 0;
     const double gap = kDt * (problem.influence * p + problem.velocity_free)[0], force = p[0] / kKick;
     const double printed = -kEpsilon * std::log(std::exp(-gap / kEpsilon) + std::exp(-force / kEpsilon));
-    CHECK(residual(problem, p)[0] * kDt == doctest::Approx(printed).epsilon(1e-12));
+    CHECK(residual(problem, p)[0] * kDt == approx(printed).epsilon(1e-12));
   }
 }
 
@@ -150,12 +151,12 @@ TEST_CASE("one point on the floor: presses, slips and sticks as Coulomb says") {
     return set.impulse[0];
   };
   const double m = blocks.mass[3], I = blocks.polar_inertia[3];
-  CHECK(solve({0, 1})[0] == 0);                                   // leaving: no force
-  CHECK(solve({0, -1})[0] == doctest::Approx(m).epsilon(1e-12));  // the centroid is above: p = m v
-  const Impulse slide = solve({10, -1});                          // tangent = normal clockwise = +x
-  CHECK(slide[1] == doctest::Approx(-0.5 * slide[0]).epsilon(1e-12));
+  CHECK(solve({0, 1})[0] == 0);                          // leaving: no force
+  CHECK(solve({0, -1})[0] == approx(m).epsilon(1e-12));  // the centroid is above: p = m v
+  const Impulse slide = solve({10, -1});                 // tangent = normal clockwise = +x
+  CHECK(slide[1] == approx(-0.5 * slide[0]).epsilon(1e-12));
   const Impulse stick = solve({0.1, -1});  // 1/w_t = 1/(1/m + r^2/I)
-  CHECK(stick[1] == doctest::Approx(-0.1 / (1 / m + 0.25 / I)).epsilon(1e-12));
+  CHECK(stick[1] == approx(-0.1 / (1 / m + 0.25 / I)).epsilon(1e-12));
 }
 
 TEST_CASE("islands: points are joined through freely moving blocks only") {
@@ -191,7 +192,7 @@ TEST_CASE("contact error: zero at a solution, the gap violated in metres otherwi
   rate[1].a = {-3, 0};
   // without a force the corner goes 3 m/s x 0.01 s into the other block
   const ContactError wrong = contact_error(mobilities(blocks, 1), set, rate, 0.01);
-  CHECK(wrong.worst == doctest::Approx(0.03).epsilon(1e-12));
+  CHECK(wrong.worst == approx(0.03).epsilon(1e-12));
   CHECK(wrong.point == 0);
   rate[1].a = {std::nan(""), 0};
   CHECK(std::isnan(contact_error(mobilities(blocks, 1), set, rate, 0.01).worst));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/block_scene.h"
+#include "support/relative.h"
 #include "talus/step/step.h"
 
 namespace test_damping {
@@ -95,7 +96,7 @@ TEST_CASE("an oscillation dies away at the ratio of stiffness-proportional dampi
     // after 31 radians the phase is off by (w dt)^2/24 of them, and damping a step late adds ratio w dt to
     // the stiffness: 5e-4 and 1e-2 radians; at a peak that is 1e-4 of the value, and the decay is off by as
     // much
-    CHECK(breath.strain.back() == doctest::Approx(law).epsilon(1e-3));
+    CHECK(breath.strain.back() == test::approx(law).epsilon(1e-3));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "support/folder.h"
+#include "support/relative.h"
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/output/folder_lock.h"
@@ -149,10 +150,10 @@ TEST_CASE("study: wrong input is told with its place") {
 }
 
 TEST_CASE("study: quantiles of distributions") {
-  CHECK(normal_quantile(0.975) == doctest::Approx(1.959963984540054).epsilon(1e-14));
-  CHECK(normal_quantile(1e-6) == doctest::Approx(-4.753424308822899).epsilon(1e-12));
+  CHECK(normal_quantile(0.975) == test::approx(1.959963984540054).epsilon(1e-14));
+  CHECK(normal_quantile(1e-6) == test::approx(-4.753424308822899).epsilon(1e-12));
   const Distribution normal{Distribution::kNormal, 30, 2};
-  CHECK(normal.quantile(0.975) == doctest::Approx(33.919927969080108).epsilon(1e-13));
+  CHECK(normal.quantile(0.975) == test::approx(33.919927969080108).epsilon(1e-13));
   // lognormal: mean and deviation of the quantity itself, by integrating its quantile
   const Distribution log{Distribution::kLognormal, 5, 1.5};
   double mean = 0, square = 0;
@@ -162,12 +163,12 @@ TEST_CASE("study: quantiles of distributions") {
     mean += x / n, square += x * x / n;
   }
   // midpoints miss a little of the tail
-  CHECK(mean == doctest::Approx(5).epsilon(1e-5));
-  CHECK(std::sqrt(square - mean * mean) == doctest::Approx(1.5).epsilon(1e-3));
+  CHECK(mean == test::approx(5).epsilon(1e-5));
+  CHECK(std::sqrt(square - mean * mean) == test::approx(1.5).epsilon(1e-3));
   // cut off at both sides: the middle stays where it is symmetric, and the ends are reached
   const Distribution cut{Distribution::kNormal, 30, 2, 28, 32};
-  CHECK(cut.quantile(0.5) == doctest::Approx(30).epsilon(1e-12));
-  CHECK(cut.quantile(1e-12) == doctest::Approx(28).epsilon(1e-9));
+  CHECK(cut.quantile(0.5) == test::approx(30).epsilon(1e-12));
+  CHECK(cut.quantile(1e-12) == test::approx(28).epsilon(1e-9));
   CHECK(Distribution{Distribution::kUniform, 3, 1}.quantile(0.25) == 2.5);
 }
 
@@ -198,8 +199,8 @@ TEST_CASE("study: a fragility curve is where the likelihood is greatest") {
         median *= 1 + dm, beta += db, moved = true;
     if (!moved) step *= 0.5;
   }
-  CHECK(f.median == doctest::Approx(median).epsilon(1e-6));
-  CHECK(f.beta == doctest::Approx(beta).epsilon(1e-6));
+  CHECK(f.median == test::approx(median).epsilon(1e-6));
+  CHECK(f.beta == test::approx(beta).epsilon(1e-6));
   // the error of ln(median) by the curvature of the likelihood, beta being free: profile
   const auto profile = [&](double log_median) {
     double low = 0.05, high = 3;
@@ -215,7 +216,7 @@ TEST_CASE("study: a fragility curve is where the likelihood is greatest") {
   const double h = 1e-3, m = std::log(f.median),
                curvature = -(profile(m + h) - 2 * profile(m) + profile(m - h)) / (h * h);
   // expected instead of observed information: equal for large samples
-  CHECK(f.median_error == doctest::Approx(1 / std::sqrt(curvature)).epsilon(0.03));
+  CHECK(f.median_error == test::approx(1 / std::sqrt(curvature)).epsilon(0.03));
   // the band holds the curve, and is wider where there are no runs
   CHECK(f.band(0.6, -1.645) < f.probability(0.6));
   CHECK(f.band(0.6, 1.645) > f.probability(0.6));

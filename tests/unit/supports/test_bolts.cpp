@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "support/block_scene.h"
+#include "support/relative.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/random.h"
@@ -44,14 +45,14 @@ TEST_CASE("path of a bolt: pieces, a gap, blocks that have moved") {
   BoltPath path = path_through(scene.blocks, state, {0.5, 0.5}, {3, 0.5}, 1e-3);
   REQUIRE(path.trouble.empty());
   REQUIRE(path.pieces.size() == 3);
-  CHECK(path.pieces[1].from == doctest::Approx(0.5));
-  CHECK(path.pieces[1].to == doctest::Approx(1.5));
-  CHECK(path.pieces[2].from == doctest::Approx(2.0));
-  CHECK(path.pieces[2].to == doctest::Approx(2.5));
+  CHECK(path.pieces[1].from == approx(0.5));
+  CHECK(path.pieces[1].to == approx(1.5));
+  CHECK(path.pieces[2].from == approx(2.0));
+  CHECK(path.pieces[2].to == approx(2.5));
 
   state.displacement[1] = {0.2, 0};
   path = path_through(scene.blocks, state, {0.5, 0.5}, {3, 0.5}, 1e-3);
-  CHECK(path.pieces[1].from == doctest::Approx(0.7));
+  CHECK(path.pieces[1].from == approx(0.7));
   state.displacement[1] = {0, 5};
   CHECK(path_through(scene.blocks, state, {0.5, 0.5}, {3, 0.5}, 1e-3).pieces.size() == 2);
 }

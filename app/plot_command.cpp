@@ -97,6 +97,12 @@ const std::vector<double>& reference_values(const CsvTable& reference, const std
   return reference.values[c];
 }
 
+// A figure is written with both endings: either may be given with its path.
+fs::path stem_of(const fs::path& output) {
+  const bool either = output.extension() == ".png" || output.extension() == ".svg";
+  return either ? fs::path(output).replace_extension() : output;
+}
+
 void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables,
                   const std::vector<std::string>& columns, const fs::path& stem) {
   plot::Figure figure;
@@ -107,7 +113,10 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
   figure.title = !args.title.empty()                          ? args.title
                  : columns.size() > 1 || name.monitor.empty() ? quantity
                                                               : name.monitor + ": " + quantity;
-  figure.x_label = args.time_unit == "ms" ? "t [ms]" : "t [s]";
+  const std::string against = args.against.empty() ? "" : full_title(tables[0], args.against);
+  figure.x_label = !against.empty()         ? axis_title(parts_of_title(against))
+                   : args.time_unit == "ms" ? "t [ms]"
+                                            : "t [s]";
   figure.y_label = axis;
   const double scale = args.time_unit == "ms" ? 1e3 : 1;
   for (size_t c = 0; c < columns.size(); ++c) {
@@ -119,7 +128,8 @@ void draw_columns(const PlotArguments& args, const std::vector<CsvTable>& tables
     for (size_t i = 0; i < tables.size(); ++i) {
       const int color = static_cast<int>(c * tables.size() + i);
       const std::string label = label_of(args, i, c, of.monitor);
-      const std::vector<double> t = in_unit(tables[i].values[0], scale);
+      const std::vector<double> t =
+          against.empty() ? in_unit(tables[i].values[0], scale) : tables[i].column(against);
       if (!args.raw.empty())
         figure.curves.push_back(
             {label + " (each step)", t, tables[i].column(args.raw), color, plot::Style::kThin, false});
@@ -188,7 +198,7 @@ int plot_frames(const PlotArguments& args) {
     return kExitOk;
   }
   const fs::path folder = args.folders[0];
-  const fs::path stem = args.output.empty() ? folder / "plots" / "blocks" : fs::path(args.output);
+  const fs::path stem = args.output.empty() ? folder / "plots" / "blocks" : stem_of(args.output);
   if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
   plot_blocks(folder, blocks, stem, !args.output.empty());
   return kExitOk;
@@ -203,7 +213,9 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
           "column of histories.csv, or its beginning; several, of one quantity, are overlaid; without: "
           "a figure of every column")
       ->allow_extra_args(false);
-  verb.add_option("-o,--output", args.output, "path of the figure without ending; without: DIR/plots/COLUMN");
+  verb.add_option(
+      "-o,--output", args.output,
+      "path of the figure, of which NAME.svg and NAME.png are written; without: DIR/plots/COLUMN");
   verb.add_option(
           "-l,--label", args.labels,
           "legend text, repeated for each folder in their order (-l A -l B); with one folder and several columns, for each column")
@@ -215,6 +227,8 @@ void add_plot_arguments(CLI::App& verb, PlotArguments& args) {
       ->default_val("exact");
   verb.add_option("--raw", args.raw,
                   "a second column drawn thin below, for example the force of each step below its mean");
+  verb.add_option("-x,--against", args.against,
+                  "a column instead of time along the horizontal axis: a force over a displacement");
   verb.add_option("--stage", args.stage, "only this stage of the runs, times from its beginning");
   verb.add_option("--title", args.title, "title of the figure");
   verb.add_option("--time-unit", args.time_unit, "unit of the time axis")
@@ -272,6 +286,8 @@ int plot_command(const PlotArguments& args) {
     tables.push_back(histories_of(folder));
     if (!args.stage.empty()) tables.back() = only_stage(std::move(tables.back()), folder, args.stage);
   }
+  if (!args.against.empty() && (args.columns.empty() || !args.references.empty()))
+    throw Error(kExitUsage, "-x needs -c, and goes without -r: what is drawn over that column");
   if (args.columns.empty()) {
     if (!args.output.empty()) throw Error(kExitUsage, "-o needs -c: without a column there are many figures");
     plot_all(args.folders[0], tables[0], args);
@@ -286,7 +302,7 @@ int plot_command(const PlotArguments& args) {
   const fs::path stem = args.output.empty()
                             ? fs::path(args.folders[0]) / "plots" /
                                   file_name_of(name_in_files(full_title(tables[0], args.columns[0])))
-                            : fs::path(args.output);
+                            : stem_of(args.output);
   if (stem.has_parent_path()) fs::create_directories(stem.parent_path());
   draw_columns(args, tables, args.columns, stem);
   return kExitOk;

@@ -11,7 +11,7 @@ namespace talus::app {
 
 struct PlotArguments {
   std::vector<std::string> folders, columns, labels, references;
-  std::string output, title, raw, reference_label, time_unit, stage;
+  std::string output, against, title, raw, reference_label, time_unit, stage;
   std::vector<double> limit_y, limit_t;
   BlockPlotArguments blocks;
   std::string animation;

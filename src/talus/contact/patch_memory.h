@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "talus/contact/patches.h"
+#include "talus/contact/patch_world.h"
 
 namespace talus {
 

@@ -8,18 +8,9 @@
 #include "talus/contact/outlines.h"
 #include "talus/contact/overlap.h"
 #include "talus/contact/pairs.h"
+#include "talus/contact/patch_world.h"
 
 namespace talus {
-
-/// What the search for patches is told.
-struct PatchWorld {
-  const BlockSet& blocks;
-  const Outlines& outlines;
-  const BondSet& bonds;
-  const Layout& layout;
-  const Model& model;
-  const std::vector<JointLaw>& laws;
-};
 
 /// Memory of the search from step to step; nothing of it matters to the result.
 ///

@@ -159,6 +159,7 @@ class PartsMeeting {
 
  private:
   using Polygon = std::vector<Vec2>;
+  static constexpr double kAll = std::numeric_limits<double>::infinity();
   // How much of the other part a side has before it.
   struct Way {
     bool of_b;
@@ -168,6 +169,15 @@ class PartsMeeting {
     size_t nearest = 0;  // that corner
 
     int number() const { return of_b ? static_cast<int>(side) + 1 : -static_cast<int>(side) - 1; }
+  };
+
+  // What a side sees of a place of the other part.
+  struct Sight {
+    Vec2 out;          // along which distances are
+    double at_origin;  // of the other part's origin, now [m]
+    Vec2 per_place;    // by which a place comes, on top of
+    double comes;      // what the origin does in the step [m]
+    double then(double now, Vec2 place) const { return now + comes + dot(per_place, place); }
   };
 
   struct Gap {
@@ -184,6 +194,7 @@ class PartsMeeting {
   Face face(bool of_b, size_t side) const;
   Way face_before(bool of_b, const Face& own, Face& other) const;
   void look_ahead_from_face(Way& w) const;
+  Sight sight(bool of_b, size_t side) const;
   void clip();
   bool take_nearest(bool of_b, std::vector<int>& sides, size_t& main) const;
   double depth_of(bool of_b, size_t side, Vec2 x) const {

@@ -48,7 +48,7 @@ Result solved(Scene& scene, const StagePlan& plan, const State& start, SolverKin
   settings.damping_local = stage.damping_local;
   // never reached: all that is asked for is done
   settings.tolerance = 1e-15 * tolerance_size(scene.blocks);
-  settings.histories_run = false, settings.implicit = stage.implicit, settings.from_rest = stage.from_rest;
+  settings.dynamic = false, settings.implicit = stage.implicit, settings.from_rest = stage.from_rest;
   Result row;
   row.count = count, row.seconds = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kTimes; ++i) {

@@ -420,6 +420,23 @@ TEST_CASE("example bolted_tunnel comes to rest, no bolt yields") {
   check_below("bolted_tunnel energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
+TEST_CASE("example direct_shear: slips either way at its strength, sticks between") {
+  const CaseResult r = run_example("direct_shear");
+  const std::vector<double>&force = r.column("box.reaction_x [N]"),
+        &way = r.column("upper.displacement_x [m]"), &clock = r.column("dynamic_time [s]");
+  const double most = 200e3 * std::tan(std::numbers::pi / 6), stiffness = 4e9 * 0.2;
+  check_close("direct_shear force that slips [N]", *std::max_element(force.begin(), force.end()), most, 1e-4,
+              1e-5);
+  check_close("direct_shear force that slips back [N]", *std::min_element(force.begin(), force.end()), -most,
+              1e-4, 1e-5);
+  CHECK(r.run.stages[1].balances == 101);
+  // unloading from the first turn, where a balance stands: a row is off by a thousandth of the step's way at most
+  for (size_t i = 0; i < clock.size(); ++i)
+    if (clock[i] > 1.01 && clock[i] < 1.25)
+      check_close(fmt::format("direct_shear unloading at {:g} s [N]", clock[i]), force[i],
+                  most - stiffness * (1e-3 - way[i]), 1e-4, 1e-5, most);
+}
+
 TEST_CASE("example rough_joint: breaks, weakens, rides up") {
   const CaseResult r = run_example("rough_joint");
   const double t = M_PI / 180, n = 100e3 + 2500 * 0.2 * 9.81;

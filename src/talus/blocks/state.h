@@ -195,6 +195,12 @@ struct RestWatch {
   int whole = 0;         // such steps in a row that were not halved
   double gone = 0;       // no block has gone further in them, as share of its size
   double gone_many = 0;  // and blocks of a hundredth of the area no less far
+  // of a stage along a path; of others it is looked for once
+  int64_t begin_steps = 0;  // steps of the stage before the present balance is looked for
+  double begin = 0;         // when that began [s]
+  double pace = 0;          // by how much the histories go on in a second of its steps [-]
+  double moved = 0;         // sum of the longest way of a block in each of its steps, as share of its size
+  int balances = 0;         // found so far
 };
 
 /// What an implicit step leaves out of balance, and how it moved (of conventional DDA).
@@ -215,10 +221,11 @@ struct State {
   State& operator=(State&&) noexcept;
   ~State();
 
-  double time = 0;          // [s]
-  int64_t step = 0;         // steps completed
-  double history_time = 0;  // [s] clock of the histories: time spent in dynamic stages
-  double dt_before = 0;     // length of the step before [s]; 0 at the start, which makes the first half step
+  double time = 0;   // [s]
+  int64_t step = 0;  // steps completed
+  double history_time =
+      0;                 // [s] clock of the histories: time spent in dynamic stages, and paths of static ones
+  double dt_before = 0;  // length of the step before [s]; 0 at the start, which makes the first half step
 
   std::vector<Vec2> displacement;  // [count] c - c0 [m]
   std::vector<Mat2> strain_part;   // [count] F - I

@@ -111,7 +111,10 @@ void each_field(Is<Bolt> auto& b, auto&& f) {
 }
 
 void each_field(Is<RestWatch> auto& r, auto&& f) {
-  auto& [steps, best, before, sharper, stuck, length, whole, gone, gone_many] = r;
+  auto& [steps, best, before, sharper, stuck, length, whole, gone, gone_many, begin_steps, begin, pace, moved,
+         balances] = r;
+  f("begin_steps", begin_steps), f("begin", begin), f("pace", pace), f("moved", moved);
+  f("balances", balances);
   f("steps", steps), f("best", best), f("before", before), f("sharper", sharper), f("stuck", stuck);
   f("length", length), f("whole", whole), f("gone", gone), f("gone_many", gone_many);
 }

@@ -9,4 +9,11 @@ Model& Model::operator=(const Model&) = default;
 Model& Model::operator=(Model&&) noexcept = default;
 Model::~Model() = default;
 
+double Model::history_time_at(int stage) const {
+  double sum = 0;
+  for (size_t k = 0; k < static_cast<size_t>(stage); ++k)
+    sum += stages[k].kind == StageKind::kDynamic ? stages[k].duration : stages[k].path;
+  return sum;
+}
+
 }  // namespace talus

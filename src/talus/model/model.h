@@ -229,7 +229,9 @@ struct StageInput {
   // time since the start [s] and share of the tractions of excavated rock that is gone by then; not falling
   std::vector<Vec2> relaxation;
   bool reset_displacements = false;
-  Where where, where_step, where_clamp, where_excavate, where_relaxation;
+  double path = 0;     // static: by how much its histories go on, from balance to balance [s]; 0: they stand
+  int increments = 0;  // of the path
+  Where where, where_step, where_clamp, where_excavate, where_relaxation, where_path;
 
   /// Makes it one of steps from rest, with what these ask for: a first step, no damping, tractions of excavated rock
   /// that go in shares.
@@ -387,6 +389,9 @@ struct Model {
   std::vector<MonitorInput> monitors;
   OutputInput output;
   SafetyInput safety;
+
+  /// Where the clock of the histories stands when a stage begins: what dynamic stages last and paths are long before it [s].
+  double history_time_at(int stage) const;
 };
 
 }  // namespace talus

@@ -24,7 +24,11 @@ class AsPrinted {
     for (const StageInput& s : model_.stages) {
       const bool implicit = s.implicit && !s.elasticity_auto;
       if ((s.from_rest && !s.from_rest_auto) || implicit)
-        refuse_at(s.where, "stage." + s.name + (implicit ? ".elasticity" : ".integration"),
+        refuse_at(s.where,
+                  "stage." + s.name +
+                      (s.path > 0 ? ".path"
+                       : implicit ? ".elasticity"
+                                  : ".integration"),
                   "every step is an explicit central difference");
     }
   }

@@ -13,6 +13,12 @@ namespace talus {
 
 namespace {
 
+// What says how blocks shall move.
+constexpr std::initializer_list<const char*> kOfMotion = {"safety", "moment_clamp", "damping_mass",
+                                                          "damping_stiffness", "damping_local"};
+
+constexpr int64_t kIncrements = 20;
+
 class StageReader : private SectionReader {
  public:
   StageReader(const TomlSource& source, Model& model, Findings& findings)
@@ -56,12 +62,14 @@ class StageReader : private SectionReader {
     s.excavate = f.get<std::vector<std::string>>("excavate");
     s.relaxation = f.get<std::vector<Vec2>>("relaxation");
     read_integration(f, s);
+    read_path(f, s);
     s.reset_displacements = f.get("reset_displacements", false);
     s.where = f.where();
     s.where_step = f.where("time_step");
     s.where_clamp = f.where("moment_clamp");
     s.where_excavate = f.where("excavate");
     s.where_relaxation = f.where("relaxation");
+    s.where_path = f.where("path");
     if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
       findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
     if (s.kind == StageKind::kDynamic && f.given("strict_rest"))
@@ -73,22 +81,49 @@ class StageReader : private SectionReader {
 
   // Theory 4.23. What is said about how the blocks move asks for the dynamic way.
   void read_integration(const Fields& f, StageInput& s) {
-    const std::initializer_list<const char*> of_motion = {"safety", "moment_clamp", "damping_mass",
-                                                          "damping_stiffness", "damping_local"};
     const auto integration = f.get<std::string>("integration");
-    s.from_rest_auto = integration == "auto" && s.kind == StageKind::kStatic && !any_given(f, of_motion) &&
+    s.from_rest_auto = integration == "auto" && s.kind == StageKind::kStatic && !any_given(f, kOfMotion) &&
                        f.get<std::string>("elasticity") != "explicit" && !f.given("time_step");
     if (integration != "implicit") return;
     if (s.kind == StageKind::kDynamic)
       error(f, "integration", "is \"implicit\", which knows no inertia: it is for static stages",
             "leave it out, or say kind = \"static\"");
-    for (const char* key : of_motion)
+    for (const char* key : kOfMotion)
       if (f.given(key))
         error(f, key, "has nothing to do where integration = \"implicit\": every step begins at rest",
               "leave one of the two out");
     if (f.get<std::string>("elasticity") == "explicit")
       error(f, "elasticity", "is \"explicit\", and integration = \"implicit\" has no stable limit to keep",
             "leave one of the two out");
+    s.go_from_rest();
+  }
+
+  // Theory 4.24.
+  void read_path(const Fields& f, StageInput& s) {
+    if (!f.given("path")) {
+      if (f.given("increments"))
+        error(f, "increments", "are parts of a path, and there is none", "give path, or leave it out");
+      return;
+    }
+    s.path = f.get("path", 0.0), s.increments = static_cast<int>(f.get<int64_t>("increments", kIncrements));
+    if (s.kind == StageKind::kDynamic)
+      error(f, "path", "is only for static stages: in a dynamic one the histories run with the time",
+            "leave it out");
+    if (f.get<std::string>("integration") == "dynamic")
+      error(f, "path", "goes from balance to balance, and integration = \"dynamic\" moves",
+            "leave one of the two out");
+    for (const char* key : {"excavate", "relaxation"})
+      if (f.given(key))
+        error(f, key, "is no part of a path", "excavate in a static stage of its own, before this one");
+    for (const char* key : kOfMotion)
+      if (f.given(key))
+        error(f, key, "has nothing to do on a path: every step begins at rest", "leave one of the two out");
+    if (f.get<std::string>("elasticity") == "explicit")
+      error(f, "elasticity", "is \"explicit\", and a path has no stable limit to keep",
+            "leave one of the two out");
+    if (model_.contact.law == ContactLaw::kSmoothed)
+      error(f, "path", "needs contact.law = \"exact\": balances of smoothed friction creep",
+            "leave contact.law out, or path");
     s.go_from_rest();
   }
 

@@ -230,7 +230,7 @@ std::vector<SectionSpec> sections_of_model() {
       {"history",
        SectionShape::kNamed,
        "A quantity over time, linear between its points, held before the first and after the last. Its "
-       "clock runs in dynamic stages only and starts with the first of them. Give `time` and `value`, or "
+       "clock runs in dynamic stages and along the `path` of static ones, and starts with the first of them. Give `time` and `value`, or "
        "`expression` with `duration`, or `file` with `column`.",
        {{.name = "time", .type = K::kNumbers, .dimension = D::kTime, .doc = "Rising times [s]."},
         {.name = "value",

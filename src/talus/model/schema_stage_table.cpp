@@ -56,7 +56,7 @@ SectionSpec stage_section() {
         .required = true,
         .choices = {"static", "dynamic"},
         .doc = "`dynamic`: in true time for `duration`. `static`: until at rest, at most for "
-               "`duration`."},
+               "`duration`; with `path` from balance to balance."},
        {.name = "duration",
         .dimension = D::kTime,
         .range = kPositive,
@@ -91,6 +91,21 @@ SectionSpec stage_section() {
             "and what has no balance near and is no mechanism is followed by damped motion; dynamic where a "
             "time step, explicit elasticity, damping, `safety` or `moment_clamp` say how blocks shall move, "
             "and where joints without stiffness have cohesion or tensile strength."},
+       {.name = "path",
+        .dimension = D::kTime,
+        .range = kPositive,
+        .doc =
+            "Static stages, by `integration = \"implicit\"`: the clock of the histories goes on by this, from one balance to "
+            "the next (theory 4.24): at the start, at the end of each of the `increments`, and wherever a history that "
+            "something follows here turns. histories.csv has a row for each balance and none between. `duration` is then "
+            "the limit for each of them; blocks that are not waited for (`strict_rest`) stay aside to the end of the stage."},
+       {.name = "increments",
+        .type = K::kInteger,
+        .range = {.min = 1, .max = 1e5},
+        .default_text = "20",
+        .doc =
+            "With `path`: number of equal parts of it. Friction and what breaks depend on the way there: twice as many "
+            "tell whether these were enough."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

@@ -49,8 +49,7 @@ void begin_penalty(const Scene& scene, const Newmark& scheme, State& state) {
   if (scheme.beta != 0.5 || scheme.gamma != 1) state.acceleration.resize(n);
 }
 
-PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bool histories_run,
-                                 State& state) {
+PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bool dynamic, State& state) {
   PenaltyReport report;
   report.parts = 0;
   int cuts = 0;
@@ -62,7 +61,7 @@ PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bo
       // the last part ends on the step's end
       const double dt = part >= left * (1 - 1e-9) ? left : part;
       State before = state;
-      if (try_part(settings, dt, histories_run, state, report)) {
+      if (try_part(settings, dt, dynamic, state, report)) {
         state.time = dt == left ? end : before.time + dt;
         ++report.parts;
         if (cuts > 0) --cuts, part = std::min(3 * part, end - state.time);
@@ -85,7 +84,7 @@ PenaltyReport PenaltySteps::step(const PenaltySettings& settings, double end, bo
     // forces are those of the last part; what is made of them, impulses and accelerations, is of the whole step
     const double whole = end - begun.time;
     state.dt_before = whole, state.rate_old = work_.rate_before = begun.rate;
-    work_.clock = {whole, whole, 0, begun.history_time, histories_run, false};
+    work_.clock = {whole, whole, 0, begun.history_time, dynamic ? whole : 0, dynamic, false};
     show(settings, whole, state);
   }
   ++state.step;
@@ -102,7 +101,7 @@ void PenaltySteps::seek_contacts(State& state) {
 void PenaltySteps::stand(const PenaltySettings& settings, double dt, State& state) {
   // as the step before has left them, whatever the steps of this stage
   const double before = state.dt_before > 0 ? state.dt_before : dt;
-  work_.clock = {before, before, 0, state.history_time, false, false};
+  work_.clock = {before, before, 0, state.history_time, 0, false, false};
   work_.rate_before = state.rate_old.empty() ? state.rate : state.rate_old;
   // blocks that the stage takes out, or the first instant of all
   if (state.candidates.reach.empty()) seek_contacts(state);
@@ -301,10 +300,10 @@ bool PenaltySteps::solve_with_friction() {
   return false;
 }
 
-bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool histories_run, State& state,
+bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool dynamic, State& state,
                             PenaltyReport& report) {
   const BlockSet& blocks = scene_.blocks;
-  work_.clock = {dt, dt, 0, state.history_time, histories_run, false};
+  work_.clock = {dt, dt, 0, state.history_time, dynamic ? dt : 0, dynamic, false};
   gather(settings, dt, state);
   const auto n = static_cast<size_t>(blocks.count);
   displacement_.resize(n);

@@ -49,7 +49,7 @@ class PenaltySteps {
   /// far. Work, forces, contacts, stress and rows are those at `end` then.
   /// Throws NumericalError, with time, block and contact, where a part cannot be cut any more, the matrix is not
   /// positive definite, or a block is turned inside out.
-  PenaltyReport step(const PenaltySettings& settings, double end, bool histories_run, State& state);
+  PenaltyReport step(const PenaltySettings& settings, double end, bool dynamic, State& state);
 
   /// Rows and places as they stand at the begin of a stage, or where a run goes on, with the forces that contacts
   /// remember.
@@ -59,7 +59,7 @@ class PenaltySteps {
   StepReport report(const State& state) const;
 
  private:
-  bool try_part(const PenaltySettings& settings, double dt, bool histories_run, State& state,
+  bool try_part(const PenaltySettings& settings, double dt, bool dynamic, State& state,
                 PenaltyReport& report);
   void gather(const PenaltySettings& settings, double dt, State& state);
   void seek_contacts(State& state);

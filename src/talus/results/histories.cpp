@@ -36,6 +36,8 @@ const std::vector<std::pair<const char*, const char*>> kMotion{
 constexpr double kShortestPeriod = 0.02, kLongestPeriod = 5;
 constexpr int kPeriods = 100;
 
+double path_of(const Instant& i) { return i.scene.model.stages[static_cast<size_t>(i.stage)].path; }
+
 bool is_dynamic(const Instant& i) {
   return i.scene.model.stages[static_cast<size_t>(i.stage)].kind == StageKind::kDynamic;
 }
@@ -238,7 +240,7 @@ void Histories::sample_bolt(const Instant& instant, const std::string& name, std
 
 void Histories::at(const Instant& instant, bool keep) {
   std::vector<double> row = sample(instant);
-  if (keep) keep_row(std::move(row));
+  if (keep && !instant.on_the_way) keep_row(std::move(row));
   release(known_until_, false);
 }
 
@@ -251,9 +253,9 @@ void Histories::at_even(const Instant& instant, double interval, Even& even) {
   constexpr double kSame = 1e-6;  // of a step: an instant so near is that of the row
   std::vector<double> row = sample(instant);
   const double t = instant.state.time, near = kSame * instant.advance;
-  const bool begins = before_.empty() || instant.stage_start;
+  const bool begins = before_.empty() || instant.stage_start, on_path = path_of(instant) > 0;
   bool kept = false;
-  if (!before_.empty()) {
+  if (!before_.empty() && (begins || !on_path)) {
     // what a stage resets is not between two instants: the last values stand until then
     const bool resets = begins && scene_.model.stages[static_cast<size_t>(instant.stage)].reset_displacements;
     const std::vector<double>& after = resets ? before_ : row;
@@ -271,7 +273,8 @@ void Histories::at_even(const Instant& instant, double interval, Even& even) {
     }
   }
   if (begins) even = {t, 1};
-  if (begins || (instant.last && !kept)) keep_row(row);
+  if (on_path) even = {t + instant.advance, 0};  // those of the stage after it
+  if (on_path ? !instant.on_the_way : begins || (instant.last && !kept)) keep_row(row);
   before_ = std::move(row);
   release(known_until_, false);
 }
@@ -320,7 +323,7 @@ std::vector<double> Histories::sample(const Instant& instant) {
         break;
     }
   }
-  answers_->at(instant, row);
+  if (!instant.on_the_way) answers_->at(instant, row);
   known_until_ = s.time + 0.5 * instant.advance;
   return row;
 }

@@ -23,7 +23,7 @@ class Histories {
   Histories(const Scene& scene, Sink sink);
   ~Histories();
 
-  /// "t [s]", "dynamic_time [s]" (spent in dynamic stages), then the monitors in the order of the model.
+  /// "t [s]", "dynamic_time [s]" (the clock of the histories), then the monitors in the order of the model.
   const std::vector<ColumnTitle>& columns() const { return columns_; }
 
   /// To be called at every instant: impulses add up whether a row is kept or not.
@@ -35,7 +35,8 @@ class Histories {
     double begin = 0, rows = 0;  // of the present stage [s], so far
   };
   /// The same with a row at the beginning of each stage and every `interval` after it, linear between the two instants
-  /// about it, and one at the last instant.
+  /// about it, and one at the last instant; of a stage along a path one at
+  /// each of its balances, and no others.
   void at_even(const Instant& instant, double interval, Even& even);
 
   struct Peak {

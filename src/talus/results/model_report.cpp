@@ -124,6 +124,7 @@ ordered_json stages(const Model& model) {
     out.push_back({{"name", s.name},
                    {"kind", s.kind == StageKind::kStatic ? "static" : "dynamic"},
                    {"implicit_elasticity", s.implicit},
+                   {"path [s]", s.path},
                    {"excavate", s.excavate},
                    {"damping_mass [1/s]", s.damping_mass},
                    {"damping_stiffness [s]", s.damping_stiffness},

@@ -40,6 +40,11 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   p.frames = 1;
   for (size_t i = 0; i < plans.size(); ++i) {
     const double duration = scene.model.stages[i].duration;
+    if (plans[i].balances > 0) {  // most are found in two steps
+      p.history_rows += plans[i].balances, p.step_rows += 2 * plans[i].balances;
+      p.frames += out.field_interval > 0 ? plans[i].balances : 1;
+      continue;
+    }
     p.history_rows += rows_of(duration, plans[i].steps, out.history_interval);
     p.step_rows += rows_of(duration, plans[i].steps, out.steps_interval);
     p.frames += std::max<int64_t>(

@@ -54,13 +54,11 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
                                 : fmt::format("{:g} s in {}{} steps of {:.4g} s", s.duration,
                                               at_rest ? "at most " : "", plan.steps, plan.dt);
   // where the clock of histories is met for the first time, and where it goes on
-  double history_time = 0;
-  for (int k = 0; k < stage; ++k) {
-    const StageInput& before = scene.model.stages[static_cast<size_t>(k)];
-    if (before.kind == StageKind::kDynamic) history_time += before.duration;
-  }
+  const double history_time = scene.model.history_time_at(stage);
   const std::string clock =
-      at_rest || scene.model.histories.empty()
+      s.path > 0 ? fmt::format("; histories from {:g} to {:g} s in {} balances", history_time,
+                               history_time + s.path, plan.balances)
+      : at_rest || scene.model.histories.empty()
           ? ""
           : fmt::format("; histories (their clock stands in static stages) from {:g} s", history_time);
   say(out_, fmt::format("stage {}/{} \"{}\" ({}{}): {}{}\n", stage + 1, scene.model.stages.size(), s.name,
@@ -110,9 +108,13 @@ void Progress::show(const Instant& instant, double now) {
   const double share =
       100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
   const std::string pace =
-      s.from_rest ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt)
-                  : fmt::format("{:.0f} %, {}{} to go", share, s.kind == StageKind::kStatic ? "at most " : "",
-                                readable_seconds(left / rate));
+      s.from_rest
+          ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt) +
+                (s.path > 0
+                     ? fmt::format(", {} of {} balances", instant.state.rest.balances, instant.plan.balances)
+                     : "")
+          : fmt::format("{:.0f} %, {}{} to go", share, s.kind == StageKind::kStatic ? "at most " : "",
+                        readable_seconds(left / rate));
   const std::string steps = s.from_rest ? "" : fmt::format(", {:.0f} steps/s", rate);
   const std::string line =
       fmt::format("  {}: t = {:.4g} s, {}{}{}, contact error {:.0e} m{}", s.name, instant.state.time, pace,
@@ -186,7 +188,9 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
     if (s.at_rest)
       out += fmt::format(
           "  at rest         stage \"{}\" after {} steps{}, unbalanced {:.1e}\n", s.name, s.steps,
-          s.followed() ? fmt::format(" ({} from rest, then damped motion)", s.steps_from_rest) : "",
+          s.plan.balances > 0 ? fmt::format(", at each of {} balances of its path", s.plan.balances)
+          : s.followed()      ? fmt::format(" ({} from rest, then damped motion)", s.steps_from_rest)
+                              : "",
           s.unbalanced);
     if (!s.left_out.empty()) out += fmt::format("  not waited for  stage \"{}\": {}\n", s.name, s.left_out);
   }

@@ -344,7 +344,7 @@ void Recorder::at(const Instant& i) {
     if (failure) left_.step = name;
     due_.dumped_failure = due_.dumped_failure || failure;
   }
-  const bool frame = out.field_interval > 0 && is_due(t, dt, out.field_interval, due_.frame);
+  const bool frame = out.field_interval > 0 && !i.on_the_way && is_due(t, dt, out.field_interval, due_.frame);
   if (frame || start || i.last) {
     const FrameTexts texts = write_frame(i);
     if (first && out.pictures) folder_.write("blocks_start.svg", picture_of(texts, scene_.model.title));

@@ -183,6 +183,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
                           {"largest_clamp", s.plan.largest_clamp},
                           {"unbalanced", s.unbalanced}};
     if (s.kind == StageKind::kStatic) stage["at_rest"] = s.at_rest;
+    if (s.plan.balances > 0) stage["balances"] = s.balances, stage["balances_of_path"] = s.plan.balances;
     if (s.followed()) {
       stage["steps_from_rest"] = s.steps_from_rest;
       stage["followed_from [s]"] = s.followed_from;

@@ -19,6 +19,7 @@ struct Instant {
   bool stage_start = false;
   bool last = false;         // no step follows
   int64_t steps_before = 0;  // of this stage, also before a run went on from a saved state
+  bool on_the_way = false;   // to the next balance of a path: no row of a table, no frame
 };
 
 /// Receives the instants of a run in order.

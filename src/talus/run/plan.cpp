@@ -1,4 +1,5 @@
 #include "talus/run/plan.h"
+#include "talus/run/path.h"
 
 #include <fmt/format.h>
 
@@ -237,9 +238,14 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::optional<Scene> changed;
   if (blocks_change(scene.model)) changed = scene;
   for (const StageInput& stage : scene.model.stages) {
-    if (changed) change_scene(static_cast<int>(plans.size()), *changed);
+    const int index = static_cast<int>(plans.size());
+    if (changed) change_scene(index, *changed);
     const Scene& staged = changed ? *changed : scene;
     StagePlan plan = plan_stage(scene, staged, stage, findings);
+    if (stage.path > 0) {
+      plan.balances = static_cast<int>(path_goals(scene, index).size());
+      plan.steps *= plan.balances;
+    }
     if (stage.may_follow) {
       StageInput moving = stage;
       moving.go_by_motion();

@@ -27,6 +27,7 @@ struct StagePlan {
   double dt_follow = 0;      // [s]
   int64_t steps_follow = 0;  // at most
   double bound_follow = 0;   // stable limit [s]
+  int balances = 0;          // of a stage along a path
 
   bool operator==(const StagePlan&) const = default;
 };

@@ -10,6 +10,7 @@
 
 #include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
+#include "talus/run/path.h"
 #include "talus/run/resolution.h"
 
 namespace talus {
@@ -38,6 +39,7 @@ class Plausible {
     check_bending();
     check_steps();
     check_static_only();
+    check_paths();
     check_histories();
     check_outputs();
     check_held();
@@ -208,13 +210,59 @@ class Plausible {
     }
   }
 
+  bool histories_run_in(size_t stage) const {
+    return model_.stages[stage].kind == StageKind::kDynamic || model_.stages[stage].path > 0;
+  }
+
+  // A path on which nothing goes, and motions of dynamic stages that a path before them has used up.
+  void check_paths() {
+    for (size_t i = 0; i < model_.stages.size(); ++i) {
+      const StageInput& s = model_.stages[i];
+      if (s.path > 0 && !follows_history(scene_, static_cast<int>(i)))
+        findings_.error(
+            s.where_path, "stage." + s.name + ".path",
+            "leads nowhere: no support, load or driven block that acts in this stage follows a history",
+            "name a history in one of them, or leave path out");
+      const double begun = model_.history_time_at(static_cast<int>(i));
+      if (s.kind != StageKind::kDynamic || !(begun > 0)) continue;
+      for (const BoundaryInput& b : model_.boundaries)
+        warn_begun(b.where, "boundary." + b.name, b, true, i, {b.history_x, b.history_y});
+      for (const LoadInput& l : model_.loads)
+        warn_begun(l.where, "load." + l.name, l, false, i, {l.x.history, l.y.history, l.pressure.history});
+    }
+  }
+
+  // What acts for the first time in the midst of its history, as a path came before. Waves come in while time runs, and
+  // not on a path.
+  void warn_begun(const Where& where, const std::string& name, const Staged& what, bool is_wave, size_t stage,
+                  std::initializer_list<int> histories) {
+    if (!what.acts_in(static_cast<int>(stage))) return;
+    double on_paths = 0;
+    for (size_t k = 0; k < stage; ++k) {
+      const bool runs =
+          model_.stages[k].kind == StageKind::kDynamic || (model_.stages[k].path > 0 && !is_wave);
+      if (runs && what.acts_in(static_cast<int>(k))) return;
+      on_paths += model_.stages[k].path;
+    }
+    if (!(on_paths > 0)) return;
+    const double begun = model_.history_time_at(static_cast<int>(stage));
+    for (const int h : histories) {
+      if (h < 0 || model_.histories[static_cast<size_t>(h)].time.front() >= begun) continue;
+      findings_.warning(
+          where, name,
+          fmt::format("acts from {:.6g} s of history \"{}\" on, as paths have used up the time before", begun,
+                      model_.histories[static_cast<size_t>(h)].name),
+          fmt::format("let the times of that history begin at {:.6g} s", begun));
+    }
+  }
+
   // Whether a history drives something in static stages only, where it stands at its value of t = 0.
   bool stands_still(const Staged& what, int history) const {
     if (history < 0) return false;
     const std::vector<double>& v = model_.histories[static_cast<size_t>(history)].value;
     if (std::all_of(v.begin(), v.end(), [&v](double x) { return x == v[0]; })) return false;
     for (size_t i = 0; i < model_.stages.size(); ++i)
-      if (what.acts_in(static_cast<int>(i)) && model_.stages[i].kind == StageKind::kDynamic) return false;
+      if (what.acts_in(static_cast<int>(i)) && histories_run_in(i)) return false;
     return true;
   }
 
@@ -243,16 +291,11 @@ class Plausible {
                        {b.motion_x.history, b.motion_y.history, b.motion_rotation.history});
   }
 
-  double dynamic_time() const {
-    double sum = 0;
-    for (const StageInput& s : model_.stages)
-      if (s.kind == StageKind::kDynamic) sum += s.duration;
-    return sum;
-  }
+  double history_time() const { return model_.history_time_at(static_cast<int>(model_.stages.size())); }
 
   // Histories that swing and are used as if they ended, or began, elsewhere.
   void check_histories() {
-    const double time = dynamic_time();
+    const double time = history_time();
     if (!(time > 0)) return;
     std::set<int> velocities, accelerations;
     const auto add_motion = [&](const Motion& m) {
@@ -304,11 +347,10 @@ class Plausible {
                                     h.value.front(), 100 * std::abs(h.value.front()) / peak),
                         "let it begin at 0");
     if (h.time.back() > kHardlyBegins * time)
-      findings_.warning(
-          h.where, path,
-          fmt::format("lasts {:.4g} s, and the dynamic stages {:.4g} s: only its beginning acts",
-                      h.time.back(), time),
-          "is its time in ms? Else make the stage longer");
+      findings_.warning(h.where, path,
+                        fmt::format("lasts {:.4g} s, and histories run for {:.4g} s: only its beginning acts",
+                                    h.time.back(), time),
+                        "is its time in ms? Else make the stage longer");
     const double gravity = norm(model_.gravity), shaking = factor * peak;
     if (gravity > 0 && shaking > kMostShaking * gravity)
       findings_.warning(

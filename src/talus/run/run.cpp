@@ -19,6 +19,7 @@
 #include "talus/penalty/penalty_step.h"
 #include "talus/run/check_monitors.h"
 #include "talus/run/mechanism.h"
+#include "talus/run/path.h"
 #include "talus/run/plausible.h"
 #include "talus/run/resolution.h"
 #include "talus/run/steps_from_rest.h"
@@ -162,6 +163,7 @@ class StagedRun::Runner {
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
     state_.rest = StepsFromRest::begin(plan.dt), state_.left_out.clear();
+    state_.rest.begin = state_.time;
     if (stage.from_rest) stop_motion(scene_, state_);
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {
@@ -180,7 +182,7 @@ class StagedRun::Runner {
                  .damping_local = stage.damping_local,
                  .tolerance = scene_.model.solver.tolerance * tolerance_size(scene_.blocks),
                  .limit = scene_.model.solver.limit * tolerance_size(scene_.blocks),
-                 .histories_run = stage.kind == StageKind::kDynamic,
+                 .dynamic = stage.kind == StageKind::kDynamic,
                  .implicit = stage.implicit,
                  .from_rest = stage.from_rest,
                  .keep_guess = true};
@@ -212,6 +214,31 @@ class StagedRun::Runner {
     observer_.stage_begins(scene_, index, plans_[static_cast<size_t>(index)]);
     if (penalty_) penalty_->stand(penalty_settings_, advance_, state_);
     from_rest_.emplace(scene_, work_, state_);
+    goals_ = path_goals(scene_, index);
+  }
+
+  // Where the histories of the present balance stand: on a path at its next goal.
+  double history_goal() const {
+    return goals_.empty() ? state_.history_time : goals_[static_cast<size_t>(state_.rest.balances)];
+  }
+
+  // A balance was found; whether another one is to be.
+  bool next_balance() {
+    if (goals_.empty()) return false;
+    StageResult& out = result_.stages.back();
+    out.balances = ++state_.rest.balances;
+    if (state_.rest.balances >= static_cast<int>(goals_.size())) return false;
+    from_rest_->go_on(history_goal(), plans_[result_.stages.size() - 1].dt, out.steps);
+    return true;
+  }
+
+  // ", behind 12 of 21 balances of its path, on the way of the histories from 0.55 to 0.6 s", for messages.
+  std::string on_path() const {
+    if (goals_.empty()) return "";
+    const auto found = static_cast<size_t>(state_.rest.balances);
+    if (found == 0) return ", at the beginning of its path";
+    return fmt::format(", behind {} of {} balances of its path, as the histories go from {:.6g} to {:.6g} s",
+                       found, goals_.size(), goals_[found - 1], goals_[found]);
   }
 
   // Steps of the present stage in the way of its plan: those from rest before are not among them.
@@ -219,6 +246,9 @@ class StagedRun::Runner {
     const StageResult& out = result_.stages.back();
     return out.followed() ? out.steps - out.steps_from_rest : out.steps;
   }
+
+  // The same of the present balance alone, on a path.
+  int64_t steps_of_balance() const { return result_.stages.back().steps - state_.rest.begin_steps; }
 
   // Time of the present stage after so many steps of its plan [s].
   double stage_time(int64_t steps) const {
@@ -273,13 +303,14 @@ class StagedRun::Runner {
     if (!stage.from_rest) return false;
     if (state_.rest.gone > kFarFromRest) {
       const Mechanism m = find_mechanism(scene_, state_);
-      const bool goes_on = state_.rest.gone_many > kMechanismWay || out.steps >= kMostFromRest;
+      const bool goes_on = state_.rest.gone_many > kMechanismWay || steps_of_balance() >= kMostFromRest;
       if (m.slides && m.share >= kMechanismShare && goes_on) {
         result_.mechanism = result_.no_rest = true;
         throw NumericalError(fmt::format(
-            "static stage \"{}\" finds no balance: a mechanism. {}. {} steps from rest; blocks_end.svg shows it, "
-            "stage.{}.integration = \"dynamic\" follows it",
-            stage.name, m.text(scene_, state_), out.steps, stage.name));
+            "static stage \"{}\" finds no balance{}: a mechanism. {}. {} steps from rest; blocks_end.svg shows it, {}",
+            stage.name, on_path(), m.text(scene_, state_), goals_.empty() ? out.steps : steps_of_balance(),
+            goals_.empty() ? fmt::format("stage.{}.integration = \"dynamic\" follows it", stage.name)
+                           : "histories.csv has the balances before it"));
       }
       if (leaves_out(stage, m)) return false;
       // what slides may come to lie on something: not what falls, or is a crumb
@@ -309,25 +340,30 @@ class StagedRun::Runner {
       result_.interrupted = true;
       return false;
     }
-    if (stage.from_rest && state_.time >= out.begin + stage.duration) return false;
+    if (stage.from_rest && state_.time >= state_.rest.begin + stage.duration) return false;
     settings_.sharper = state_.rest.sharper;
     StepReport report;
     double part = plan.dt;
     if (penalty_) {
       report = penalty_->report(state_);
     } else if (stage.from_rest) {
-      const auto kicked = from_rest_->kick(stage, out.begin, plan.dt, settings_, advance_);
+      const auto kicked = from_rest_->kick(stage, out.begin, plan.dt, history_goal(), settings_, advance_);
       if (!kicked) return follow_motion(from_rest_->why_not()), true;
       report = *kicked;
     } else {
       report = kick_part(stage, part);
     }
     if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance_ / plan.dt_bound);
-    show({scene_, state_, work_, report, plan, advance_, index, out.steps == 0, false, n});
+    // faces that break in the drift are told in the balance after them
+    const bool rests = stage.kind == StageKind::kStatic && is_at_rest(stage, report, n) &&
+                       (!stage.from_rest || from_rest_->stands(!goals_.empty()));
+    show({scene_, state_, work_, report, plan, advance_, index, out.steps == 0, false, n,
+          !goals_.empty() && !rests});
     // from the start of the stage, not by adding: the last step ends exactly on the stage's end
     const double end = stage.from_rest ? state_.time + advance_ : out.begin + stage_time(n + 1);
     go_on_or_fail(index, n, part < plan.dt ? state_.time + part : end, report);
     if (part < plan.dt) go_on_in_parts(index, n, part, end, report);
+    if (!goals_.empty()) from_rest_->arrive(history_goal());
     ++out.steps;
     if (stage.from_rest)
       from_rest_->lengthen(plan.dt, is_relaxed(stage, 0));
@@ -337,9 +373,9 @@ class StagedRun::Runner {
     last_ = report;
     state_.largest_kinetic = std::max(state_.largest_kinetic, report.energy.moving);
     if (stage.kind != StageKind::kStatic) return true;
-    if (is_at_rest(stage, report, n) && (!stage.from_rest || from_rest_->stands())) {
-      out.at_rest = true;
-      return false;
+    if (rests && !(stage.from_rest && report.broken_faces > 0)) {
+      out.at_rest = !next_balance();
+      return !out.at_rest;
     }
     return !watch_rest(stage, report, plan, n);
   }
@@ -381,7 +417,8 @@ class StagedRun::Runner {
     if (stage.from_rest && out.at_rest) std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
       result_.no_rest = true;
-      throw NumericalError(unrest().text(stage, out.end - out.begin, out.steps));
+      throw NumericalError(unrest().text(stage, out.end - (goals_.empty() ? out.begin : state_.rest.begin),
+                                         goals_.empty() ? out.steps : steps_of_balance(), on_path()));
     }
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
@@ -407,7 +444,7 @@ class StagedRun::Runner {
   }
 
   void step_by_penalty(double end) {
-    const PenaltyReport p = penalty_->step(penalty_settings_, end, settings_.histories_run, state_);
+    const PenaltyReport p = penalty_->step(penalty_settings_, end, settings_.dynamic, state_);
     result_.penalty = penalty_settings_.stiffness[0];
     result_.cut_steps += p.parts > 1, result_.parts += p.parts;
     result_.penetration = std::max(result_.penetration, p.penetration);
@@ -508,7 +545,6 @@ class StagedRun::Runner {
 
   // Forces in balance is not enough: a block that swings through its rest position is in balance there.
   bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    if (stage.from_rest && report.broken_faces > 0) return false;
     return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
            (report.speed_left <= stage.unbalanced || !state_.left_out.empty());  // its energy is theirs too
   }
@@ -540,7 +576,7 @@ class StagedRun::Runner {
     note(report, copy);
     // a run that is stopped between two stages has not shown the begin of the second
     const bool at_start = result_.stages.back().steps == 0;
-    show({scene_, copy, work_, report, plan, plan.dt, index, at_start, true});
+    show({scene_, copy, work_, report, plan, plan.dt, index, at_start, true, 0, !goals_.empty()});
   }
 
   // @param state  that of the step: its contacts are those of the rows
@@ -637,7 +673,8 @@ class StagedRun::Runner {
   StepWork work_;
   RestLook look_, latest_look_;          // the look before the latest, and that
   std::optional<PenaltySteps> penalty_;  // of formulation = "penalty"
-  // of the stage that goes on
+  std::vector<double> goals_;            // of the path of the stage that goes on; empty: none
+  // of that stage
   bool in_stage_ = false, over_ = false;
   double advance_ = 0;
   std::optional<StepsFromRest> from_rest_;

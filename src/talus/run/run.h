@@ -24,6 +24,8 @@ struct StageResult {
   double followed_from = 0;
   std::string followed_because;  // "": it is not followed
 
+  int balances = 0;  // found, of those of its path
+
   std::string left_out;       // blocks that were not waited for: who, which way, on what; "": none
   double left_out_share = 0;  // of the area of all that can move
 

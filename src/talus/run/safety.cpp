@@ -98,6 +98,7 @@ void add_raised(Base& base) {
   StageInput raised = model.stages.back();
   raised.name += ", raised";
   raised.excavate.clear(), raised.relaxation.clear();
+  raised.path = 0, raised.increments = 0;  // histories stand where they are
   raised.reset_displacements = true;
   // what acts in the last of them, and nothing that comes later
   const auto also = [last](auto& list) {
@@ -112,6 +113,7 @@ void add_raised(Base& base) {
   std::erase_if(model.changes, [last](const ChangeInput& c) { return c.stage > last || c.joint >= 0; });
   model.stages.push_back(raised);
   base.plans.push_back(base.plans.back());
+  base.plans.back().balances = 0;
   base.standing.between = true;
 }
 

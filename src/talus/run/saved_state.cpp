@@ -68,7 +68,7 @@ void exchange_plan(auto& field, auto& p) {
   field("dt_undamped", p.dt_undamped), field("clamp_dt", p.clamp_dt);
   field("clamped", p.clamped), field("largest_clamp", p.largest_clamp);
   field("dt_follow", p.dt_follow), field("steps_follow", p.steps_follow);
-  field("bound_follow", p.bound_follow);
+  field("bound_follow", p.bound_follow), field("balances", p.balances);
 }
 
 void exchange_standing(auto& x, auto& standing) {
@@ -79,7 +79,7 @@ void exchange_standing(auto& x, auto& standing) {
     field("kind", s.kind), field("steps", s.steps), field("begin", s.begin), field("end", s.end);
     field("unbalanced", s.unbalanced), field("at_rest", s.at_rest);
     field("steps_from_rest", s.steps_from_rest), field("followed_from", s.followed_from);
-    field("left_out_share", s.left_out_share);
+    field("left_out_share", s.left_out_share), field("balances", s.balances);
   });
   for (size_t i = 0; i < r.stages.size(); ++i) {
     x(fmt::format("run.stages.name.{}", i), r.stages[i].name);

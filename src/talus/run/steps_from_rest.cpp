@@ -7,6 +7,7 @@
 
 #include "talus/base/error.h"
 #include "talus/run/mechanism.h"
+#include "talus/run/path.h"
 #include "talus/run/plan.h"
 
 namespace talus {
@@ -25,6 +26,9 @@ constexpr double kMostUnseen = 1e-6;
 // first length that was halved: what was too long is not asked for again at once.
 constexpr int kWhole = 2, kAfterHalving = -2;
 
+// Way of a block in the step that tells a balance of a path, as share of the way there: what its row is off by.
+constexpr double kSettled = 1e-3;
+
 }  // namespace
 
 RestWatch StepsFromRest::begin(double length) {
@@ -33,11 +37,20 @@ RestWatch StepsFromRest::begin(double length) {
   return rest;
 }
 
+void StepsFromRest::go_on(double goal, double first, int64_t steps) {
+  const RestWatch before = state_.rest;
+  RestWatch& rest = state_.rest = begin(before.length);
+  rest.whole = before.whole, rest.balances = before.balances;
+  rest.begin = state_.time, rest.begin_steps = steps;
+  rest.pace = (goal - state_.history_time) / std::max(rest.length, first);
+  state_.largest_kinetic = 0;
+}
+
 // Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
 // they went; where that does not help, it was not solved to the tolerance or they go too far it is taken with half the length
 // (theory 4.23). The shortest may be loose: by then all solvers have tried.
 std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double begin, double first,
-                                              StepSettings& settings, double& advance) {
+                                              double goal, StepSettings& settings, double& advance) {
   const double shortest = first / kMostShortened;
   const State before = state_;
   double length = state_.rest.length;
@@ -49,10 +62,12 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     const double end = (state_.time - begin + advance) * (1 + 1e-12);
     state_.relaxed = stage.relaxed_at(end, state_.relaxed);
     settings.by_all = length <= shortest;
-    StepReport report = talus::kick(scene_, settings, length, work_, state_);
+    StepSettings with_path = settings;
+    with_path.history_dt = history_dt(goal, length);
+    StepReport report = talus::kick(scene_, with_path, length, work_, state_);
     const Approach approach =
         approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);
-    way_ = longest_way(length);
+    way_ = longest_way(length, 0);
     const bool solved = !report.failed && !(report.loose && length > shortest);
     const auto lands = [&] {  // deep in what nobody saw coming
       return length > shortest &&
@@ -60,7 +75,10 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     };
     if (solved && !is_far(approach) && approach.of_margin <= 1 && !lands()) {
       state_.rest.length = length;
-      state_.rest.gone += way_, state_.rest.gone_many += length * pace_of_many(scene_.blocks, state_);
+      state_.rest.gone +=
+          longest_way(length, prescribed_way(scene_, state_.history_time, work_.clock.history_end()));
+      state_.rest.gone_many += length * pace_of_many(scene_.blocks, state_);
+      state_.rest.moved += way_;
       state_.rest.whole = !halved ? state_.rest.whole + 1 : length < first ? 0 : kAfterHalving;
       return report;
     }
@@ -72,7 +90,7 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
         return std::nullopt;
       }
       if (report.failed) return report;
-      throw NumericalError(too_far(approach, length));
+      throw NumericalError(too_far(stage, approach, length));
     }
     restore(before, looked);
     settings.near_expected = looked;
@@ -106,11 +124,29 @@ bool StepsFromRest::is_far(const Approach& approach) const {
   return !(approach.of_size <= kMostApproach) || !(way_ <= kMostWay);
 }
 
-double StepsFromRest::longest_way(double length) const {
+bool StepsFromRest::stands(bool on_path) const {
+  if (!on_path) return way_ <= kFarToGo;
+  return work_.clock.history_dt == 0 &&
+         way_ <= std::max(kSettled * state_.rest.moved, scene_.model.solver.tolerance);
+}
+
+void StepsFromRest::arrive(double goal) {
+  constexpr double kRoundOff = 1e-12;
+  if (std::abs(goal - state_.history_time) <= kRoundOff * std::abs(goal)) state_.history_time = goal;
+}
+
+// Eq. 4.13.
+double StepsFromRest::history_dt(double goal, double length) const {
+  const double left = goal - state_.history_time, share = state_.rest.pace * length;
+  return share >= left ? left : share;
+}
+
+// Of what is not left out; `less` of it was asked for [m].
+double StepsFromRest::longest_way(double length, double less) const {
   double most = 0;
   for (size_t k = 0; k < state_.rate.size(); ++k)
     if (!state_.is_left_out(static_cast<int>(k)))
-      most = std::max(most, length * norm(state_.rate[k].a) / scene_.blocks.size[k]);
+      most = std::max(most, (length * norm(state_.rate[k].a) - less) / scene_.blocks.size[k]);
   return most;
 }
 
@@ -123,11 +159,14 @@ std::string StepsFromRest::way_text(const Approach& approach) const {
                      scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);
 }
 
-std::string StepsFromRest::too_far(const Approach& approach, double length) const {
+std::string StepsFromRest::too_far(const StageInput& stage, const Approach& approach, double length) const {
   return fmt::format(
-      "step {} at t = {:.9g} s: {}, also in a step of {:.3g} s: something falls, slides or is squeezed out. "
-      "integration = \"dynamic\" follows it",
-      state_.step, state_.time, way_text(approach), length);
+      "step {} at t = {:.9g} s: {}, also in a step of {:.3g} s: something falls, slides or is squeezed out. {}",
+      state_.step, state_.time, way_text(approach), length,
+      stage.path > 0
+          ? fmt::format("The histories of its path are at {:.6g} s: histories.csv has the balances before it",
+                        state_.history_time)
+          : "integration = \"dynamic\" follows it");
 }
 
 }  // namespace talus

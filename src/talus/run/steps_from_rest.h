@@ -16,16 +16,26 @@ class StepsFromRest {
   StepsFromRest(const Scene& scene, StepWork& work, State& state)
       : scene_(scene), work_(work), state_(state) {}
 
-  /// What a stage begins with: steps of this length [s].
+  /// What the search for a balance begins with: steps of this length [s].
   static RestWatch begin(double length);
+
+  /// The next balance of a path is looked for, with steps as long as they are by now: in the first the histories reach the
+  /// goal, unless it is shorter than the first of the stage.
+  /// @param goal   of the histories [s]
+  /// @param steps  of the stage so far
+  void go_on(double goal, double first, int64_t steps);
 
   /// A step of backward Euler, of state.rest.length or of as much of it as can be taken. Where blocks go too far in the
   /// shortest one, or it is not solved: nothing, with the state as before, if the stage may follow them (why_not() tells);
   /// else NumericalError, or a report that has failed.
   /// @param begin, first  of the stage: its time, and the length of its first step [s]
+  /// @param goal          to which the histories go on, at the pace of the path, or where they stand [s]
   /// @param advance       out: by how much its clock goes on [s]
-  std::optional<StepReport> kick(const StageInput& stage, double begin, double first, StepSettings& settings,
-                                 double& advance);
+  std::optional<StepReport> kick(const StageInput& stage, double begin, double first, double goal,
+                                 StepSettings& settings, double& advance);
+
+  /// Sets the clock of histories that are there but for round-off to their goal.
+  void arrive(double goal);
 
   /// Of a kick that was none.
   const std::string& why_not() const { return why_not_; }
@@ -34,18 +44,20 @@ class StepsFromRest {
   /// @param relaxed  nothing is left to be let go of
   void lengthen(double first, bool relaxed);
 
-  /// Whether no block went anywhere in the last kick.
-  bool stands() const { return way_ <= kFarToGo; }
+  /// Whether no block went anywhere in the last kick; on a path, in which histories stood still in it, by no more than
+  /// would be seen in the table of its balances.
+  bool stands(bool on_path) const;
 
   /// Way that a block may still go, as share of its size, and yet count as standing.
   static constexpr double kFarToGo = 1e-3;
 
  private:
   bool is_far(const Approach& approach) const;
-  double longest_way(double length) const;
+  double longest_way(double length, double less) const;
+  double history_dt(double goal, double length) const;
   void restore(const State& before, bool expect);
   std::string way_text(const Approach& approach) const;
-  std::string too_far(const Approach& approach, double length) const;
+  std::string too_far(const StageInput& stage, const Approach& approach, double length) const;
 
   const Scene& scene_;
   StepWork& work_;

@@ -10,7 +10,8 @@
 
 namespace talus {
 
-std::string Unrest::text(const StageInput& stage, double elapsed, int64_t steps) const {
+std::string Unrest::text(const StageInput& stage, double elapsed, int64_t steps,
+                         const std::string& on_path) const {
   std::string where;
   if (last.worst_block >= 0) {
     const auto k = static_cast<size_t>(last.worst_block);
@@ -23,9 +24,9 @@ std::string Unrest::text(const StageInput& stage, double elapsed, int64_t steps)
   const std::string velocity =
       stage.from_rest ? "" : fmt::format(", and {:.3g} of the velocity is left", last.speed_left);
   return fmt::format(
-      "static stage \"{}\" did not come to rest in {:g} s ({} steps): the largest unbalanced force is "
+      "static stage \"{}\" did not come to rest in {:g} s ({} steps){}: the largest unbalanced force is "
       "{:.3g} of the mean{}; asked for is {:g}.{} {}",
-      stage.name, elapsed, steps, last.unbalanced, velocity, stage.unbalanced, where,
+      stage.name, elapsed, steps, on_path, last.unbalanced, velocity, stage.unbalanced, where,
       why_no_rest(stage, elapsed));
 }
 

@@ -29,7 +29,8 @@ struct Unrest {
 
   /// That it ended without coming to rest, where, what keeps it from it, and the key to change.
   /// @param elapsed  since it began [s]
-  std::string text(const StageInput& stage, double elapsed, int64_t steps) const;
+  /// @param on_path  where on its path, after a comma; "": it has none
+  std::string text(const StageInput& stage, double elapsed, int64_t steps, const std::string& on_path) const;
 
  private:
   std::string why_no_rest(const StageInput& stage, double elapsed) const;

@@ -155,6 +155,10 @@ void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResu
                        state.rest.length <= 1.01 * plan.dt * kMostLengthened,
                    fmt::format("\"length\" of its next step is {}", state.rest.length));
     promise_loaded(state.dt_before == 0, "it moves in a stage whose steps begin at rest");
+    promise_loaded(state.rest.balances >= 0 && state.rest.balances <= plan.balances,
+                   fmt::format("it has found {} of {} balances", state.rest.balances, plan.balances));
+    promise_loaded(state.rest.begin_steps >= 0 && state.rest.begin_steps <= now.steps,
+                   "its balance begins after the steps of its stage");
     return;
   }
   // as drift() counts time

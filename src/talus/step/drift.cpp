@@ -61,7 +61,7 @@ void drift(const Scene& scene, double time_end, StepWork& work, State& state, St
         fmt::format("block \"{}\" turned inside out (det F = {:.3g}) at t = {:.9g} s, step {}",
                     blocks.name[k], det(kIdentity + state.strain_part[k]), time_end, state.step));
   }
-  for (size_t i = 0; work.clock.histories_run && i < state.column_rate.size(); ++i)
+  for (size_t i = 0; work.clock.dynamic && i < state.column_rate.size(); ++i)
     state.column_displacement[i] += dt * state.column_rate[i];
   state.work += work.work.before;
   state.work += work.work.after;

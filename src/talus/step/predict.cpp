@@ -13,7 +13,7 @@ BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a,
 // Theory 4.12.
 void kick_free_field(const Scene& scene, const StepSettings& settings, const std::vector<Vec2>& acceleration,
                      StepWork& work, State& state) {
-  if (work.clock.histories_run) {
+  if (work.clock.dynamic) {
     kick_columns(scene.boundaries.free_field, scene.model.histories, work.clock, settings.damping_mass,
                  scene.model.inertia == Inertia::kLumped, settings.implicit, acceleration, state,
                  work.columns);
@@ -81,7 +81,7 @@ void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool rene
 
 void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work, State& state) {
   const BlockSet& blocks = scene.blocks;
-  const double time = state.history_time;
+  const double time = work.clock.load_time();
   const std::vector<Vec2> acceleration = load_acceleration(scene.model, scene.loads, blocks.count, time);
   work.load.resize(acceleration.size());
   work.workers.for_chunks(work.load.size(), kChunkOfBlocks, [&](size_t begin, size_t end) {

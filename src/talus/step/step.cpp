@@ -162,7 +162,8 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
                 settings.from_rest ? dt : 0.5 * (state.dt_before + dt),
                 settings.from_rest ? 1 : scene.model.contact.alpha,
                 state.history_time,
-                settings.histories_run,
+                settings.dynamic ? dt : settings.history_dt,
+                settings.dynamic,
                 settings.from_rest};
   work.work = {};
   const Scheme scheme{scene.blocks, settings, work.clock, work.elastic};

@@ -14,7 +14,7 @@ BlockRate rate_now(const StepWork& work, const State& state, size_t i) {
 }
 
 RowKinds row_kinds(const Scene& scene, const StepWork& work) {
-  return {hard_ties(work.rows, work.workers), joints_give(scene.laws), !work.clock.histories_run,
+  return {hard_ties(work.rows, work.workers), joints_give(scene.laws), !work.clock.dynamic,
           work.clock.from_rest};
 }
 

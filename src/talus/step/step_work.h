@@ -20,7 +20,8 @@ struct StepSettings {
   double tolerance = 0;          // contact error that the solvers aim at [m]
   double limit = 0;              // largest that a step may keep, where that is more [m]
   double sharper = 1;            // share of it to which steps are solved where that takes few sweeps more
-  bool histories_run = true;     // false: their clock stands still (static stages)
+  bool dynamic = true;           // in true time; false: static
+  double history_dt = 0;         // static: by how much the histories go on in the step [s]
   bool implicit = false;         // block-implicit elasticity (theory 4.9)
   bool from_rest = false;        // backward Euler, and blocks stand after it (theory 4.23)
   bool near_expected = false;    // such a step is likely to end near the rates that the state comes with

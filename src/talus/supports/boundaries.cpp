@@ -217,7 +217,7 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
     p.arm_a = acting_arm(blocks, state, block, point.arm);
     p.normal = point.normal;
     const Vec2 axis[2] = {point.normal, turn_right(point.normal)};
-    if (!clock.histories_run) {
+    if (!clock.dynamic) {
       const StaticHold hold = model.boundaries[static_cast<size_t>(point.boundary)].hold;
       const Vec2 off = displacement_at(state, block, point.arm) - state.boundaries[i].hold;
       for (size_t k = 0; k < 2; ++k) {

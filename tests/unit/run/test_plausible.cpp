@@ -64,6 +64,27 @@ TEST_CASE("plausible mistakes are told at their line") {
       {"[0, -9.81]", "[-9.81, 0]", "3:1", "model.gravity: -9.81 m/s2 along x alone: things fall sideways"},
       {"[0, -9.81]", "[0, -981]", "3:1", "model.gravity: 981 m/s2"},
       {"duration = \"2 s\"\nelasticity", "duration = 2000000\nelasticity", "30:12", "stage.shake.duration"},
+      // paths
+      {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+       "kind = \"static\"\nduration = \"2 s\"\nincrements = 3", "31:1",
+       "stage.shake.increments: are parts of a path", true},
+      {"elasticity = \"implicit\"", "path = 1", "31:1", "stage.shake.path: is only for static stages", true},
+      {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+       "kind = \"static\"\nduration = \"2 s\"\npath = 1\nintegration = \"dynamic\"", "31:1",
+       "stage.shake.path: goes from", true},
+      {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+       "kind = \"static\"\nduration = \"2 s\"\npath = 1\ndamping_local = 0.5", "32:1",
+       "stage.shake.damping_local: has nothing", true},
+      {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+       "kind = \"static\"\nduration = \"2 s\"\npath = 1\nelasticity = \"explicit\"", "32:1",
+       "stage.shake.elasticity: is", true},
+      {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+       "kind = \"static\"\nduration = \"2 s\"\npath = 1\nexcavate = [\"stone\"]", "32:1",
+       "stage.shake.excavate: is no part", true},
+      {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+       "kind = \"static\"\nduration = \"2 s\"\npath = 1\n[[stage]]\nname = \"later\"\nkind = \"dynamic\"\nduration = 1\n"
+       "[[load]]\nname = \"q\"\nstages = [\"later\"]\nacceleration_x = \"motion\"",
+       "36:1", "load.q: acts from 1 s of history \"motion\" on"},
       // names and keys
       {"density = 2700", "densty = 2700", "5:1", "did you mean \"density\"", true},
       {"material = \"rock\"\nkind", "material = \"rokc\"\nkind", "20:1", "did you mean \"rock\"", true},
@@ -101,7 +122,7 @@ TEST_CASE("plausible mistakes are told at their line") {
       // time
       {"elasticity = \"implicit\"", "time_step = 0.01", "31:1", "stage.shake.time_step", true},
       {"duration = \"2 s\"\nelasticity", "duration = \"0.1 s\"\nelasticity", "14:10",
-       "history.motion: lasts 2 s, and the dynamic stages 0.1 s"},
+       "history.motion: lasts 2 s, and histories run for 0.1 s"},
       {"0.1*sin(2*_pi*2*t)", "0.1*cos(2*_pi*2*t)", "14:10", "history.motion: begins with 0.1"},
       {"duration = \"2 s\"\n[[block]]", "duration = \"1.9 s\"\n[[block]]", "14:10",
        "history.motion: ends at 1.9 s with -0.0951"},
@@ -120,6 +141,20 @@ TEST_CASE("plausible mistakes are told at their line") {
     CHECK(message.find("model.toml:" + m.line) != std::string::npos);
     CHECK((message.find(": error:") != std::string::npos) == m.is_error);
   }
+}
+
+TEST_CASE("a path that nothing follows is refused, and one that something follows is not warned of") {
+  const std::string on_path = "kind = \"static\"\nduration = \"2 s\"\npath = \"2 s\"",
+                    dynamic = "kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"";
+  CHECK(told(replaced(kShakenBlock, dynamic, on_path)) == "");
+  std::string still = replaced(kShakenBlock, dynamic, on_path);
+  still = replaced(still, "kind = \"driven\"", "kind = \"fixed\"");
+  const size_t motion = still.find("motion_x = ");
+  REQUIRE(motion != std::string::npos);
+  still.erase(motion, still.find('\n', motion) - motion + 1);
+  const std::string message = told(still);
+  INFO(message);
+  CHECK(message.find("stage.shake.path: leads nowhere") != std::string::npos);
 }
 
 TEST_CASE("a model that nothing drives, holds or gives friction is warned of") {

@@ -78,7 +78,7 @@ Step step_of(const std::string& text, SolverKind method, int threads, int before
   settings.tolerance = 1e-9;
   StepWork work;
   work.workers = Workers(threads);
-  work.clock.histories_run = false;
+  work.clock.dynamic = false;
   scene.model.solver.method = SolverKind::kGaussSeidel;
   for (int i = 0; i < before; ++i) {
     StepReport report = kick(scene, settings, 20e-3, work, state);
@@ -162,7 +162,7 @@ TEST_CASE("a step from rest that is taken again begins where it ended") {
   settings.implicit = settings.from_rest = true;
   settings.tolerance = 1e-9;
   StepWork work;
-  work.clock.histories_run = false;
+  work.clock.dynamic = false;
   State once = start;
   const StepReport first = kick(scene, settings, 20e-3, work, once);
   const std::vector<Impulse> found = work.rows.impulse;
@@ -204,7 +204,7 @@ TEST_CASE("sweeps give up where more are to be expected than they are worth, and
     StepSettings settings;
     settings.implicit = true, settings.tolerance = 1e-9;
     StepWork work;
-    work.clock.histories_run = false;
+    work.clock.dynamic = false;
     const StepReport report = kick(scene, settings, 0.1, work, state);
     if (soft) CHECK(report.method == SolverKind::kPrimalNewton);
     CHECK(work.profile.sweeps > 0);

@@ -6,7 +6,9 @@
 
 #include "support/relative.h"
 #include "support/run_case.h"
+#include "support/source_file.h"
 #include "support/tolerance.h"
+#include "talus/base/text_file.h"
 
 namespace test_path {
 
@@ -158,6 +160,115 @@ double turned_by(double way) {
   return low;
 }
 
+// A semicircular arch of radius 1 m of an even number of voussoirs, thrust outwards: its halves turn about one joint at
+// the intrados each, `hinge` joints above the springings, and lean on each other at the extrados of the crown.
+struct Spreading {
+  double thickness;  // over the radius
+  int voussoirs, hinge;
+
+  double angle(int joint) const { return std::numbers::pi * joint / voussoirs; }
+  Vec2 at(double radius, int joint) const {
+    return radius * Vec2{std::cos(angle(joint)), std::sin(angle(joint))};
+  }
+  double inner() const { return 1 - 0.5 * thickness; }
+  double outer() const { return 1 + 0.5 * thickness; }
+};
+
+// Thrust of the right half over the density of weight [m2], and whether it stays between intrados and extrados of all joints
+// but the hinge, when the springings have gone apart by `spread` [m].
+std::pair<double, bool> thrust(const Spreading& a, double spread) {
+  const Vec2 foot = a.at(a.inner(), a.hinge), out{0.5 * spread, 0}, pivot = foot + out;
+  const double length = norm(foot - Vec2{0, a.outer()});
+  const Vec2 crown{0, pivot.y + std::sqrt(length * length - pivot.x * pivot.x)};
+  const Vec2 before = Vec2{0, a.outer()} - foot, now = crown - pivot;
+  const double turn = std::atan2(now.y, now.x) - std::atan2(before.y, before.x);
+  const auto moved = [&](Vec2 p, bool turns) {
+    const Vec2 d = p - foot;
+    return turns ? pivot + Vec2{std::cos(turn) * d.x - std::sin(turn) * d.y,
+                                std::sin(turn) * d.x + std::cos(turn) * d.y}
+                 : p + out;
+  };
+  double thrust_x = 0, weight = 0, moment = 0;
+  bool inside = true;
+  for (int pass = 0; pass < 2; ++pass) {
+    weight = moment = 0;
+    for (int k = a.voussoirs / 2 - 1; k >= 0; --k) {  // from the crown down; joint k is below voussoir k
+      const PolygonMoments shape = polygon_moments(
+          Polygon{a.at(a.inner(), k), a.at(a.outer(), k), a.at(a.outer(), k + 1), a.at(a.inner(), k + 1)});
+      const Vec2 centre = moved(shape.centroid, k >= a.hinge);
+      weight += shape.area, moment += shape.area * centre.x;
+      // moment of all above about the ends of the joint
+      const auto about = [&](double radius) {
+        const Vec2 p = moved(a.at(radius, k), k > a.hinge);
+        return -thrust_x * (crown.y - p.y) + p.x * weight - moment;
+      };
+      if (pass == 0 && k == a.hinge) thrust_x = (pivot.x * weight - moment) / (crown.y - pivot.y);
+      if (pass == 1 && k != a.hinge) inside = inside && about(a.inner()) * about(a.outer()) <= 0;
+    }
+  }
+  return {thrust_x, inside};
+}
+
+double spread_at_collapse(const Spreading& a) {
+  double spread = 0;
+  while (thrust(a, spread).second) spread += 1e-5;
+  return spread;
+}
+
+std::string spreading_text(const Spreading& a, double last, int increments) {
+  const double t = a.thickness;
+  return fmt::format(R"(
+talus = 1
+[model]
+gravity = [0, -{}]
+[material.m]
+density = {}
+[joint.face]
+friction_angle = "45 deg"
+[contact]
+joint = "face"
+[[block]]
+name = "left"
+polygon = [[{}, -0.2], [{}, -0.2], [{}, 0], [{}, 0]]
+material = "m"
+kind = "fixed"
+[[block]]
+name = "right"
+polygon = [[{}, -0.2], [{}, -0.2], [{}, 0], [{}, 0]]
+material = "m"
+kind = "driven"
+motion_x = {{ displacement = "spread" }}
+[[arch]]
+name = "arch"
+center = [0, 0]
+radius = {}
+thickness = {}
+from = "0 deg"
+to = "180 deg"
+voussoirs = {}
+material = "m"
+kind = "rigid"
+[history.spread]
+time = [0, 1]
+value = [0, {}]
+[[stage]]
+name = "stand"
+kind = "static"
+duration = 20
+[[stage]]
+name = "spread"
+kind = "static"
+path = 1
+increments = {}
+duration = 20
+[[monitor]]
+name = "thrust"
+contact = ["arch", "right"]
+)",
+                     kG, kDensity, -1 - t, -1 + t, -1 + t, -1 - t, 1 - t, 1 + t, 1 + t, 1 - t, a.inner(), t,
+                     a.voussoirs, last, increments);
+}
+
 RunResult run_to_failure(const std::string& text, CsvTable& table) {
   Findings findings("m", text);
   PreparedRun p = prepare_run("m", text, {}, findings);
@@ -269,6 +380,60 @@ TEST_CASE("path: loads that grow until something slides end with the last balanc
           "finds no balance, behind 5 of 51 balances of its path, as the histories go from 0.08 to 0.1 s: a "
           "mechanism") != std::string::npos);
   CHECK(table.column("dynamic_time").back() == approx(0.08));
+}
+
+TEST_CASE(
+    "path: an arch on spreading springings bears the thrust of its three hinges, and falls where a fourth opens") {
+  for (const Spreading& arch : {Spreading{0.15, 16, 3}, Spreading{0.2, 16, 3}}) {
+    const double collapse = spread_at_collapse(arch), last = 1.1 * collapse;
+    constexpr int kIncrements = 440;  // a quarter of a per cent of the collapse each
+    CsvTable table;
+    const RunResult r = run_to_failure(spreading_text(arch, last, kIncrements), table);
+    INFO(r.failure);
+    CHECK(r.mechanism);
+    const std::vector<double>&clock = table.column("dynamic_time"), &force = table.column("thrust.force_x");
+    double worst = 0;
+    for (size_t i = 0; i < clock.size(); ++i)
+      if (clock[i] > 0.1)  // the first of the way closes the springings' own joints
+        worst = std::max(
+            worst, std::abs(std::abs(force[i]) / (kDensity * kG * thrust(arch, last * clock[i]).first) - 1));
+    const std::string name = fmt::format("path, arch t/R {:g} on spreading springings, ", arch.thickness);
+    check_below(name + "thrust [share]", worst, 1e-3, 2e-4);
+    // the last balance is within an increment of it
+    check_close(name + "collapse [radius]", last * clock.back(), collapse, 5e-3, 2.5e-3);
+  }
+}
+
+TEST_CASE(
+    "path: bricks under a growing share of their weight sideways go at the limit load; a hand slides their top course") {
+  std::string wall = read_text_file(source_file("examples/pushed_wall/pushed_wall.toml"));
+  const std::string step =
+      "time_step = \"5 ms\"\n";  // from rest: damped motion leaves other shears to begin with
+  wall.erase(wall.find(step), step.size());
+  const std::string path =
+      "[[stage]]\nname = \"push\"\nkind = \"static\"\npath = 1\nduration = 60\nincrements = {}\n[history.way]\ntime = "
+      "[0, 1]\nvalue = [0, {}]\n{}";
+  CsvTable table;
+  const RunResult r =
+      run_to_failure(wall + fmt::format(fmt::runtime(path), 350, 0.7 * kG,
+                                        "[[load]]\nname = \"sideways\"\nacceleration_x = \"way\"\n"),
+                     table);
+  INFO(r.failure);
+  CHECK(r.mechanism);
+  // linear programming of rigid blocks (Ferris and Tin-Loi 2001); an increment is 0.002
+  check_close("path, 33 bricks, last balance [g]", 0.7 * table.column("dynamic_time").back(), 0.6429, 5e-3,
+              4e-3);
+
+  const CaseResult hand = run_case(
+      wall +
+      fmt::format(
+          fmt::runtime(path), 20, 0.1,
+          "[[support]]\nname = \"jack\"\nedge = [[0, 8.75], [0, 10.5]]\nstages = [\"push\"]\nx = {displacement "
+          "= \"way\"}\ny = \"free\"\n[[monitor]]\nname = \"jack\"\nsupport = \"jack\"\n"));
+  const double slides = 0.65 * 20 * 1.75 * 1800 * kG;
+  for (const size_t i : rows_of_path(hand))
+    if (hand.column("dynamic_time")[i] > 0.2)
+      CHECK(hand.column("jack.reaction_x")[i] == relative(slides, 1e-3));
 }
 
 TEST_CASE("path: the table is the same in one go, in pieces, and from a copy of the state") {

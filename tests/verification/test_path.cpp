@@ -436,6 +436,43 @@ TEST_CASE(
       CHECK(hand.column("jack.reaction_x")[i] == relative(slides, 1e-3));
 }
 
+TEST_CASE("path: rows of an elastic arch are balances: the same where four times as many lead there") {
+  const auto run = [](int increments) {
+    std::string text = spreading_text({0.15, 16, 3}, 0.07, increments);
+    const std::string hard = "friction_angle = \"45 deg\"\n";
+    text.insert(text.find(hard) + hard.size(), "normal_stiffness = 1e10\nshear_stiffness = 1e10\n");
+    return run_case(text + "[[monitor]]\nname = \"crown\"\npoint = [0.01, 1]\n");
+  };
+  const CaseResult few = run(35), many = run(140);
+  const std::vector<size_t> rows = rows_of_path(few), all = rows_of_path(many);
+  REQUIRE((rows.size() == 35 && all.size() == 140));
+  for (const auto& [column, most] :
+       {std::pair("thrust.force_x", 5e-5), std::pair("crown.displacement_y", 2e-4)}) {
+    const std::vector<double>&a = few.column(column), &b = many.column(column);
+    double worst = 0;
+    for (size_t i = 0; i < rows.size(); ++i)
+      worst = std::max(worst, std::abs(a[rows[i]] - b[all[4 * i + 3]]));
+    CHECK(worst < most * std::abs(b.back()));
+  }
+}
+
+TEST_CASE("path: a load that follows it closes a joint by hand, in two steps a balance") {
+  std::string text =
+      box_text("friction_angle = \"30 deg\"\nnormal_stiffness = \"20 GPa/m\"\nshear_stiffness = \"4 GPa/m\"",
+               1e6, {1e3, 1e6}, 20);
+  const std::string constant = "pressure = 1000000\n", motion = "x = { displacement = \"box\" }\n";
+  text.replace(text.find(constant), constant.size(), "pressure = \"box\"\n");
+  text.replace(text.find(motion), motion.size(), "");
+  const CaseResult r = run_case(text);
+  for (const size_t i : rows_of_path(r))
+    // the closure that makes the face a little shorter (theory 3.3)
+    CHECK(r.column("upper.displacement_y")[i] ==
+          relative(-(1e3 + 999e3 * r.column("dynamic_time")[i]) / 20e9, 2e-4));
+  CHECK(r.run.stages[1].balances == 21);
+  // where nothing has pressed yet the first steps are short
+  CHECK(r.run.stages[1].steps <= 2 * 21 + 4);
+}
+
 TEST_CASE("path: the table is the same in one go, in pieces, and from a copy of the state") {
   const std::string text =
       box_text("friction_angle = \"30 deg\"\nnormal_stiffness = \"20 GPa/m\"\nshear_stiffness = \"4 GPa/m\"",

@@ -96,7 +96,8 @@ TEST_CASE("as printed: a block that should stand creeps, the faster the smaller 
   }
 }
 
-TEST_CASE("as printed: a viscous edge has no area, and lets back what does not match") {
+TEST_CASE("as printed: a viscous edge has no area, and lets back what does not match" *
+          doctest::test_suite("optimised")) {
   // z = rho c times 1 m2 for each block edge against rho c times the height; 1 % is the tail of the dispersed pulse that
   // has not passed the middle when the run ends
   for (const double tall : {0.4, 1.0, 2.5})

@@ -105,7 +105,8 @@ double misfit(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-TEST_CASE("inputs: compliant base, rigid base with its motion, body force in its frame are one motion") {
+TEST_CASE("inputs: compliant base, rigid base with its motion, body force in its frame are one motion" *
+          doctest::test_suite("optimised")) {
   const CaseResult compliant =
       run_case(layer(kOutcrop + "[[boundary]]\nname = \"base\"\nkind = \"viscous\"\nedge = [[0, 0], [6, 0]]\n"
                                 "material = \"rock\"\nvelocity_x = \"outcrop\"\nmotion = \"outcrop\"\n"));

@@ -62,7 +62,8 @@ std::string model_of(const Layout& layout, double closed, const std::string& kin
 }  // namespace
 
 TEST_CASE(
-    "bridge: an intact part of a face and what slides beside it bear the shear by hand, and the loop closes") {
+    "bridge: an intact part of a face and what slides beside it bear the shear by hand, and the loop closes" *
+    doctest::test_suite("optimised")) {
   for (const Layout& layout : kLayouts)
     for (const double closed : {1e-4, 6e-4, 0.0})
       for (const std::string kind : {"rigid", "deformable"}) {

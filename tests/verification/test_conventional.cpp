@@ -134,7 +134,8 @@ TEST_CASE("conventional DDA: on a smooth floor nothing sticks, and no step is cu
               1e-6, 1e-8);
 }
 
-TEST_CASE("conventional DDA: steps of a wall that takes up its weight are hardly ever cut") {
+TEST_CASE("conventional DDA: steps of a wall that takes up its weight are hardly ever cut" *
+          doctest::test_suite("optimised")) {
   std::string text = R"(talus = 1
 [model]
 formulation = "penalty"

@@ -316,7 +316,8 @@ TEST_CASE("example hammer has the same bits for any number of threads") {
   CHECK(same);
 }
 
-TEST_CASE("example blast_hole: the rock keeps still until the blast, which leaves through the edges") {
+TEST_CASE("example blast_hole: the rock keeps still until the blast, which leaves through the edges" *
+          doctest::test_suite("optimised")) {
   double before = 0, most = 0, last = 0, near = 0, far = 0;
   const auto speed = [](const Instant& i, Vec2 at) {
     const auto k = static_cast<size_t>(block_of_point(i.scene.layout, at));

@@ -48,7 +48,8 @@ CaseResult slide_over(const OpenJoint& c) {
       fmt::format("[[monitor]]\nname = \"a\"\npoint = [{:.17g}, 0.125]\n", left + 0.5));
 }
 
-TEST_CASE("a block slides over an open joint of the course below with the strength of its bed") {
+TEST_CASE("a block slides over an open joint of the course below with the strength of its bed" *
+          doctest::test_suite("optimised")) {
   for (const std::string& stiffness : {kHard, kElastic})
     for (const double friction : {30.0, 0.0})
       for (const std::string mode : {"guided", "drawn", "drawn, deformable"}) {
@@ -306,7 +307,7 @@ TEST_CASE(
 // A wedge of 40 degrees with its tip in the corner between a floor and a wall, frictionless: each bears what
 // the load has along its normal. The load acts at the centroid, along the wedge's axis where the tip alone
 // bears.
-TEST_CASE("a wedge in a corner bears on floor and wall by statics") {
+TEST_CASE("a wedge in a corner bears on floor and wall by statics" * doctest::test_suite("optimised")) {
   const double mass = 2500 * 0.5 * std::sin(40 * kDegree), a = 10;
   struct Corner {
     std::string name, blocks;

@@ -45,7 +45,7 @@ const std::string kNewton = "solver.method=newton", kGaussSeidel = "solver.metho
 
 }  // namespace
 
-TEST_CASE("A6e a semicircular arch stands down to its least thickness") {
+TEST_CASE("A6e a semicircular arch stands down to its least thickness" * doctest::test_suite("optimised")) {
   struct Case {
     int voussoirs;
     double limit;  // t/R

@@ -50,7 +50,8 @@ double side(const CaseResult& r) { return -r.column("side.displacement_x").back(
 
 TEST_CASE(
     "A6j from a mesh file: the discrete value of the triangles, and that of the same blocks to the last "
-    "digits") {
+    "digits" *
+    doctest::test_suite("optimised")) {
   const Tunnel t = tunnel(kSectors);
   const std::vector<Vec2> u = t.finite_elements();
   const double discrete = -u[static_cast<size_t>(t.node(0, t.sectors))].y;
@@ -63,7 +64,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A6j by an unstructured mesh that Gmsh made") {
+TEST_CASE("A6j by an unstructured mesh that Gmsh made" * doctest::test_suite("optimised")) {
   // a ring with 24 edges at its wall (tests/fixtures/quarter_ring.geo); the core is one block with as many
   const std::string file = source_file("tests/fixtures/quarter_ring.msh");
   const Mesh read = read_msh(file, read_text_file(file));

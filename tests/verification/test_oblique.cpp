@@ -134,7 +134,8 @@ Eigen::Vector4cd taken_apart(const std::vector<Vec2>& place,
 
 }  // namespace
 
-TEST_CASE("A4d viscous edge: pressure waves at 60 degrees, shear waves at 30") {
+TEST_CASE("A4d viscous edge: pressure waves at 60 degrees, shear waves at 30" *
+          doctest::test_suite("optimised")) {
   const Eigen::Matrix2cd law = exact();
   for (int i = 0; i < 4; ++i) CHECK(std::abs(std::abs(law(i / 2, i % 2)) - 0.134) < 5e-4);  // published
 

@@ -60,7 +60,8 @@ double exact_factor(double friction, double cohesion, double weight, Vec2 length
 
 }  // namespace
 
-TEST_CASE("factor of safety of the two-block slope is that of limit equilibrium") {
+TEST_CASE("factor of safety of the two-block slope is that of limit equilibrium" *
+          doctest::test_suite("optimised")) {
   struct Case {
     double friction, cohesion;
     std::string more;
@@ -292,7 +293,7 @@ TEST_CASE("collapse by acceleration: arches") {
   }
 }
 
-TEST_CASE("collapse by acceleration: brick walls of Ferris and Tin-Loi") {
+TEST_CASE("collapse by acceleration: brick walls of Ferris and Tin-Loi" * doctest::test_suite("optimised")) {
   // 33 blocks: 0.6429 (2001), which is also what linear programming gives
   check_limit("33 blocks", bond_text(6) + "[safety]\nby = \"acceleration\"\nlowest = 0.3\nhighest = 0.9\n",
               0.642859, 1e-2);
@@ -303,7 +304,8 @@ TEST_CASE("collapse by acceleration: brick walls of Ferris and Tin-Loi") {
   CHECK(r.fails < 0.58);
 }
 
-TEST_CASE("collapse: the bracket only stops the search, and longer rungs come to the same") {
+TEST_CASE("collapse: the bracket only stops the search, and longer rungs come to the same" *
+          doctest::test_suite("optimised")) {
   const auto found = [](const std::string& bracket) {
     return seek_safety(
         prepare(bond_text(6) + "[safety]\nby = \"acceleration\"\ntolerance = 0.005\n" + bracket), Workers());

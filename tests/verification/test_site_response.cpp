@@ -137,7 +137,8 @@ TEST_CASE("A5 layer with tied sides: amplification against the transfer function
   check_below("A5 tied sides: energy left over / largest term", r.run.closure(), 1e-2, 1e-9);
 }
 
-TEST_CASE("A5 free-field sides: the block model moves like its columns, S and P") {
+TEST_CASE("A5 free-field sides: the block model moves like its columns, S and P" *
+          doctest::test_suite("optimised")) {
   for (const bool up : {false, true}) {
     const std::string motion = up ? "velocity_y = \"ricker\"\nmotion = \"outcrop\"\n" : kOutcropX;
     ColumnTop top;
@@ -158,7 +159,8 @@ TEST_CASE("A5 free-field sides: the block model moves like its columns, S and P"
   }
 }
 
-TEST_CASE("A5 free-field sides with implicit elasticity: one equation for blocks and columns at any step") {
+TEST_CASE("A5 free-field sides with implicit elasticity: one equation for blocks and columns at any step" *
+          doctest::test_suite("optimised")) {
   // the limit of explicit columns is 6.7 ms (S) and 3.8 ms (P, which they feel as well)
   for (const bool up : {false, true}) {
     const std::string motion = up ? "velocity_y = \"ricker\"\nmotion = \"outcrop\"\n" : kOutcropX;

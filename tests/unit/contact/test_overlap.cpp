@@ -750,7 +750,8 @@ Body random_bow(Random& random, bool up) {
 
 }  // namespace
 
-TEST_CASE("overlap: pieces of random tied pairs are those of a fine quadrature, and add up to it") {
+TEST_CASE("overlap: pieces of random tied pairs are those of a fine quadrature, and add up to it" *
+          doctest::test_suite("optimised")) {
   Random random(17);
   double worst = 0;
   std::array<int, 5> met_with{};

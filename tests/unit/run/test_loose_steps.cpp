@@ -146,6 +146,8 @@ TEST_CASE("loose steps: above the limit a step fails, and a limit that is the to
   for (const char* limit : {"1e-300", "1e-290"}) {
     std::vector<std::string> overrides = kOutOfReach;
     overrides.push_back(std::string("solver.limit=") + limit);
+    overrides.push_back(
+        "stage.shake.duration=\"5 ms\"");  // a step that fails is tried in 64 parts, by all solvers
     const Ran stopped = run(kShaken, overrides);
     CHECK(has(stopped.result.failure, "the contact equations were not solved"));
     CHECK(has(stopped.result.failure, fmt::format("allowed {}", limit)));
@@ -153,7 +155,7 @@ TEST_CASE("loose steps: above the limit a step fails, and a limit that is the to
     CHECK(stopped.result.loose_steps == 0);
     overrides.push_back("solver.on_failure=\"continue\"");
     const Ran counted = run(kShaken, overrides);
-    CHECK(counted.result.failed_steps > 150);
+    CHECK(counted.result.failed_steps > 15);
     CHECK(counted.result.loose_steps == 0);
   }
 }
@@ -235,7 +237,7 @@ tolerance = 0.41
 )";
   const auto seek = [&](std::vector<std::string> more) {
     Findings findings("m.toml", text);
-    more.insert(more.begin(), "solver.tolerance=1e-300");
+    more.insert(more.begin(), kOutOfReach.begin(), kOutOfReach.end());
     return seek_safety(prepare_run("m.toml", text, more, findings), Workers());
   };
   const SafetyResult r = seek({});

@@ -229,7 +229,7 @@ kind = "rigid"
 name = "stand"
 kind = "static"
 duration = 2
-time_step = 1e-3
+time_step = 5e-3
 [safety]
 lowest = 1.4
 highest = 1.8

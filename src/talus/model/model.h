@@ -219,7 +219,8 @@ struct StageInput {
   bool strict_rest = false;      // crumbs that fall or slide are waited for
   bool may_follow = false;       // what does not come to rest in steps from rest is followed by damped motion
   bool follow_implicit = false;  // `implicit` of that
-  bool implicit = false;         // block-implicit elasticity
+  double follow_step = std::numeric_limits<double>::quiet_NaN();  // its time step [s], NaN = automatic
+  bool implicit = false;                                          // block-implicit elasticity
   bool elasticity_auto = false;  // implicit where theory 4.9 asks for it (set by build_scene)
   double damping_mass = 0;       // [1/s]
   double damping_stiffness = 0;  // [s]
@@ -237,7 +238,10 @@ struct StageInput {
   /// that go in shares.
   void go_from_rest();
 
-  /// Makes it one of damped motion, with the steps and the damping of a stage that says nothing of either.
+  /// Makes it one of steps from rest that damped motion follows: a time step that is given is one of motion.
+  void go_from_rest_first();
+
+  /// Makes it one of damped motion, with the damping of a stage that says nothing of it.
   /// @pre  may_follow
   void go_by_motion();
 

@@ -83,7 +83,7 @@ class StageReader : private SectionReader {
   void read_integration(const Fields& f, StageInput& s) {
     const auto integration = f.get<std::string>("integration");
     s.from_rest_auto = integration == "auto" && s.kind == StageKind::kStatic && !any_given(f, kOfMotion) &&
-                       f.get<std::string>("elasticity") != "explicit" && !f.given("time_step");
+                       f.get<std::string>("elasticity") != "explicit";
     if (integration != "implicit") return;
     if (s.kind == StageKind::kDynamic)
       error(f, "integration", "is \"implicit\", which knows no inertia: it is for static stages",

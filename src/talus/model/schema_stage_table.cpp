@@ -88,9 +88,9 @@ SectionSpec stage_section() {
             "`time_step` (\"auto\": 20 ms) to 64 times that, and are halved where one fails; `relaxation` is "
             "then, unless given, over the first eight. What slides on by one and a half of its size, and is a "
             "hundredth of all that can move, is a mechanism and ends the run (exit code 6). `auto`: implicit, "
-            "and what has no balance near and is no mechanism is followed by damped motion; dynamic where a "
-            "time step, explicit elasticity, damping, `safety` or `moment_clamp` say how blocks shall move, "
-            "and where joints without stiffness have cohesion or tensile strength."},
+            "from 20 ms on, and what has no balance near and is no mechanism is followed by damped motion, in steps "
+            "of `time_step`; dynamic where explicit elasticity, damping, `safety` or `moment_clamp` say how blocks "
+            "shall move, and where joints without stiffness have cohesion or tensile strength."},
        {.name = "path",
         .dimension = D::kTime,
         .range = kPositive,

@@ -21,11 +21,17 @@ void StageInput::go_from_rest() {
     relaxation = {{0, 0}, {std::min(kShares * time_step, duration), 1}};
 }
 
+void StageInput::go_from_rest_first() {
+  may_follow = true, follow_implicit = implicit, follow_step = time_step;
+  time_step = std::numeric_limits<double>::quiet_NaN();
+  go_from_rest();
+}
+
 void StageInput::go_by_motion() {
   from_rest = may_follow = false;
   implicit = follow_implicit;
   damping_local = kStaticDamping;
-  time_step = std::numeric_limits<double>::quiet_NaN();
+  time_step = follow_step;
 }
 
 double StageInput::relaxed_at(double t, double before) const {

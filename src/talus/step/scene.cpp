@@ -89,8 +89,7 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
     if (stage.elasticity_auto)
       stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
     if (!stage.from_rest_auto || !scene.by_patches() || ties_without_give(scene)) continue;
-    stage.may_follow = true, stage.follow_implicit = stage.implicit;
-    stage.go_from_rest();
+    stage.go_from_rest_first();
   }
   if (scene.model.formulation == Formulation::kAsPrinted)
     for (StageInput& stage : scene.model.stages) stage.implicit = false, stage.from_rest = false;

@@ -185,8 +185,14 @@ TEST_CASE("no balance: a stage that says how its blocks move is not taken from r
   CHECK(from_rest(""));
   CHECK(from_rest("elasticity = \"implicit\"\n"));
   for (const std::string more : {"integration = \"dynamic\"\n", "elasticity = \"explicit\"\n",
-                                 "damping_local = 0.5\n", "time_step = \"0.1 ms\"\n", "safety = 0.5\n"})
+                                 "damping_local = 0.5\n", "safety = 0.5\n"})
     CHECK(!from_rest(more));
+  // a time step is one of the motion that follows, if any does
+  const PreparedRun p = prepared(model + "time_step = \"0.1 ms\"\n"), q = prepared(model);
+  CHECK(p.scene.model.stages[0].from_rest);
+  CHECK(p.plans[0].dt == q.plans[0].dt);
+  CHECK(p.plans[0].dt_follow == test::approx(1e-4));
+  CHECK(p.plans[0].dt_follow != q.plans[0].dt_follow);
 }
 
 // A block of 1 m on a plane of 45 deg without friction, with so far to go before a stop.

@@ -178,8 +178,8 @@ window = 0.2
 }
 
 TEST_CASE("a static stage that cannot come to rest fails with its name") {
-  const std::string text =
-      thrown("[model]\ngravity=[0,-10]\n[[stage]]\nname='wait'\nkind='static'\nduration=1\ntime_step=0.01\n");
+  const std::string text = thrown(
+      "[model]\ngravity=[0,-10]\n[[stage]]\nname='wait'\nkind='static'\nduration=1\ntime_step=0.01\nintegration='dynamic'\n");
   Findings findings("m", text);
   PreparedRun p = prepare_run("m", text, {}, findings);
   State state = start_state(p.scene);

@@ -8,6 +8,7 @@
 #include "support/run_case.h"
 #include "support/source_file.h"
 #include "support/tolerance.h"
+#include "talus/base/random.h"
 #include "talus/base/text_file.h"
 
 namespace test_path {
@@ -302,6 +303,36 @@ TEST_CASE("path: direct shear there and back sticks, slips and turns by hand, at
     check_below(fmt::format("path, direct shear at {:g} MPa, force [share of the strength]", pressure / 1e6),
                 worst, 1e-4, 2e-5);
     check_below(fmt::format("path, direct shear at {:g} MPa, way [m]", pressure / 1e6), off, 1e-7, 1e-8);
+  }
+}
+
+TEST_CASE(
+    "path: twenty random shear boxes on random ways have the force of return to the cone at every balance") {
+  Random random(24);
+  const auto between = [&random](double low, double high) { return low + (high - low) * random.uniform(); };
+  for (int model = 0; model < 20; ++model) {
+    const double friction = between(5, 55), kn = std::pow(10, between(9, 11)), ks = kn * between(0.2, 1),
+                 pressure = std::pow(10, between(5, 6.5)),
+                 most = std::tan(friction * std::numbers::pi / 180) * pressure * 0.2,
+                 give = most / (ks * 0.2);
+    std::vector<double> ways{0};
+    for (int leg = 0; leg < 5; ++leg) ways.push_back(give * between(-4, 4));
+    const int increments = static_cast<int>(between(5, 60));
+    INFO(fmt::format("model {}: friction {} deg, kn {}, ks {}, pressure {}, {} increments", model, friction,
+                     kn, ks, pressure, increments));
+    const CaseResult r = run_case(box_text(
+        fmt::format("friction_angle = \"{:.17g} deg\"\nnormal_stiffness = {:.17g}\nshear_stiffness = {:.17g}",
+                    friction, kn, ks),
+        pressure, ways, increments));
+    CHECK(r.run.stages[1].balances >= increments + 1);
+    double force = 0, before = 0, worst = 0;
+    for (const size_t i : rows_of_path(r)) {
+      const double way = history_at(ways, r.column("dynamic_time")[i]);
+      force = std::clamp(force + ks * 0.2 * (way - before), -most, most), before = way;
+      worst = std::max(worst, std::abs(r.column("box.reaction_x")[i] - force) / most);
+    }
+    // half the closure is missing from the face at its ends, and twice the way of the last step (theory 3.3, 4.24)
+    CHECK(worst < 2e-4 + pressure / kn);
   }
 }
 

@@ -10,6 +10,8 @@
 #include "support/tolerance.h"
 #include "talus/base/random.h"
 #include "talus/base/text_file.h"
+#include "talus/run/safety.h"
+#include "talus/run/saved_state.h"
 
 namespace test_path {
 
@@ -501,7 +503,7 @@ TEST_CASE("path: a load that follows it closes a joint by hand, in two steps a b
   CHECK(r.run.stages[1].steps <= 2 * 21 + 4);
 }
 
-TEST_CASE("path: the table is the same in one go, in pieces, and from a copy of the state") {
+TEST_CASE("path: the table is the same in one go, in pieces, and from a saved state") {
   const std::string text =
       box_text("friction_angle = \"30 deg\"\nnormal_stiffness = \"20 GPa/m\"\nshear_stiffness = \"4 GPa/m\"",
                1e6, {0, 1e-3, -1e-3}, 9);
@@ -517,16 +519,30 @@ TEST_CASE("path: the table is the same in one go, in pieces, and from a copy of 
     result = run.result();
     CHECK(result.stages.size() == 2);
     CHECK(result.stages[1].balances > 0);
-    const Standing standing = run.standing();
     const PreparedRun again = prepare_run("m", text, {}, findings);
+    SavedRun saved = saved_run_of("state", run_archive(p.scene, run.standing(), state), again);
     Scene scene = again.scene;
-    State copy = state;
-    result = continue_stages(scene, again.plans, standing, copy, observer);
-    CHECK(copy.displacement == whole.state.displacement);
+    result = continue_stages(scene, again.plans, saved.standing, saved.state, observer);
+    CHECK(saved.state.displacement == whole.state.displacement);
   }
   CHECK(result.failure.empty());
   CHECK(result.stages[1].balances == whole.run.stages[1].balances);
   CHECK(observer.table.values == whole.table.values);
+}
+
+TEST_CASE("path: safety asks behind one, and what it moves is no failure") {
+  const std::vector<double> ways{0, 0.03};  // a fifth of the size of the box
+  const std::string text =
+      box_text("friction_angle = \"30 deg\"\nnormal_stiffness = \"20 GPa/m\"\nshear_stiffness = \"4 GPa/m\"",
+               1e6, ways, 10);
+  for (const char* from : {"start", "rest"}) {
+    const std::string safety =
+        fmt::format("[safety]\nby = \"strength\"\nfrom = \"{}\"\nhighest = 1.5\n", from);
+    Findings findings("m", text + safety);
+    const SafetyResult r = seek_safety(prepare_run("m", text + safety, {}, findings), Workers());
+    // the box is held: less strength is a smaller force on it
+    CHECK(r.stands == 1.5);
+  }
 }
 
 }  // namespace test_path

@@ -238,6 +238,21 @@ std::string bond_text(int courses) {
 
 }  // namespace
 
+TEST_CASE("collapse by tilt: a block that had to fall to its place before is tilted from rest") {
+  // its stage is followed by motion; the trials are of steps from rest again
+  for (const char* step : {"", "time_step = \"0.2 ms\"\n"}) {
+    const std::string text = fmt::format(
+        "talus = 1\n[model]\ngravity = [0, -9.81]\n[material.m]\ndensity = 2500\nyoung = \"5 GPa\"\npoisson = 0.2\n"
+        "[joint.j]\nfriction_angle = \"30 deg\"\nnormal_stiffness = \"10 GPa/m\"\nshear_stiffness = \"10 GPa/m\"\n[contact]\n"
+        "joint = \"j\"\n{}{}[[stage]]\nname = \"fall\"\nkind = \"static\"\nduration = 10\n{}[safety]\nby = "
+        "\"tilt\"\nlowest = 1\nhighest = 40\n",
+        block_text("lower", {{-3, -1}, {5, -1}, {5, 0}, {-3, 0}}, "fixed"),
+        block_text("upper", {{0, 0.5}, {2, 0.5}, {2, 1.5}, {0, 1.5}}, "deformable"), step);
+    const SafetyResult r = seek_safety(prepare(text), Workers());
+    CHECK(r.stands == relative(30, 5e-3));
+  }
+}
+
 TEST_CASE("collapse by tilt: a block slides at its friction angle, and tips where its foot is narrow") {
   const std::string head =
       head_text({0, -kG}, 30, 2000) + box_text("ground", {-5, -1}, {9, 0}, "fixed") + kStand;

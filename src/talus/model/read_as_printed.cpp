@@ -24,7 +24,7 @@ class AsPrinted {
     for (const StageInput& s : model_.stages) {
       const bool implicit = s.implicit && !s.elasticity_auto;
       if ((s.from_rest && !s.from_rest_auto) || implicit)
-        refuse_at(s.where,
+        refuse_at(s.path > 0 ? s.where_path : s.where,
                   "stage." + s.name +
                       (s.path > 0 ? ".path"
                        : implicit ? ".elasticity"

@@ -51,7 +51,7 @@ class PenaltyReader : private SectionReader {
       const std::string path = "stage." + s.name;
       if (!s.relaxation.empty()) refuse_at(s.where_relaxation, path + ".relaxation", "rock goes at once");
       if (s.from_rest && !s.from_rest_auto)
-        refuse_at(s.where, path + (s.path > 0 ? ".path" : ".integration"),
+        refuse_at(s.path > 0 ? s.where_path : s.where, path + (s.path > 0 ? ".path" : ".integration"),
                   "every step is implicit, and static ones forget their velocity:");
       if (s.kind == StageKind::kDynamic && s.damping_mass + s.damping_stiffness + s.damping_local > 0)
         refuse_at(s.where, path, "damping is the scheme's own: there is none to be given");

@@ -116,9 +116,9 @@ class StageReader : private SectionReader {
       if (f.given(key))
         error(f, key, "is no part of a path", "excavate in a static stage of its own, before this one");
     for (const char* key : kOfMotion)
-      if (f.given(key))
+      if (f.given(key) && !s.from_rest)
         error(f, key, "has nothing to do on a path: every step begins at rest", "leave one of the two out");
-    if (f.get<std::string>("elasticity") == "explicit")
+    if (f.get<std::string>("elasticity") == "explicit" && !s.from_rest)
       error(f, "elasticity", "is \"explicit\", and a path has no stable limit to keep",
             "leave one of the two out");
     if (model_.contact.law == ContactLaw::kSmoothed)

@@ -97,7 +97,7 @@ SectionSpec stage_section() {
         .doc =
             "Static stages, by `integration = \"implicit\"`: the clock of the histories goes on by this, from one balance to "
             "the next (theory 4.24): at the start, at the end of each of the `increments`, and wherever a history that "
-            "something follows here turns. histories.csv has a row for each balance and none between. `duration` is then "
+            "something follows here turns. histories.csv has a row at its beginning, one for each balance, and none between. `duration` is then "
             "the limit for each of them; blocks that are not waited for (`strict_rest`) stay aside to the end of the stage."},
        {.name = "increments",
         .type = K::kInteger,
@@ -105,7 +105,7 @@ SectionSpec stage_section() {
         .default_text = "20",
         .doc =
             "With `path`: number of equal parts of it. Friction and what breaks depend on the way there: twice as many "
-            "tell whether these were enough."},
+            "tell whether these were enough. Friction of joints without stiffness is known to a per cent at the solver's usual tolerance (theory 4.24)."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

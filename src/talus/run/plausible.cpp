@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -210,10 +211,6 @@ class Plausible {
     }
   }
 
-  bool histories_run_in(size_t stage) const {
-    return model_.stages[stage].kind == StageKind::kDynamic || model_.stages[stage].path > 0;
-  }
-
   // A path on which nothing goes, and motions of dynamic stages that a path before them has used up.
   void check_paths() {
     for (size_t i = 0; i < model_.stages.size(); ++i) {
@@ -225,51 +222,61 @@ class Plausible {
             "name a history in one of them, or leave path out");
       const double begun = model_.history_time_at(static_cast<int>(i));
       if (s.kind != StageKind::kDynamic || !(begun > 0)) continue;
+      const auto motions = [](const Motion& x, const Motion& y) { return std::array{x.history, y.history}; };
       for (const BoundaryInput& b : model_.boundaries)
-        warn_begun(b.where, "boundary." + b.name, b, true, i, {b.history_x, b.history_y});
+        warn_used_up(b.where, "boundary." + b.name, b, true, i, std::array{b.history_x, b.history_y});
+      for (const SupportInput& p : model_.supports)
+        warn_used_up(p.where, "support." + p.name, p, false, i, motions(p.x, p.y));
       for (const LoadInput& l : model_.loads)
-        warn_begun(l.where, "load." + l.name, l, false, i, {l.x.history, l.y.history, l.pressure.history});
+        warn_used_up(l.where, "load." + l.name, l, false, i,
+                     std::array{l.x.history, l.y.history, l.pressure.history});
     }
   }
 
-  // What acts for the first time in the midst of its history, as a path came before. Waves come in while time runs, and
-  // not on a path.
-  void warn_begun(const Where& where, const std::string& name, const Staged& what, bool is_wave, size_t stage,
-                  std::initializer_list<int> histories) {
+  // What acts in a dynamic stage and not on a path before it, which has gone on with its history. Waves come in while time
+  // runs, and on no path. Told once: at the first stage behind such a path.
+  template <class Histories>
+  void warn_used_up(const Where& where, const std::string& name, const Staged& what, bool is_wave,
+                    size_t stage, const Histories& histories) {
     if (!what.acts_in(static_cast<int>(stage))) return;
-    double on_paths = 0;
+    double used_up = -1;
     for (size_t k = 0; k < stage; ++k) {
-      const bool runs =
-          model_.stages[k].kind == StageKind::kDynamic || (model_.stages[k].path > 0 && !is_wave);
-      if (runs && what.acts_in(static_cast<int>(k))) return;
-      on_paths += model_.stages[k].path;
+      if (model_.stages[k].path > 0 && (is_wave || !what.acts_in(static_cast<int>(k))))
+        used_up = model_.history_time_at(static_cast<int>(k) + 1);
+      else if (model_.stages[k].kind == StageKind::kDynamic && what.acts_in(static_cast<int>(k)) &&
+               used_up >= 0)
+        return;
     }
-    if (!(on_paths > 0)) return;
-    const double begun = model_.history_time_at(static_cast<int>(stage));
+    if (used_up < 0) return;
     for (const int h : histories) {
-      if (h < 0 || model_.histories[static_cast<size_t>(h)].time.front() >= begun) continue;
+      if (h < 0 || model_.histories[static_cast<size_t>(h)].time.front() >= used_up) continue;
       findings_.warning(
           where, name,
-          fmt::format("acts from {:.6g} s of history \"{}\" on, as paths have used up the time before", begun,
-                      model_.histories[static_cast<size_t>(h)].name),
-          fmt::format("let the times of that history begin at {:.6g} s", begun));
+          fmt::format(
+              "acts in stage \"{}\" from {:.6g} s of history \"{}\" on, as a path has used up the time before",
+              model_.stages[stage].name, model_.history_time_at(static_cast<int>(stage)),
+              model_.histories[static_cast<size_t>(h)].name),
+          fmt::format("let the times of that history begin at {:.6g} s", used_up));
     }
   }
 
   // Whether a history drives something in static stages only, where it stands at its value of t = 0.
-  bool stands_still(const Staged& what, int history) const {
+  // @param is_wave  which comes in while time runs, and on no path
+  bool stands_still(const Staged& what, int history, bool is_wave) const {
     if (history < 0) return false;
     const std::vector<double>& v = model_.histories[static_cast<size_t>(history)].value;
     if (std::all_of(v.begin(), v.end(), [&v](double x) { return x == v[0]; })) return false;
     for (size_t i = 0; i < model_.stages.size(); ++i)
-      if (what.acts_in(static_cast<int>(i)) && histories_run_in(i)) return false;
+      if (what.acts_in(static_cast<int>(i)) &&
+          (model_.stages[i].kind == StageKind::kDynamic || (model_.stages[i].path > 0 && !is_wave)))
+        return false;
     return true;
   }
 
   void tell_static_only(const Where& where, const std::string& path, const Staged& what,
-                        std::initializer_list<int> histories) {
+                        std::initializer_list<int> histories, bool is_wave = false) {
     for (const int h : histories) {
-      if (!stands_still(what, h)) continue;
+      if (!stands_still(what, h, is_wave)) continue;
       findings_.warning(
           where, path,
           fmt::format("acts in static stages only, where history \"{}\" stands at its value of t = 0",
@@ -285,7 +292,7 @@ class Plausible {
     for (const SupportInput& s : model_.supports)
       tell_static_only(s.where, "support." + s.name, s, {s.x.history, s.y.history});
     for (const BoundaryInput& b : model_.boundaries)
-      tell_static_only(b.where, "boundary." + b.name, b, {b.history_x, b.history_y});
+      tell_static_only(b.where, "boundary." + b.name, b, {b.history_x, b.history_y}, true);
     for (const BlockInput& b : model_.blocks)
       tell_static_only(b.where, "block." + b.name, {},
                        {b.motion_x.history, b.motion_y.history, b.motion_rotation.history});

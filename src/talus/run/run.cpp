@@ -205,7 +205,10 @@ class StagedRun::Runner {
       if (result_.stages[i].followed())
         scene_.give.shortest_step = std::min(scene_.give.shortest_step, plans_[i].dt_follow);
     if (result_.stages.back().followed()) go_by_motion();
-    if (!from.between) enter_steps(index);
+    if (from.between)
+      goals_ = path_goals(scene_, index);
+    else
+      enter_steps(index);
   }
 
   void enter_steps(int index) {
@@ -358,7 +361,7 @@ class StagedRun::Runner {
     const bool rests = stage.kind == StageKind::kStatic && is_at_rest(stage, report, n) &&
                        (!stage.from_rest || from_rest_->stands(!goals_.empty()));
     show({scene_, state_, work_, report, plan, advance_, index, out.steps == 0, false, n,
-          !goals_.empty() && !rests});
+          !goals_.empty() && !rests && out.steps > 0});
     // from the start of the stage, not by adding: the last step ends exactly on the stage's end
     const double end = stage.from_rest ? state_.time + advance_ : out.begin + stage_time(n + 1);
     go_on_or_fail(index, n, part < plan.dt ? state_.time + part : end, report);

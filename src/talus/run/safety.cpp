@@ -91,11 +91,12 @@ struct Base {
   double factor = 0;        // under which it stands; 0: nothing raised
 };
 
-// The stage of trials: like the last one, with what acts there.
-void add_raised(Base& base) {
+// The stage of trials: like the last one as it was prepared (motion that follows changes that of a scene), with what acts
+// there.
+void add_raised(Base& base, const PreparedRun& prepared) {
   Model& model = base.scene.model;
   const int last = static_cast<int>(model.stages.size()) - 1;
-  StageInput raised = model.stages.back();
+  StageInput raised = prepared.scene.model.stages[static_cast<size_t>(last)];
   raised.name += ", raised";
   raised.excavate.clear(), raised.relaxation.clear();
   raised.path = 0, raised.increments = 0;  // histories stand where they are
@@ -112,7 +113,7 @@ void add_raised(Base& base) {
   // those of joints have been made, and are not made again where a run goes on
   std::erase_if(model.changes, [last](const ChangeInput& c) { return c.stage > last || c.joint >= 0; });
   model.stages.push_back(raised);
-  base.plans.push_back(base.plans.back());
+  base.plans.push_back(prepared.plans[static_cast<size_t>(last)]);
   base.plans.back().balances = 0;
   base.standing.between = true;
 }
@@ -259,7 +260,7 @@ class Search {
     if (!base->standing.result.failure.empty())
       throw NumericalError("the model does not come to rest before anything is raised: " +
                            base->standing.result.failure);
-    add_raised(*base);
+    add_raised(*base, prepared_);
     base->since = base->state.displacement;
     base_ = before_ = std::move(base);
   }
@@ -313,7 +314,7 @@ class Search {
       return after->standing.result;
     });
     if (!tried.trial.stands || input_.from_start) return tried;
-    add_raised(*after);
+    add_raised(*after, prepared_);
     after->since = after->state.displacement;
     after->factor = factor;
     tried.after = std::move(after);
@@ -322,6 +323,7 @@ class Search {
 
   Tried of_action(double factor, const Base& from, const Workers& workers, const SafetyTrial* kept) const {
     auto after = std::make_unique<Base>(from);
+    const StageInput stage = after->scene.model.stages.back();
     raise(after->scene, after->state, factor);
     RunResult run;
     Tried tried = judged(factor, from.factor, *after, kept, [&](Observer& observer) {
@@ -329,8 +331,9 @@ class Search {
       return run;
     });
     if (!tried.trial.stands) return tried;
-    // the next trial is another go of the same stage
+    // the next trial is another go of the same stage, from rest again
     run.stages.pop_back();
+    after->scene.model.stages.back() = stage;
     after->standing = {run, true};
     after->factor = factor;
     tried.after = std::move(after);

@@ -74,6 +74,8 @@ bool Watch::only_needles_move(double unbalanced) const {
 void Watch::look(const Instant& i) {
   if (i.stage_start)
     start_ = since_.empty() ? i.state.displacement : since_, begin_ = i.state.time, peak_ = 0;
+  // what a path moves is no failure: on it that is told by a balance that is not found
+  if (i.scene.model.stages[static_cast<size_t>(i.stage)].path > 0) return;
   // steps from rest count as one time each: their lengths are but a measure of how little inertia holds
   const bool from_rest = i.scene.model.stages[static_cast<size_t>(i.stage)].from_rest;
   const double elapsed = from_rest ? static_cast<double>(i.steps_before + 1) : i.state.time - begin_,

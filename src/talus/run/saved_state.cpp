@@ -68,7 +68,7 @@ void exchange_plan(auto& field, auto& p) {
   field("dt_undamped", p.dt_undamped), field("clamp_dt", p.clamp_dt);
   field("clamped", p.clamped), field("largest_clamp", p.largest_clamp);
   field("dt_follow", p.dt_follow), field("steps_follow", p.steps_follow);
-  field("bound_follow", p.bound_follow), field("balances", p.balances);
+  field("bound_follow", p.bound_follow), field("plan_balances", p.balances);
 }
 
 void exchange_standing(auto& x, auto& standing) {

@@ -27,7 +27,11 @@ std::string Unrest::text(const StageInput& stage, double elapsed, int64_t steps,
       "static stage \"{}\" did not come to rest in {:g} s ({} steps){}: the largest unbalanced force is "
       "{:.3g} of the mean{}; asked for is {:g}.{} {}",
       stage.name, elapsed, steps, on_path, last.unbalanced, velocity, stage.unbalanced, where,
-      why_no_rest(stage, elapsed));
+      stage.path > 0
+          ? fmt::format("Give stage.{0}.increments more, or stage.{0}.duration, which is for each balance; "
+                        "histories.csv has the balances before it",
+                        stage.name)
+          : why_no_rest(stage, elapsed));
 }
 
 // What keeps a stage from resting, and the key to change.

@@ -140,7 +140,8 @@ void judge_pairs(const Standing& standing, const State& state, const Scene& scen
                      fmt::format("block {} touches something, and is excavated by then", k));
 }
 
-void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResult& now, const State& state) {
+void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResult& now, const State& state,
+                 bool between) {
   if (now.followed()) {
     promise_loaded(stage.may_follow, "it is followed by damped motion in a stage that is not");
     const double dt = plan.dt_follow,
@@ -155,8 +156,10 @@ void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResu
                        state.rest.length <= 1.01 * plan.dt * kMostLengthened,
                    fmt::format("\"length\" of its next step is {}", state.rest.length));
     promise_loaded(state.dt_before == 0, "it moves in a stage whose steps begin at rest");
-    promise_loaded(state.rest.balances >= 0 && state.rest.balances <= plan.balances,
-                   fmt::format("it has found {} of {} balances", state.rest.balances, plan.balances));
+    const int found = state.rest.balances;
+    promise_loaded(found == now.balances && found >= 0 && found <= plan.balances &&
+                       (between || plan.balances == 0 || found < plan.balances),
+                   fmt::format("it has found {} of {} balances", found, plan.balances));
     promise_loaded(state.rest.begin_steps >= 0 && state.rest.begin_steps <= now.steps,
                    "its balance begins after the steps of its stage");
     return;
@@ -188,7 +191,7 @@ void judge_standing(const Standing& standing, const State& state, const Prepared
   promise_loaded(now.steps_from_rest >= 0 && now.steps_from_rest <= now.steps &&
                      now.steps - now.steps_from_rest <= (now.followed() ? plan.steps_follow : plan.steps),
                  "its steps are not those of the model");
-  judge_clock(scene.model.stages[stages.size() - 1], plan, now, state);
+  judge_clock(scene.model.stages[stages.size() - 1], plan, now, state, standing.between);
   const RunResult& r = standing.result;
   for (const int64_t count : {r.steps, r.failed_steps, r.loose_steps, r.second_solver_steps, r.iterations})
     promise_loaded(count >= 0 && count <= kMostCount, "it has counted less than nothing, or endlessly");

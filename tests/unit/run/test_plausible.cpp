@@ -84,7 +84,7 @@ TEST_CASE("plausible mistakes are told at their line") {
       {"kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
        "kind = \"static\"\nduration = \"2 s\"\npath = 1\n[[stage]]\nname = \"later\"\nkind = \"dynamic\"\nduration = 1\n"
        "[[load]]\nname = \"q\"\nstages = [\"later\"]\nacceleration_x = \"motion\"",
-       "36:1", "load.q: acts from 1 s of history \"motion\" on"},
+       "36:1", "load.q: acts in stage \"later\" from 1 s of history \"motion\" on"},
       // names and keys
       {"density = 2700", "densty = 2700", "5:1", "did you mean \"density\"", true},
       {"material = \"rock\"\nkind", "material = \"rokc\"\nkind", "20:1", "did you mean \"rock\"", true},
@@ -155,6 +155,23 @@ TEST_CASE("a path that nothing follows is refused, and one that something follow
   const std::string message = told(still);
   INFO(message);
   CHECK(message.find("stage.shake.path: leads nowhere") != std::string::npos);
+}
+
+TEST_CASE("what begins behind a path in the midst of its history is warned of, whatever it is") {
+  const std::string dynamic = "kind = \"dynamic\"\nduration = \"2 s\"\nelasticity = \"implicit\"",
+                    path = "kind = \"static\"\nduration = \"2 s\"\npath = 1\n[[stage]]\nname = \"later\"\n" +
+                           dynamic;
+  const auto with = [&](const std::string& acting) {
+    return told(replaced(kShakenBlock, dynamic, path + "\n" + acting));
+  };
+  CHECK(with("") == "");  // the floor goes on along the path
+  const std::string support = with(
+      "[[support]]\nname = \"top\"\nedge = [[0, 1], [1, 1]]\nx = { velocity = \"motion\" }\ny = \"free\"\nstages = [\"later\"]\n");
+  INFO(support);
+  CHECK(support.find("support.top: acts in stage \"later\" from 1 s of history \"motion\" on") !=
+        std::string::npos);
+  const std::string also = with("[[load]]\nname = \"q\"\nacceleration_x = \"motion\"\n");  // on the path, too
+  CHECK(also.find("load.q: acts") == std::string::npos);
 }
 
 TEST_CASE("a model that nothing drives, holds or gives friction is warned of") {

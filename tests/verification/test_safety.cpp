@@ -247,7 +247,7 @@ TEST_CASE("collapse by tilt: a block that had to fall to its place before is til
         "joint = \"j\"\n{}{}[[stage]]\nname = \"fall\"\nkind = \"static\"\nduration = 10\n{}[safety]\nby = "
         "\"tilt\"\nlowest = 1\nhighest = 40\n",
         block_text("lower", {{-3, -1}, {5, -1}, {5, 0}, {-3, 0}}, "fixed"),
-        block_text("upper", {{0, 0.5}, {2, 0.5}, {2, 1.5}, {0, 1.5}}, "deformable"), step);
+        block_text("upper", {{0, 4}, {2, 4}, {2, 5}, {0, 5}}, "deformable"), step);
     const SafetyResult r = seek_safety(prepare(text), Workers());
     CHECK(r.stands == relative(30, 5e-3));
   }

@@ -17,15 +17,16 @@ namespace {
 
 const std::string kExample = std::string(TALUS_SOURCE_DIR) + "/examples/conventional/conventional.toml";
 
-// A folder with the least that a run leaves, one monitor, one dynamic stage from 1 s on.
-void write_run(const Folder& f, const std::string& name, const std::string& rows, double begin, double end) {
+// A folder with the least that a run leaves, one monitor, one stage.
+void write_run(const Folder& f, const std::string& name, const std::string& rows, double begin, double end,
+               const std::string& kind = "\"dynamic\"") {
   std::filesystem::create_directories(f / name);
   write_file(
       f / name / "summary.json",
       fmt::format(
-          "{{\"status\": \"finished\", \"stages\": [{{\"name\": \"go\", \"kind\": \"dynamic\", \"begin [s]\": {}, "
+          "{{\"status\": \"finished\", \"stages\": [{{\"name\": \"go\", \"kind\": {}, \"begin [s]\": {}, "
           "\"end [s]\": {}}}]}}",
-          begin, end));
+          kind, begin, end));
   write_file(f / name / "histories.csv", "t [s],dynamic_time [s],top.displacement_x [m]\n" + rows);
 }
 
@@ -50,6 +51,17 @@ TEST_CASE("command: compare says how far histories are apart, by hand") {
   has(beyond.text, "BEYOND");
   has(beyond.text, "1 of 1 beyond");
   CHECK(shell(f, "$talus compare a a --rtol 0").code == 0);
+}
+
+TEST_CASE("command: compare of two paths sets balances at one time of the histories beside each other") {
+  const Folder f;
+  const std::string path = "\"static\", \"balances_of_path\": 3";
+  // the ends are the same; in the middle B has 1.5 for 1, and a balance more, which A does not have
+  write_run(f, "a", "0,0,0\n0.1,0,0\n0.2,1,1\n0.3,2,3\n", 0, 0.3, path);
+  write_run(f, "b", "0,0,0\n0.1,0,0\n0.4,0.5,9\n0.6,1,1.5\n0.9,2,3\n", 0, 0.9, path);
+  const Outcome o = shell(f, "$talus compare a b");
+  has(o.text, " 0.5          1 ");
+  has(o.text, "            3       17%");
 }
 
 TEST_CASE("command: compare of two formulations of one model") {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "talus/base/error.h"
 #include "talus/output/columns.h"
@@ -22,6 +23,7 @@ struct Stage {
   std::string name;
   bool dynamic = false;
   double begin = 0, end = 0;  // [s]
+  bool on_path = false;
 };
 
 std::vector<Stage> stages_of(const RunFolder& run) {
@@ -29,7 +31,7 @@ std::vector<Stage> stages_of(const RunFolder& run) {
   const json list = run.summary.contains("stages") ? run.summary["stages"] : json::array();
   for (const json& s : list)
     out.push_back({s.value("name", ""), s.value("kind", "") == "dynamic", s.value("begin [s]", 0.0),
-                   s.value("end [s]", 0.0)});
+                   s.value("end [s]", 0.0), s.value("balances_of_path", 0) > 0});
   return out;
 }
 
@@ -42,6 +44,14 @@ Rows rows_of(const std::vector<double>& time, const Stage& s) {
     return static_cast<size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin());
   };
   return {after(s.begin), after(s.end)};
+}
+
+// The last of these rows at which the clock of the histories stands there: a path has two where something breaks.
+std::optional<size_t> row_at_clock(const std::vector<double>& clock, const Rows& rows, double there) {
+  constexpr double kSame = 1e-9;
+  for (size_t r = rows.to; r > rows.from; --r)
+    if (std::abs(clock[r - 1] - there) <= kSame * std::max(1.0, std::abs(there))) return r - 1;
+  return std::nullopt;
 }
 
 // Value at a time between rows [from, to); at or outside the ends that of the end.
@@ -91,11 +101,18 @@ void compare_histories(const RunFolder& a, const RunFolder& b, Comparison& out) 
       Difference d{"history", s.name, title};
       double squares = 0;
       size_t count = 0;
-      // static stages rest at their ends, and how they come there is the scheme's own
-      for (size_t r = s.dynamic ? ra.from : ra.to - 1; r < ra.to; ++r) {
-        const double t = ta[r] - s.begin;
+      // static stages rest at their ends, on a path at its balances, and how they come there is the scheme's own; impulses
+      // go by the steps
+      const bool on_path = s.on_path && same->on_path;
+      if (on_path && title.find("impulse") != std::string::npos) continue;
+      for (size_t r = s.dynamic || on_path ? ra.from : ra.to - 1; r < ra.to; ++r) {
+        const double t = on_path ? a.histories.values[1][r] : ta[r] - s.begin;
         if (s.dynamic && t > same->end - same->begin) break;
-        const double w = s.dynamic ? value_at(tb, vb, rb, same->begin + t) : vb[rb.to - 1];
+        const auto there = on_path ? row_at_clock(b.histories.values[1], rb, t) : std::nullopt;
+        if (on_path && !there) continue;
+        const double w = on_path     ? vb[*there]
+                         : s.dynamic ? value_at(tb, vb, rb, same->begin + t)
+                                     : vb[rb.to - 1];
         if (!std::isfinite(va[r]) && !std::isfinite(w)) continue;
         if (std::isfinite(va[r]) != std::isfinite(w)) {  // one of them knows it, the other does not
           d.most = std::numeric_limits<double>::infinity(), d.at = t;

@@ -203,7 +203,8 @@ TEST_CASE("loose steps: the trial of a solver calls what few sweeps leave no sol
   CHECK(time_steps(p, 0.05, 1).at(0).at_least);
 }
 
-TEST_CASE("loose steps: a search for what a model bears allows them, and no failed ones") {
+TEST_CASE("loose steps: a search for what a model bears allows them, and no failed ones" *
+          doctest::test_suite("optimised")) {
   // a block on a slope of 20 degrees, friction 30
   const std::string text = R"(
 talus = 1

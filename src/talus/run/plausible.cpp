@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -222,22 +221,19 @@ class Plausible {
             "name a history in one of them, or leave path out");
       const double begun = model_.history_time_at(static_cast<int>(i));
       if (s.kind != StageKind::kDynamic || !(begun > 0)) continue;
-      const auto motions = [](const Motion& x, const Motion& y) { return std::array{x.history, y.history}; };
       for (const BoundaryInput& b : model_.boundaries)
-        warn_used_up(b.where, "boundary." + b.name, b, true, i, std::array{b.history_x, b.history_y});
+        warn_used_up(b.where, "boundary." + b.name, b, true, i, {b.history_x, b.history_y});
       for (const SupportInput& p : model_.supports)
-        warn_used_up(p.where, "support." + p.name, p, false, i, motions(p.x, p.y));
+        warn_used_up(p.where, "support." + p.name, p, false, i, {p.x.history, p.y.history});
       for (const LoadInput& l : model_.loads)
-        warn_used_up(l.where, "load." + l.name, l, false, i,
-                     std::array{l.x.history, l.y.history, l.pressure.history});
+        warn_used_up(l.where, "load." + l.name, l, false, i, {l.x.history, l.y.history, l.pressure.history});
     }
   }
 
   // What acts in a dynamic stage and not on a path before it, which has gone on with its history. Waves come in while time
   // runs, and on no path. Told once: at the first stage behind such a path.
-  template <class Histories>
   void warn_used_up(const Where& where, const std::string& name, const Staged& what, bool is_wave,
-                    size_t stage, const Histories& histories) {
+                    size_t stage, std::initializer_list<int> histories) {
     if (!what.acts_in(static_cast<int>(stage))) return;
     double used_up = -1;
     for (size_t k = 0; k < stage; ++k) {

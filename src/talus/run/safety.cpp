@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <future>
 #include <limits>
 #include <thread>
 
 #include "talus/base/angle.h"
 #include "talus/base/error.h"
+#include "talus/base/parallel.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/safety_watch.h"
 
@@ -130,6 +132,19 @@ class Search {
     if (input_.by != SafetyBy::kStrength) settle();
   }
 
+  // From a state that stands under this.
+  Search(const PreparedRun& prepared, const Workers& workers, const SafetySettings& settings,
+         std::shared_ptr<const Base> stood, double stands)
+      : prepared_(prepared),
+        workers_(workers),
+        settings_(settings),
+        input_(prepared.scene.model.safety),
+        full_(joints_after(prepared.scene.model, safety_stages(prepared.scene.model))),
+        base_(stood),
+        before_(stood) {
+    result_.stands = stands;
+  }
+
   SafetyResult run() {
     if (input_.from_start) {
       if (!round({input_.lowest})) return ended(SafetyStatus::kBelow);
@@ -138,16 +153,22 @@ class Search {
       return ended(SafetyStatus::kFound);
     }
     if (input_.by == SafetyBy::kStrength && !stand()) return ended(SafetyStatus::kBelow);
-    const std::shared_ptr<const Base> stood = base_;
-    const double begun = result_.stands;
+    // the same by longer strides, beside it where a processor has nothing to do; its trials are not told
+    const auto longer = [this, stood = base_, begun = result_.stands](const Workers& workers) {
+      SafetySettings quiet;
+      quiet.jobs = settings_.jobs;
+      Search coarse(prepared_, workers, quiet, stood, begun);
+      return coarse.climb(2) == SafetyStatus::kFound ? coarse.result_.factor() : 0.0;
+    };
+    std::future<double> coarse;
+    if (processors() > workers_.threads())
+      coarse =
+          std::async(std::launch::async | std::launch::deferred, [&longer] { return longer(Workers(1)); });
     const SafetyStatus status = climb(1);
-    if (status != SafetyStatus::kFound) return ended(status);
-    // the same by longer strides; its trials are not told
-    SafetySettings quiet;
-    quiet.jobs = settings_.jobs;
-    Search coarse(prepared_, workers_, quiet);
-    coarse.base_ = coarse.before_ = stood, coarse.result_.stands = begun;
-    if (coarse.climb(2) == SafetyStatus::kFound) result_.coarse = coarse.result_.factor();
+    const double by_longer = coarse.valid()                   ? coarse.get()
+                             : status == SafetyStatus::kFound ? longer(workers_)
+                                                              : 0;
+    if (status == SafetyStatus::kFound) result_.coarse = by_longer;
     return ended(status);
   }
 

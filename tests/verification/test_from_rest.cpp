@@ -1,4 +1,4 @@
-// Static stages whose steps begin at rest (theory 4.23): what they come to is the balance that formulas give.
+// Static stages whose steps begin at rest (theory 14.1): what they come to is the balance that formulas give.
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-// Static stages along a path (theory 4.24): each row of their table is a balance that statics gives.
+// Static stages along a path (theory 14.7): each row of their table is a balance that statics gives.
 
 #include <algorithm>
 #include <cmath>
@@ -333,7 +333,7 @@ TEST_CASE(
       force = std::clamp(force + ks * 0.2 * (way - before), -most, most), before = way;
       worst = std::max(worst, std::abs(r.column("box.reaction_x")[i] - force) / most);
     }
-    // half the closure is missing from the face at its ends, and twice the way of the last step (theory 3.3, 4.24)
+    // half the closure is missing from the face at its ends, and twice the way of the last step (theory 3.3, 14.7)
     CHECK(worst < 2e-4 + pressure / kn);
   }
 }

@@ -121,7 +121,7 @@ class PatchRows {
     }
   }
 
-  // A gap with what a block that a step from rest leaves out (theory 4.23) would go in it: its size at most. It stays, and
+  // A gap with what a block that a step from rest leaves out (theory 14.5) would go in it: its size at most. It stays, and
   // nothing presses across a gap that nobody closes.
   double ahead_of(const Patch& c, double gap) const {
     if (gap <= 0 || !clock_.from_rest || state_.left_out.empty()) return gap;

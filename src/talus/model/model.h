@@ -214,7 +214,7 @@ struct StageInput {
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;
-  bool from_rest = false;        // static: backward Euler, every step from rest (theory 4.23)
+  bool from_rest = false;        // static: backward Euler, every step from rest (theory 14.1)
   bool from_rest_auto = false;   // that unless it says how blocks shall move (set by build_scene)
   bool strict_rest = false;      // crumbs that fall or slide are waited for
   bool may_follow = false;       // what does not come to rest in steps from rest is followed by damped motion

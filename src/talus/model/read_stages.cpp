@@ -79,7 +79,7 @@ class StageReader : private SectionReader {
     model_.stages.push_back(s);
   }
 
-  // Theory 4.23. What is said about how the blocks move asks for the dynamic way.
+  // Theory 14.1. What is said about how the blocks move asks for the dynamic way.
   void read_integration(const Fields& f, StageInput& s) {
     const auto integration = f.get<std::string>("integration");
     s.from_rest_auto = integration == "auto" && s.kind == StageKind::kStatic && !any_given(f, kOfMotion) &&
@@ -98,7 +98,7 @@ class StageReader : private SectionReader {
     s.go_from_rest();
   }
 
-  // Theory 4.24.
+  // Theory 14.7.
   void read_path(const Fields& f, StageInput& s) {
     if (!f.given("path")) {
       if (f.given("increments"))

@@ -84,7 +84,7 @@ SectionSpec stage_section() {
         .choices = {"auto", "dynamic", "implicit"},
         .doc =
             "Static stages. `dynamic`: they move, damped, until at rest. `implicit`: steps of backward Euler "
-            "(theory 4.23), each from rest to what is nearly the balance of its loads, that grow from "
+            "(theory 14.1), each from rest to what is nearly the balance of its loads, that grow from "
             "`time_step` (\"auto\": 20 ms) to 64 times that, and are halved where one fails; `relaxation` is "
             "then, unless given, over the first eight. What slides on by one and a half of its size, and is a "
             "hundredth of all that can move, is a mechanism and ends the run (exit code 6). `auto`: implicit, "
@@ -96,7 +96,7 @@ SectionSpec stage_section() {
         .range = kPositive,
         .doc =
             "Static stages, by `integration = \"implicit\"`: the clock of the histories goes on by this, from one balance to "
-            "the next (theory 4.24): at the start, at the end of each of the `increments`, and wherever a history that "
+            "the next (theory 14.7): at the start, at the end of each of the `increments`, and wherever a history that "
             "something follows here turns. histories.csv has a row at its beginning, one for each balance, and none between. `duration` is then "
             "the limit for each of them; blocks that are not waited for (`strict_rest`) stay aside to the end of the stage."},
        {.name = "increments",
@@ -105,7 +105,7 @@ SectionSpec stage_section() {
         .default_text = "20",
         .doc =
             "With `path`: number of equal parts of it. Friction and what breaks depend on the way there: twice as many "
-            "tell whether these were enough. Friction of joints without stiffness is known to a per cent at the solver's usual tolerance (theory 4.24)."},
+            "tell whether these were enough. Friction of joints without stiffness is known to a per cent at the solver's usual tolerance (theory 14.7)."},
        {.name = "safety",
         .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
         .default_text = "0.8",

@@ -1,5 +1,5 @@
 #pragma once
-// What goes on where a static stage finds no balance. Theory: docs/theory.md 4.23.
+// What goes on where a static stage finds no balance. Theory: docs/theory.md 14.4.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Stages along a path: histories that go on from balance to balance. Theory: docs/theory.md 4.24.
+// Stages along a path: histories that go on from balance to balance. Theory: docs/theory.md 14.7.
 
 #include <vector>
 

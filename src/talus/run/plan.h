@@ -10,7 +10,7 @@
 namespace talus {
 
 /// Lengths of the steps of a stage from rest: the first is so many times the shortest, the longest so many times
-/// the first (theory 4.23).
+/// the first (theory 14.1).
 inline constexpr int kMostShortened = 64, kMostLengthened = 64;
 
 struct StagePlan {

@@ -1,6 +1,6 @@
 #pragma once
 // What a model just bears: by which factor joint strength can be divided, or how far a load, the tilt of its ground or a
-// horizontal acceleration can be raised. Theory: docs/theory.md section 4.20.
+// horizontal acceleration can be raised. Theory: docs/theory.md section 14.8.
 
 #include <functional>
 #include <memory>

@@ -92,7 +92,7 @@ std::string safety_text(const Model& model, const SafetyResult& r) {
         t->factor, t->block, t->displacement);
   if (loose > 0)
     out += fmt::format(
-        "in {} trials needles moved that do not vote (docs/theory.md 4.20): if they matter, give "
+        "in {} trials needles moved that do not vote (docs/theory.md 14.8): if they matter, give "
         "safety.displacement_limit\n",
         loose);
   return out;

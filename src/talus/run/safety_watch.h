@@ -1,5 +1,5 @@
 #pragma once
-// Who votes in a trial of `talus safety`, and who has failed. Theory: docs/theory.md section 4.20.
+// Who votes in a trial of `talus safety`, and who has failed. Theory: docs/theory.md section 14.8.
 
 #include "talus/run/run.h"
 

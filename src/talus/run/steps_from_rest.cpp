@@ -48,7 +48,7 @@ void StepsFromRest::go_on(double goal, double first, int64_t steps) {
 
 // Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
 // they went; where that does not help, it was not solved to the tolerance or they go too far it is taken with half the length
-// (theory 4.23). The shortest may be loose: by then all solvers have tried.
+// (theory 14.1). The shortest may be loose: by then all solvers have tried.
 std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double begin, double first,
                                               double goal, StepSettings& settings, double& advance) {
   const double shortest = first / kMostShortened;
@@ -135,7 +135,7 @@ void StepsFromRest::arrive(double goal) {
   if (std::abs(goal - state_.history_time) <= kRoundOff * std::abs(goal)) state_.history_time = goal;
 }
 
-// Eq. 4.13.
+// Eq. 14.2.
 double StepsFromRest::history_dt(double goal, double length) const {
   const double left = goal - state_.history_time, share = state_.rest.pace * length;
   return share >= left ? left : share;

@@ -1,5 +1,5 @@
 #pragma once
-// How a static stage goes on in steps from rest. Theory: docs/theory.md 4.23.
+// How a static stage goes on in steps from rest. Theory: docs/theory.md 14.1.
 
 #include <optional>
 #include <string>

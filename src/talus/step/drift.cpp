@@ -27,7 +27,7 @@ bool drift_block(const BlockSet& blocks, double dt, size_t k, State& state) {
 }
 
 // Nothing goes on from a step of backward Euler: its rates only tell the next how far to look. Its forces act
-// over all of the way, but that of implicit elasticity, which grows from nothing; v M v is lost (theory 4.23).
+// over all of the way, but that of implicit elasticity, which grows from nothing; v M v is lost (theory 14.6).
 void settle_work(const StepWork& work, const StepReport& report, State& state) {
   WorkDone more = work.work.after;
   more[Cause::kImplicit] = 0;

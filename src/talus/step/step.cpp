@@ -157,7 +157,7 @@ void remember(const Scene& scene, const StepWork& work, State& state) {
 StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work,
                      State& state) {
   StepReport report;
-  // alpha = 1 weights the end of the step alone (eq. 4.12)
+  // alpha = 1 weights the end of the step alone (eq. 14.1)
   work.clock = {dt,
                 settings.from_rest ? dt : 0.5 * (state.dt_before + dt),
                 settings.from_rest ? 1 : scene.model.contact.alpha,

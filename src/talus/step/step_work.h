@@ -23,7 +23,7 @@ struct StepSettings {
   bool dynamic = true;           // in true time; false: static
   double history_dt = 0;         // static: by how much the histories go on in the step [s]
   bool implicit = false;         // block-implicit elasticity (theory 4.9)
-  bool from_rest = false;        // backward Euler, and blocks stand after it (theory 4.23)
+  bool from_rest = false;        // backward Euler, and blocks stand after it (theory 14.1)
   bool near_expected = false;    // such a step is likely to end near the rates that the state comes with
   bool by_all = false;           // every solver may try, though a shorter step from rest could be taken
   bool may_shorten = false;      // a step that is not solved is not taken

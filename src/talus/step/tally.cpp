@@ -83,7 +83,7 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
     const BlockForce more{
         {}, (-scheme.tangent_time2()) * scheme.tangent_force(i, v1.G - step.clock.old_share() * v0.G)};
     add(s.work, Cause::kImplicit, work_of(more, v0, v1, late));
-    // a step from rest ends in balance but for M v/dt; what stands at its begin is judged (theory 4.23)
+    // a step from rest ends in balance but for M v/dt; what stands at its begin is judged (theory 14.3)
     if (!step.clock.from_rest) force += (1 / kick) * more;
   }
   const BlockForce rows = (1 / kick) * scheme.impulse_for(i, v1 - step.rate_free[i]);

@@ -1,5 +1,5 @@
 // Static stages of rock with hard joints go in steps from rest: friction in turns, faces with strength that close loops
-// (theory 4.22, 4.23, 5.8).
+// (theory 4.22, 14.1, 5.8).
 
 #include <fmt/format.h>
 

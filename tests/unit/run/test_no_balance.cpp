@@ -1,4 +1,4 @@
-// Static stages that have no balance near: mechanisms, what falls, and the damped motion that follows (theory 4.23).
+// Static stages that have no balance near: mechanisms, what falls, and the damped motion that follows (theory 14.4).
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

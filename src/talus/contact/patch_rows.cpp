@@ -67,7 +67,7 @@ class PatchRows {
     if (was_face(pair, c) && -c.closure[end] <= noticeable(w_.blocks, a, b))
       bound(bears.over(half_area * clock_.dt_kick), p);
     const bool soft = law.is_soft(0), springs = law.is_soft(), gives = give > 0 && !(soft && law.is_soft(1));
-    const double gap = ahead_of(c, soft ? -c.closure[end] : c.allowed[end] - c.closure[end]);
+    const double gap = soft ? -c.closure[end] : c.allowed[end] - c.closure[end];
     p.row[0].bias = soft || gives ? gap / clock_.dt : hard_gap_bias(gap, slop, clock_.dt);
     p.row[1].bias =
         (law.is_soft(1) || gives ? c.stretch[end] : beyond_slop(c.stretch[end], slop)) / clock_.dt;
@@ -119,15 +119,6 @@ class PatchRows {
       p.row[i].compliance = 2 * k / (mixed * clock_.dt * clock_.dt_kick);
       p.row[i].bias = k * p.row[i].bias - clock_.old_share() * u[static_cast<size_t>(i)];
     }
-  }
-
-  // A gap with what a block that a step from rest leaves out (theory 14.5) would go in it: its size at most. It stays, and
-  // nothing presses across a gap that nobody closes.
-  double ahead_of(const Patch& c, double gap) const {
-    if (gap <= 0 || !clock_.from_rest || state_.left_out.empty()) return gap;
-    for (const int block : {c.block_a, c.block_b})
-      if (state_.is_left_out(block)) gap += w_.blocks.size[static_cast<size_t>(block)];
-    return gap;
   }
 
   // Whether a face that has broken lay on the sides of a patch.

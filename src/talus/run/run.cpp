@@ -300,6 +300,14 @@ class StagedRun::Runner {
     return true;
   }
 
+  // A mechanism ends the run.
+  [[noreturn]] void fail_by(const Mechanism& m, const std::string& how) {
+    result_.mechanism = result_.no_rest = true;
+    throw NumericalError(
+        fmt::format("static stage \"{}\" finds no balance{}: a mechanism. {}. {}; blocks_end.svg shows it",
+                    result_.stages.back().name, on_path(), m.text(scene_, state_), how));
+  }
+
   // Whether steps from rest have said all they can say, and blocks are followed as they move; tells why. A mechanism ends the
   // run.
   bool gives_up_rest(const StageInput& stage, const StageResult& out, std::string& because) {
@@ -307,14 +315,11 @@ class StagedRun::Runner {
     if (state_.rest.gone > kFarFromRest) {
       const Mechanism m = find_mechanism(scene_, state_);
       const bool goes_on = state_.rest.gone_many > kMechanismWay || steps_of_balance() >= kMostFromRest;
-      if (m.slides && m.share >= kMechanismShare && goes_on) {
-        result_.mechanism = result_.no_rest = true;
-        throw NumericalError(fmt::format(
-            "static stage \"{}\" finds no balance{}: a mechanism. {}. {} steps from rest; blocks_end.svg shows it, {}",
-            stage.name, on_path(), m.text(scene_, state_), goals_.empty() ? out.steps : steps_of_balance(),
-            goals_.empty() ? fmt::format("stage.{}.integration = \"dynamic\" follows it", stage.name)
-                           : "histories.csv has the balances before it"));
-      }
+      if (m.slides && m.share >= kMechanismShare && goes_on)
+        fail_by(m, fmt::format("{} steps from rest; {}", goals_.empty() ? out.steps : steps_of_balance(),
+                               goals_.empty()
+                                   ? fmt::format("stage.{}.integration = \"dynamic\" follows it", stage.name)
+                                   : "histories.csv has the balances before it"));
       if (leaves_out(stage, m)) return false;
       // what slides may come to lie on something: not what falls, or is a crumb
       if (stage.may_follow && !(m.slides && m.share >= kMechanismShare))
@@ -420,8 +425,14 @@ class StagedRun::Runner {
     if (stage.from_rest && out.at_rest) std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     if (stage.kind == StageKind::kStatic && !out.at_rest && !result_.interrupted) {
       result_.no_rest = true;
-      throw NumericalError(unrest().text(stage, out.end - (goals_.empty() ? out.begin : state_.rest.begin),
-                                         goals_.empty() ? out.steps : steps_of_balance(), on_path()));
+      const double elapsed = out.end - (goals_.empty() ? out.begin : state_.rest.begin);
+      if (unrest().goes_faster(stage, elapsed)) {
+        const Mechanism m = find_mechanism(scene_, state_);
+        if (m.slides && m.share >= kMechanismShare)
+          fail_by(m, fmt::format("after {} steps they go faster and faster", out.steps));
+      }
+      throw NumericalError(
+          unrest().text(stage, elapsed, goals_.empty() ? out.steps : steps_of_balance(), on_path()));
     }
     if (!result_.interrupted) observer_.keep_state({result_, true}, state_);
   }
@@ -503,7 +514,7 @@ class StagedRun::Runner {
     rest.best = !is_relaxed(stage, n) ? 0 : rest.best > 0 ? std::min(rest.best, now) : now;
     if (++rest.steps % kRestLook != 0) return false;
     look_ = std::move(latest_look_);
-    latest_look_ = {state_.time, state_.displacement};
+    latest_look_ = {state_.time, state_.displacement, report.energy.moving};
     const double progress = rest.before > 0 ? rest.best / rest.before : 0;
     const bool at_sharpest = rest.sharper <= kSharpest;
     rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;

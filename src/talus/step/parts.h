@@ -10,6 +10,16 @@ namespace talus {
 /// kick (theory 2.7, 4.12, 4.16, 4.21).
 void add_forces(const Scene& scene, const StepSettings& settings, StepWork& work, State& state);
 
+/// Weight, loads and what excavated rock still pushes [N], [N m].
+inline BlockForce given_force(const Scene& scene, const StepWork& work, size_t k) {
+  return BlockForce{scene.blocks.mass[k] * scene.model.gravity, {}} + work.load[k];
+}
+
+/// Whether a step from rest does not wait for a block (theory 14.5): nothing that is given acts on it.
+inline bool is_weightless(const StepWork& work, const State& state, size_t k) {
+  return work.clock.from_rest && state.is_left_out(static_cast<int>(k));
+}
+
 /// Weight, elastic force and mobility of each block, and its rates at the end of the kick as they would be
 /// without rows (eq. 2.1), damping included.
 void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& state);

@@ -44,19 +44,18 @@ void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool rene
     return;
   }
   BlockForce& force = work.forces[k];
-  force = BlockForce{blocks.mass[k] * scene.model.gravity, {}} + work.load[k];
+  force = is_weightless(work, state, k) ? BlockForce{} : given_force(scene, work, k);
   if (blocks.kind[k] == BlockKind::kDeformable) {
     work.elastic[k] = elastic_state(blocks.moduli[k], state.strain_part[k], initial_stress_of(state, k));
     force.Q += (-blocks.volume[k]) * work.elastic[k].stress;
   }
   if (!work.bolt_forces.empty()) force += work.bolt_forces[k];
   const bool implicit = scheme.implicit(k);
-  const bool left_out = work.clock.from_rest && state.is_left_out(static_cast<int>(k));
-  const double share = left_out ? scheme.share_left_out(k, force) : scheme.share();
+  const double share = scheme.share();
   if (implicit)
     work.mobility[k] = mobility_implicit(blocks, k, work.elastic[k].rotation, share,
                                          scheme.tangent_time2() + scheme.damping_time2());
-  else if (renew || left_out)
+  else if (renew)
     work.mobility[k] = mobility_of(blocks, k, share);
   BlockRate& v = state.rate[k];
   BlockForce impulse = work.clock.dt_kick * force;
@@ -116,7 +115,7 @@ void predict(const Scene& scene, const Scheme& scheme, StepWork& work, State& st
       work.rate_free[i] = state.rate[i];
     }
   });
-  work.mobility_share = settings.implicit || !state.left_out.empty() ? 0 : scheme.share();
+  work.mobility_share = settings.implicit ? 0 : scheme.share();
   for (auto* rate : {&state.rate, &work.rate_free})
     drive_blocks(scene.blocks, scene.model, scene.layout, state, work.clock, *rate);
 }

@@ -16,12 +16,6 @@ struct Scheme {
   double damping() const { return 0.5 * settings.damping_mass * clock.dt_kick; }
   /// Factor on the inverse mass that comes of it.
   double share() const { return 1 / (1 + damping()); }
-  /// The same for a block that a step from rest leaves out: what acts on it but contacts would move it by its size at
-  /// most, however long the step. It is moved nowhere, and digits are those of its size.
-  double share_left_out(size_t i, const BlockForce& acting) const {
-    const double way = clock.dt * clock.dt_kick * norm(acting.f) / (blocks.mass[i] * blocks.size[i]);
-    return share() / (1 + way);
-  }
   /// Share of a kick that belongs to the step after it: half, unless the step length changes; all of it at
   /// the start.
   double late_share() const { return 0.5 * clock.dt / clock.dt_kick; }

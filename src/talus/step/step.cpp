@@ -188,9 +188,6 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
     report.taken = false;
     return report;
   }
-  // what a stage does not wait for stays where it was when it was named, and presses as what slides or falls
-  if (settings.from_rest)
-    for (const int k : state.left_out) state.rate[static_cast<size_t>(k)] = {};
   profile.go_on_with(Profile::kRemember);
   const RowSums rows = settle_rows(scene, work, state);
   remember(scene, work, state);

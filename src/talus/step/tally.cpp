@@ -67,6 +67,8 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
   if (!blocks.moves_freely(static_cast<int>(i))) return;
   const double late = scheme.late_share(), kick = step.clock.dt_kick;
   add(s.work, Cause::kLoads, work_of(kick * step.load[i], v0, v1, late));
+  if (is_weightless(step, state, i))
+    add(s.work, Cause::kDamping, work_of(-kick * given_force(scene, step, i), v0, v1, late));
   if (scheme.settings.damping_mass > 0) {
     const BlockForce viscous = (-scheme.settings.damping_mass * kick) * momentum(blocks, i, mean(v0, v1));
     add(s.work, Cause::kDamping, work_of(viscous, v0, v1, late));

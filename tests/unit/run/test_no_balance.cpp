@@ -363,6 +363,40 @@ TEST_CASE("no balance: a crumb stays where it was when it was named, and the oth
   CHECK(way < 0.11);
 }
 
+TEST_CASE("no balance: what moves pushes a crumb aside that was left out, which neither bears nor weighs") {
+  const Ended e =
+      run(head(20, true) + block("base", "[[-2, -1], [2, -1], [2, 0], [-2, 0]]", "fixed") +
+          block("stands", "[[-1, 0], [0, 0], [0, 1], [-1, 1]]", "rigid") +
+          block("pusher", "[[1, 1], [1.5, 1], [1.5, 1.5], [1, 1.5]]", "driven") +
+          "motion_x = { displacement = \"way\" }\n" +
+          block("crumb", "[[0.98, 1.2], [0.99, 1.2], [0.99, 1.21], [0.98, 1.21]]", "rigid") +
+          "[history.way]\ntime = [0, 1]\nvalue = [0, -0.03]\n" +
+          "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\npath = 1\nincrements = 20\n");
+  CAPTURE(e.result.failure);
+  REQUIRE(e.result.stages[0].balances == 21);
+  REQUIRE(e.state.left_out == std::vector<int>{3});
+  CHECK(e.state.displacement[3].x == test::approx(-0.02).epsilon(1e-6));
+  // its fall is that of the step in which it was named, and no work is left over
+  CHECK(e.state.displacement[3].y > -0.02);
+  CHECK(std::abs(e.result.energy.left_over) < 1e-9 * e.result.largest_energy);
+}
+
+TEST_CASE("no balance: damped motion that goes faster to its end is a mechanism, what slows down is not") {
+  const auto damped = [](double friction, double speed) {
+    std::string text = wedge(35, friction, "rigid", false) + "integration = \"dynamic\"\ntime_step = 0.002\n";
+    const std::string kind = "kind = \"rigid\"\n";
+    return run(text.replace(text.find(kind), kind.size(),
+                            kind + fmt::format("velocity = [{}, {}]\n", -speed * 0.81915, -speed * 0.57358)));
+  };
+  const Ended slides = damped(30, 0);
+  CHECK(slides.result.mechanism);
+  CHECK(slides.result.failure.find("on joint \"plane\"") != std::string::npos);
+  CHECK(slides.result.failure.find("they go faster and faster") != std::string::npos);
+  const Ended slows = damped(36, 5);
+  CHECK(!slows.result.mechanism);
+  CHECK(slows.result.no_rest);
+}
+
 TEST_CASE("no balance: what is left out in its fall presses on nothing across the gap at which it stays") {
   int left_out = 0;
   for (const double drop : {0.101, 0.1025, 0.104, 0.1055, 0.107, 0.1085, 0.11, 0.1115}) {

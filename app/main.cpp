@@ -147,7 +147,9 @@ int verb_of_line(int argc, char** argv) {
   safety_verb->add_option("--threads", safety.threads, "threads inside a step, 0: as many as pay")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  safety_verb->add_option("--jobs", safety.jobs, "trials side by side where the interval is halved; the ladder goes rung by rung")
+  safety_verb
+      ->add_option("--jobs", safety.jobs,
+                   "trials side by side where the interval is halved; the ladder goes rung by rung")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   safety_verb->footer("Example: talus safety examples/toppling/toppling.toml -o out/toppling");

@@ -116,7 +116,8 @@ SectionSpec stage_section() {
         .choices = {"auto", "explicit", "implicit"},
         .doc =
             "`auto`: implicit where a deformable block can slide on a hard contact with friction, and in "
-            "static stages where a few slivers would ask for a step below a seventh of the median block's, "
+            "stages where a few slivers would ask for a step below a seventh of the median block's (dynamic ones if what "
+            "shakes or pushes takes a hundred of the steps that implicit elasticity would have), "
             "else explicit, and explicit with `safety` or `moment_clamp`. `explicit`: central differences, "
             "with a stable limit. `implicit`: each block's own elasticity is part of its mass matrix "
             "(theory 4.9), so that no block limits the time step; \"auto\" is then the time in which a wave "

@@ -57,6 +57,10 @@ double crossing_time(const BlockSet& b) {
 // Step without local damping, in inverse angular frequencies of a block on its joints: three to a swing.
 constexpr double kJointSteps = 2;
 
+// Steps of implicit elasticity in the shortest period of what shakes or pushes, from which on it loses little of that: the damping
+// ratio is alpha times pi over them, 0.6 % at the default (theory 4.9).
+constexpr double kSlow = 100;
+
 // Share of the blocks whose swing on their joints a step need not resolve: slivers.
 constexpr double kUnresolved = 0.1;
 
@@ -232,6 +236,15 @@ StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& 
 }
 
 }  // namespace
+
+void choose_elasticity(Scene& scene) {
+  if (!slivers_rule(scene.blocks)) return;
+  const double crossing = crossing_time(scene.blocks);
+  for (StageInput& stage : scene.model.stages)
+    if (stage.elasticity_auto && stage.kind == StageKind::kDynamic &&
+        period_of_histories(scene, stage) >= kSlow * crossing)
+      stage.implicit = true;
+}
 
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::vector<StagePlan> plans;

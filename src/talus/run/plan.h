@@ -32,6 +32,10 @@ struct StagePlan {
   bool operator==(const StagePlan&) const = default;
 };
 
+/// Dynamic stages that leave it to the model: elasticity becomes implicit where a few slivers would set the step, and all that
+/// shakes or pushes is slow beside that of the others (theory 4.9).
+void choose_elasticity(Scene& scene);
+
 /// Plans every stage of the scene. A step above the stable limit, or none where none can be derived, is a
 /// finding.
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings);

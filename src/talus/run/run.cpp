@@ -783,6 +783,7 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
   findings.throw_if_errors();
   run.scene = build_scene(std::move(model), std::move(layout), findings);
   findings.throw_if_errors();
+  choose_elasticity(run.scene);
   run.plans = plan_stages(run.scene, findings);
   check_resolution(run.scene, findings);
   check_plausible(run.scene, run.plans, findings);

@@ -55,8 +55,9 @@ bool ties_without_give(const Scene& scene) {
 // step of all; share of the blocks that are few, and what counts as small among them.
 constexpr double kRuled = 1.0 / 7, kFew = 0.25, kSmall = 0.25;
 
-// Whether a few slivers would make explicit elasticity several times dearer, or worse. Where small blocks are
-// many, as in a graded mesh, they are what waves travel through.
+}  // namespace
+
+// Where small blocks are many, as in a graded mesh, they are what waves travel through.
 bool slivers_rule(const BlockSet& blocks) {
   std::vector<double> step;
   for (int i = 0; i < blocks.count; ++i)
@@ -68,8 +69,6 @@ bool slivers_rule(const BlockSet& blocks) {
   return step.front() < kRuled * median &&
          (small == 1 || static_cast<double>(small) < kFew * static_cast<double>(step.size()));
 }
-
-}  // namespace
 
 Scene build_scene(Model model, Layout layout, Findings& findings) {
   TALUS_ASSERT(layout.sound);

@@ -41,6 +41,9 @@ Scene build_scene(Model model, Layout layout, Findings& findings);
 /// The same; throws InputError instead.
 Scene build_scene(Model model, Layout layout);
 
+/// Whether a few slivers would make explicit elasticity several times dearer, or worse (theory 4.9).
+bool slivers_rule(const BlockSet& blocks);
+
 /// State at the start of the run: reference shape, initial velocities, nothing broken.
 State start_state(const Scene& scene);
 

@@ -199,6 +199,25 @@ TEST_CASE(
   CHECK(warned.render().find("0.05 s is long for history \"wave\"") != std::string::npos);
 }
 
+TEST_CASE(
+    "resolution: slivers make elasticity implicit where a hundred steps go into the shortest period, else not") {
+  const auto implicit = [](double steps, const std::string& sliver) {
+    const double wave = 2 * 2.0 * steps * ricker_highest();  // crosses two blocks of 2 m in a step [m/s]
+    std::string text = row_of(3);
+    const std::string young = "\"450 MPa\"";
+    // c11 = young (1 - nu)/((1 + nu)(1 - 2 nu))
+    text.replace(text.find(young), young.size(),
+                 fmt::format("{:.17g}", wave * wave * 2000 * 1.25 * 0.5 / 0.75));
+    Findings findings("m.toml", text + sliver);
+    return prepare_run("m.toml", text + sliver, {}, findings).scene.model.stages.at(0).implicit;
+  };
+  const std::string sliver =
+      "[[block]]\nname = \"sliver\"\npolygon = [[9, 0], [11, 0], [11, 0.05], [9, 0.05]]\nmaterial = \"soil\"\n";
+  CHECK(implicit(115, sliver));
+  CHECK(!implicit(85, sliver));
+  CHECK(!implicit(115, ""));
+}
+
 TEST_CASE("resolution: every way to shake or push is seen, once per history; rigid blocks carry no waves") {
   std::string text = row_of(3);
   const size_t formula = text.find("expression"), line_end = text.find('\n', formula);

@@ -75,7 +75,7 @@ def hard_step(talus, seed, cpu, folder):
     steps = glob.glob(out + "/step_*.json")
     allowed = re.search(r"allowed ([-+.e0-9]+) m", " ".join(done.stderr.split()))
     if steps and allowed: return steps[0], float(allowed[1])
-    if done.returncode in (0, 5, 6, -24): return None
+    if done.returncode in (0, 5, 6, 8, 152, -24): return None
     sys.exit(f"seed {seed}: exit {done.returncode}: {done.stderr[-400:]}")
 
 

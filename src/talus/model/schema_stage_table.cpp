@@ -87,7 +87,8 @@ SectionSpec stage_section() {
             "(theory 14.1), each from rest to what is nearly the balance of its loads, that grow from "
             "`time_step` (\"auto\": 20 ms) to 64 times that, and are halved where one fails; `relaxation` is "
             "then, unless given, over the first eight. What slides on by one and a half of its size, and is a "
-            "hundredth of all that can move, is a mechanism and ends the run (exit code 6). `auto`: implicit, "
+            "hundredth of all that can move, is a mechanism and ends the run (exit code 6), and so does what is the fastest at "
+            "the end of damped motion and has slid half its size. `auto`: implicit, "
             "from 20 ms on, and what has no balance near and is no mechanism is followed by damped motion, in steps "
             "of `time_step`; dynamic where explicit elasticity, damping, `safety` or `moment_clamp` say how blocks "
             "shall move, and where joints without stiffness have cohesion or tensile strength."},
@@ -160,7 +161,7 @@ SectionSpec stage_section() {
         .doc =
             "Static stages in steps from rest: true: all blocks have to rest. false: blocks that fall or slide on without an "
             "end, less than a hundredth of the area in all, are named, and the stage ends when the others rest; "
-            "they go on in the stages after it."},
+            "they weigh nothing from then on, what moves pushes them aside, and they go on in the stages after it."},
        {.name = "excavate",
         .type = K::kTexts,
         .refers_to = "block, grid, region or kept opening",

@@ -238,12 +238,14 @@ StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& 
 }  // namespace
 
 void choose_elasticity(Scene& scene) {
-  if (!slivers_rule(scene.blocks)) return;
+  if (scene.model.formulation != Formulation::kContactForces || !slivers_rule(scene.blocks)) return;
   const double crossing = crossing_time(scene.blocks);
-  for (StageInput& stage : scene.model.stages)
-    if (stage.elasticity_auto && stage.kind == StageKind::kDynamic &&
-        period_of_histories(scene, stage) >= kSlow * crossing)
-      stage.implicit = true;
+  for (StageInput& stage : scene.model.stages) {
+    if (!stage.elasticity_auto || stage.kind != StageKind::kDynamic) continue;
+    // what strikes without a history has waves as short as a block
+    const double period = period_of_histories(scene, stage);
+    if (std::isfinite(period) && period >= kSlow * crossing) stage.implicit = true;
+  }
 }
 
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <future>
@@ -134,12 +135,13 @@ class Search {
 
   // From a state that stands under this.
   Search(const PreparedRun& prepared, const Workers& workers, const SafetySettings& settings,
-         std::shared_ptr<const Base> stood, double stands)
+         std::shared_ptr<const Base> stood, double stands, const std::atomic<bool>* given_up)
       : prepared_(prepared),
         workers_(workers),
         settings_(settings),
         input_(prepared.scene.model.safety),
         full_(joints_after(prepared.scene.model, safety_stages(prepared.scene.model))),
+        given_up_by_(given_up),
         base_(stood),
         before_(stood) {
     result_.stands = stands;
@@ -153,22 +155,24 @@ class Search {
       return ended(SafetyStatus::kFound);
     }
     if (input_.by == SafetyBy::kStrength && !stand()) return ended(SafetyStatus::kBelow);
+    const std::shared_ptr<const Base> stood = base_;
+    const double begun = result_.stands;
     // the same by longer strides, beside it where a processor has nothing to do; its trials are not told
-    const auto longer = [this, stood = base_, begun = result_.stands](const Workers& workers) {
-      SafetySettings quiet;
-      quiet.jobs = settings_.jobs;
-      Search coarse(prepared_, workers, quiet, stood, begun);
+    SafetySettings quiet;
+    quiet.jobs = settings_.jobs;
+    const auto by_longer = [&, alone = Workers(1)](bool beside) {
+      Search coarse(prepared_, beside ? alone : workers_, quiet, stood, begun, &given_up_);
       return coarse.climb(2) == SafetyStatus::kFound ? coarse.result_.factor() : 0.0;
     };
     std::future<double> coarse;
-    if (processors() > workers_.threads())
-      coarse =
-          std::async(std::launch::async | std::launch::deferred, [&longer] { return longer(Workers(1)); });
+    const struct GivesUp {
+      std::atomic<bool>& flag;
+      ~GivesUp() { flag = true; }  // before the future is waited for
+    } gives_up{given_up_};
+    if (processors() > std::max(workers_.threads(), settings_.jobs))
+      coarse = std::async(std::launch::async | std::launch::deferred, by_longer, true);
     const SafetyStatus status = climb(1);
-    const double by_longer = coarse.valid()                   ? coarse.get()
-                             : status == SafetyStatus::kFound ? longer(workers_)
-                                                              : 0;
-    if (status == SafetyStatus::kFound) result_.coarse = by_longer;
+    if (status == SafetyStatus::kFound) result_.coarse = coarse.valid() ? coarse.get() : by_longer(false);
     return ended(status);
   }
 
@@ -367,7 +371,7 @@ class Search {
     const State& state = base.state;
     const Electorate electorate(scene);
     const std::unique_ptr<Observer> keeper = kept ? settings_.keeper(scene, *kept) : nullptr;
-    Watch watch(scene, electorate, base.since, keeper.get());
+    Watch watch(scene, electorate, base.since, keeper.get(), given_up_by_ ? *given_up_by_ : never_);
     const RunResult run = go(watch);
     if (keeper && settings_.kept) settings_.kept(*keeper, run);
     const StageResult& last = run.stages.back();
@@ -403,6 +407,8 @@ class Search {
   const SafetyInput& input_;
   const std::vector<JointProperty> full_;  // strength at the end of the stages, not divided
   SafetyResult result_;
+  std::atomic<bool> given_up_ = false;  // the search by longer strides
+  const std::atomic<bool> never_ = false, *const given_up_by_ = nullptr;
   std::shared_ptr<const Base> base_, before_,
       failed_from_;  // now; of the last trial that stands, and that fails
 };

@@ -1,6 +1,8 @@
 #pragma once
 // Who votes in a trial of `talus safety`, and who has failed. Theory: docs/theory.md section 14.8.
 
+#include <atomic>
+
 #include "talus/run/run.h"
 
 namespace talus {
@@ -19,16 +21,18 @@ struct Electorate {
 class Watch : public Observer {
  public:
   /// @param since   displacements from which ways are counted; empty: those at the start of each stage
-  /// @param second  shown all; none: nullptr
-  Watch(const Scene& scene, const Electorate& electorate, const std::vector<Vec2>& since, Observer* second)
-      : electorate_(electorate), scene_(scene), since_(since), second_(second) {}
+  /// @param second   shown all; none: nullptr
+  /// @param given_up  ends it, too, when it becomes true
+  Watch(const Scene& scene, const Electorate& electorate, const std::vector<Vec2>& since, Observer* second,
+        const std::atomic<bool>& given_up)
+      : electorate_(electorate), scene_(scene), since_(since), second_(second), given_up_(given_up) {}
 
   void stage_begins(const Scene& scene, int stage, const StagePlan& plan) override;
   void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
                          const std::string& why) override;
   void at(const Instant& i) override;
   void fails(const Instant& i) override;
-  bool stop() override { return failed(); }
+  bool stop() override { return failed() || given_up_; }
 
   bool failed() const { return failed_ || fell_; }
   /// Whether nothing that votes keeps the last stage from rest.
@@ -44,6 +48,7 @@ class Watch : public Observer {
   const Scene& scene_;
   const std::vector<Vec2>& since_;
   Observer* second_;
+  const std::atomic<bool>& given_up_;
   bool failed_ = false, beyond_ = false, fell_ = false;
   double farthest_ = 0, begin_ = 0, peak_ = 0, speed_left_ = 0;
   int worst_ = -1;

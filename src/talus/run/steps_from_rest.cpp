@@ -48,7 +48,7 @@ void StepsFromRest::go_on(double goal, double first, int64_t steps) {
 
 // Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
 // they went; where that does not help, it was not solved to the tolerance or they go too far it is taken with half the length
-// (theory 14.1). The shortest may be loose: by then all solvers have tried.
+// (theory 14.2). The shortest may be loose: by then all solvers have tried.
 std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double begin, double first,
                                               double goal, StepSettings& settings, double& advance) {
   const double shortest = first / kMostShortened;

@@ -71,11 +71,6 @@ std::string Unrest::why_no_rest(const StageInput& stage, double elapsed) const {
       stage.name);
 }
 
-bool Unrest::goes_faster(const StageInput& stage, double elapsed) const {
-  return !conventional && !stage.from_rest && !look.place.empty() && last.energy.moving > look.moving &&
-         goes_anywhere(std::max(stage.duration - elapsed, stage.duration));
-}
-
 // Whether some block, at the pace it had since the last look, gets anywhere in `time`: what chatters is fast and stays.
 bool Unrest::goes_anywhere(double time) const {
   const double since = state.time - look.time;

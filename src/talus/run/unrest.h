@@ -12,7 +12,6 @@ namespace talus {
 struct RestLook {
   double time = 0;  // [s]
   std::vector<Vec2> place;
-  double moving = 0;  // kinetic energy [J]
 };
 
 /// The force that the error of a step is on the block with the largest unbalanced force [N].
@@ -32,9 +31,6 @@ struct Unrest {
   /// @param elapsed  since it began [s]
   /// @param on_path  where on its path, after a comma; "": it has none
   std::string text(const StageInput& stage, double elapsed, int64_t steps, const std::string& on_path) const;
-
-  /// Whether damped blocks are on their way somewhere, and faster than at that look.
-  bool goes_faster(const StageInput& stage, double elapsed) const;
 
  private:
   std::string why_no_rest(const StageInput& stage, double elapsed) const;

@@ -216,6 +216,11 @@ TEST_CASE(
   CHECK(implicit(115, sliver));
   CHECK(!implicit(85, sliver));
   CHECK(!implicit(115, ""));
+  // no history at all: what strikes has waves as short as a block
+  std::string strikes = row_of(3) + sliver;
+  strikes.erase(strikes.find("x = { velocity = \"wave\" }\n"), 26);
+  Findings findings("m.toml", strikes);
+  CHECK(!prepare_run("m.toml", strikes, {}, findings).scene.model.stages.at(0).implicit);
 }
 
 TEST_CASE("resolution: every way to shake or push is seen, once per history; rigid blocks carry no waves") {

@@ -8,7 +8,9 @@ is run by damped motion with 30 sweeps a step and no other solver, which leaves 
 solve; `talus replay` must solve them to the tolerance of the model (or to its `limit`: told as loose). Prints who solved how many, in how many
 iterations. Exit 1 when one is not solved.
 """
-import argparse, collections, glob, json, math, os, random, re, resource, shutil, subprocess, sys, tempfile
+import argparse, collections, glob, json, math, os, random, re, shutil, subprocess, sys, tempfile
+
+import rock
 
 
 def model(seed):
@@ -24,26 +26,15 @@ def model(seed):
     if not hard:
         k = 5 * 10 ** r.uniform(0, 1)
         joint += f'normal_stiffness = "{k:.1f} GPa/m"\nshear_stiffness = "{0.5 * k:.1f} GPa/m"\n'
-    stress = f'[in_situ]\nlevel = {size + 0.1:.2f}\npressure = "{r.uniform(0.5, 8):.2f} MPa"\ndensity = "2700 kg/m3"\nk0 = {r.uniform(0.4, 2):.2f}\n' if r.random() < 0.5 else ""
+    stress = rock.ground(size + 0.1, f"{r.uniform(0.5, 8):.2f} MPa", r.uniform(0.4, 2)) if r.random() < 0.5 else ""
     joints = "".join(f'[[joint_set]]\nname = "set {k}"\nangle = "{a:.1f} deg"\nspacing = "{spacing * r.uniform(0.7, 1.4):.2f} m"\noffset = "{r.uniform(0, spacing):.2f} m"\n'
                      for k, a in enumerate(angles))
     if stress:
         shape, sides = [[0, 0], [size, 0], [size, size], [0, size]], ["base", "right", "top", "left"]
-        held = ("base", "right", "left")
     else:  # a slope
         x = size / math.tan(math.radians(r.uniform(45, 80)))
         shape, sides = [[-size, -0.3 * size], [1.5 * size, -0.3 * size], [1.5 * size, size], [x, size], [0, 0], [-size, 0]], ["base", "right", "top", "face", "toe", "left"]
-        held = ("base", "right", "left")
-    supports = "".join(f'[[support]]\nname = "{n}"\nalong = "{n}"\n' + ("" if n == "base" else 'x = "fixed"\ny = "free"\n') for n in held)
-    return f'''talus = 1
-[model]
-gravity = [0, -9.81]
-[material.rock]
-density = "2700 kg/m3"
-young = "{r.uniform(5, 40):.1f} GPa"
-poisson = 0.25
-[joint.natural]
-{joint}[contact]
+    return f'''{rock.head(r)}{joint}[contact]
 joint = "natural"
 {stress}[[region]]
 name = "rock"
@@ -51,7 +42,7 @@ polygon = {[[round(a, 3) for a in p] for p in shape]}
 sides = {json.dumps(sides)}
 material = "rock"
 joint = "natural"
-{joints}{supports}[[stage]]
+{joints}{rock.supports()}[[stage]]
 name = "rest"
 kind = "static"
 integration = "dynamic"
@@ -70,8 +61,7 @@ def hard_step(talus, seed, cpu, folder):
     """The file of the step's equations and the errors [m] that are allowed, or None: all were solved in time."""
     file, out = os.path.join(folder, "m.toml"), os.path.join(folder, f"run{seed}")
     with open(file, "w") as f: f.write(model(seed))
-    done = subprocess.run([talus, "run", file, "-o", out, "--threads", "1"], capture_output=True, text=True,
-                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 2)))
+    done = rock.run(talus, file, out, cpu)
     steps = glob.glob(out + "/step_*.json")
     allowed = re.search(r"allowed ([-+.e0-9]+) m", " ".join(done.stderr.split()))
     if steps and allowed: return steps[0], float(allowed[1])

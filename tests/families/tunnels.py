@@ -6,7 +6,9 @@ tunnels.py TALUS [--seeds A-B] [--jobs N] [--cpu SECONDS] [--least SHARE]
 20 to 160 blocks, joints of 5 to 50 GPa/m, in-situ stress, two static stages at their defaults. Passes: exit 0 and valid, or exit 6
 with the farthest block named. Exit 1 when fewer than SHARE (29 of 30) pass; one line for each that does not.
 """
-import argparse, concurrent.futures, math, os, random, resource, subprocess, sys, tempfile
+import argparse, concurrent.futures, math, os, random, sys, tempfile
+
+import rock
 
 
 def model(seed):
@@ -23,27 +25,12 @@ def model(seed):
     shape = r.choice(("horseshoe", "circle"))
     opening = (f'shape = "horseshoe"\nwidth = "{height * r.uniform(0.9, 1.2):.2f} m"\nheight = "{height:.2f} m"\nsegments = 8\n'
                if shape == "horseshoe" else f'shape = "circle"\ndiameter = "{height:.2f} m"\nsegments = 16\n')
-    sides = "".join(f'[[support]]\nname = "{n}"\nalong = "{n}"\n' + ('' if n == "base" else 'x = "fixed"\ny = "free"\n')
-                    for n in ("base", "right", "left"))
-    return f'''talus = 1
-[model]
-gravity = [0, -9.81]
-[material.rock]
-density = "2700 kg/m3"
-young = "{r.uniform(5, 40):.1f} GPa"
-poisson = 0.25
-[joint.natural]
-friction_angle = "{r.uniform(20, 45):.1f} deg"
+    return f'''{rock.head(r)}friction_angle = "{r.uniform(20, 45):.1f} deg"
 normal_stiffness = "{kn:.1f} GPa/m"
 shear_stiffness = "{kn * r.uniform(0.3, 1):.1f} GPa/m"
 [contact]
 joint = "natural"
-[in_situ]
-level = {size:.2f}
-pressure = "{pressure:.3f} MPa"
-density = "2700 kg/m3"
-k0 = {k0:.2f}
-[[load]]
+{rock.ground(size, f"{pressure:.3f} MPa", k0)}[[load]]
 name = "overburden"
 along = "top"
 pressure = "{pressure:.3f} MPa"
@@ -57,7 +44,7 @@ joint = "natural"
 name = "tunnel"
 center = [{size / 2:.2f}, {size / 2:.2f}]
 {opening}rock = "kept"
-{sides}[[stage]]
+{rock.supports()}[[stage]]
 name = "rest"
 kind = "static"
 duration = "10 s"
@@ -74,8 +61,7 @@ def run(talus, seed, cpu):
     with tempfile.TemporaryDirectory() as folder:
         file, out = os.path.join(folder, "m.toml"), os.path.join(folder, "out")
         with open(file, "w") as f: f.write(model(seed))
-        done = subprocess.run([talus, "run", file, "-o", out, "--threads", "1"], capture_output=True, text=True,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 2)))
+        done = rock.run(talus, file, out, cpu)
     said = " ".join(done.stderr.split())
     return "" if done.returncode == 0 or done.returncode == 6 and 'farthest "' in said else f"exit {done.returncode}: {said[-300:]}"
 

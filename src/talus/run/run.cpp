@@ -13,15 +13,10 @@
 #include "talus/base/memory_reserve.h"
 #include "talus/base/rank.h"
 #include "talus/contact/pairs.h"
-#include "talus/cut/check_places.h"
-#include "talus/model/read_model.h"
 #include "talus/penalty/penalty_settings.h"
 #include "talus/penalty/penalty_step.h"
-#include "talus/run/check_monitors.h"
 #include "talus/run/mechanism.h"
 #include "talus/run/path.h"
-#include "talus/run/plausible.h"
-#include "talus/run/resolution.h"
 #include "talus/run/steps_from_rest.h"
 #include "talus/run/unrest.h"
 #include "talus/step/change.h"
@@ -733,21 +728,6 @@ RunResult continue_stages(Scene& scene, const std::vector<StagePlan>& plans, con
   return run.result();
 }
 
-size_t stages_until(const Model& model, const std::string& name) {
-  const auto of_name = [&name](const StageInput& stage) { return stage.name == name; };
-  const auto at = std::find_if(model.stages.begin(), model.stages.end(), of_name);
-  return at == model.stages.end() ? 0 : static_cast<size_t>(at - model.stages.begin()) + 1;
-}
-
-void end_after(PreparedRun& prepared, size_t stages) {
-  TALUS_ASSERT(stages > 0 && stages <= prepared.plans.size());
-  // hard contacts give by the shortest step of the whole
-  ContactGive& give = prepared.scene.give;
-  for (const StagePlan& plan : prepared.plans)
-    give.shortest_step = give.shortest_step > 0 ? std::min(give.shortest_step, plan.dt) : plan.dt;
-  prepared.plans.resize(stages);
-}
-
 int threads_for(int blocks) {
   // below this many blocks to a thread the handing over of work costs as much as it gains
   constexpr int kBlocksPerThread = 2000;
@@ -772,32 +752,6 @@ std::string profile_text(const Profile& p, int threads) {
              static_cast<double>(p.points) / steps, static_cast<double>(p.sweeps) / steps,
              static_cast<double>(p.asks) / steps, static_cast<double>(p.sought) / steps,
              static_cast<double>(p.layouts) / steps);
-}
-
-PreparedRun prepare_run(const std::string& file, const std::string& text,
-                        const std::vector<std::string>& overrides, Findings& findings, Cut* keep) {
-  PreparedRun run;
-  Model model = read_model(file, text, overrides, findings);
-  if (!model.shapes_readable) findings.throw_if_errors();
-  if (model.stages.empty())
-    findings.error({1, 1, ""}, "stage", "the file has no [[stage]]: nothing would be run",
-                   "add [[stage]] with name, kind = \"dynamic\" and duration");
-  const int errors = findings.error_count();
-  Cut cut = cut_or_read(model, findings);
-  if (findings.error_count() > errors)
-    findings.throw_if_errors();  // without blocks all else would look wrong
-  Layout layout = checked_layout(model, cut, findings);
-  check_monitors(model, layout, findings);
-  if (keep) *keep = std::move(cut);
-  findings.throw_if_errors();
-  run.scene = build_scene(std::move(model), std::move(layout), findings);
-  findings.throw_if_errors();
-  choose_elasticity(run.scene);
-  run.plans = plan_stages(run.scene, findings);
-  check_resolution(run.scene, findings);
-  check_plausible(run.scene, run.plans, findings);
-  findings.throw_if_errors();
-  return run;
 }
 
 }  // namespace talus

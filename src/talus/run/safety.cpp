@@ -135,13 +135,12 @@ class Search {
 
   // From a state that stands under this.
   Search(const PreparedRun& prepared, const Workers& workers, const SafetySettings& settings,
-         std::shared_ptr<const Base> stood, double stands, const std::atomic<bool>* given_up)
+         std::shared_ptr<const Base> stood, double stands)
       : prepared_(prepared),
         workers_(workers),
         settings_(settings),
         input_(prepared.scene.model.safety),
         full_(joints_after(prepared.scene.model, safety_stages(prepared.scene.model))),
-        given_up_by_(given_up),
         base_(stood),
         before_(stood) {
     result_.stands = stands;
@@ -160,19 +159,20 @@ class Search {
     // the same by longer strides, beside it where a processor has nothing to do; its trials are not told
     SafetySettings quiet;
     quiet.jobs = settings_.jobs;
-    const auto by_longer = [&, alone = Workers(1)](bool beside) {
-      Search coarse(prepared_, beside ? alone : workers_, quiet, stood, begun, &given_up_);
+    const bool beside = processors() > std::max(workers_.threads(), settings_.jobs);
+    const Workers alone(1);
+    Search coarse(prepared_, beside ? alone : workers_, quiet, stood, begun);
+    const auto by_longer = [&coarse] {
       return coarse.climb(2) == SafetyStatus::kFound ? coarse.result_.factor() : 0.0;
     };
-    std::future<double> coarse;
+    const auto when = beside ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    std::future<double> longer = std::async(when, by_longer);
     const struct GivesUp {
       std::atomic<bool>& flag;
-      ~GivesUp() { flag = true; }  // before the future is waited for
-    } gives_up{given_up_};
-    if (processors() > std::max(workers_.threads(), settings_.jobs))
-      coarse = std::async(std::launch::async | std::launch::deferred, by_longer, true);
+      ~GivesUp() { flag = true; }  // before the future waits for it
+    } gives_up{coarse.given_up_};
     const SafetyStatus status = climb(1);
-    if (status == SafetyStatus::kFound) result_.coarse = coarse.valid() ? coarse.get() : by_longer(false);
+    if (status == SafetyStatus::kFound) result_.coarse = longer.get();
     return ended(status);
   }
 
@@ -371,7 +371,7 @@ class Search {
     const State& state = base.state;
     const Electorate electorate(scene);
     const std::unique_ptr<Observer> keeper = kept ? settings_.keeper(scene, *kept) : nullptr;
-    Watch watch(scene, electorate, base.since, keeper.get(), given_up_by_ ? *given_up_by_ : never_);
+    Watch watch(scene, electorate, base.since, keeper.get(), given_up_);
     const RunResult run = go(watch);
     if (keeper && settings_.kept) settings_.kept(*keeper, run);
     const StageResult& last = run.stages.back();
@@ -407,8 +407,7 @@ class Search {
   const SafetyInput& input_;
   const std::vector<JointProperty> full_;  // strength at the end of the stages, not divided
   SafetyResult result_;
-  std::atomic<bool> given_up_ = false;  // the search by longer strides
-  const std::atomic<bool> never_ = false, *const given_up_by_ = nullptr;
+  std::atomic<bool> given_up_ = false;  // nobody asks for it any more
   std::shared_ptr<const Base> base_, before_,
       failed_from_;  // now; of the last trial that stands, and that fails
 };

@@ -169,6 +169,9 @@ TEST_CASE("command new: every beginning runs as it is" * doctest::test_suite("op
   CHECK(shell(f, "$talus new x --from castle").code == 2);
 }
 
+// They run the verification cases, which the sanitizer build goes without.
+TEST_SUITE_BEGIN("optimised");
+
 TEST_CASE("command verify: a table of what the cases reach") {
   const Folder f;
   const Outcome o = shell(f, "$talus verify \"free fall\"");
@@ -196,6 +199,8 @@ TEST_CASE("command verify --formulation: a column beside the cases, by case, and
   has(bolts.text, "- A8b anchored bolt across a sliding joint: bolt.rod: there are no bolts");
   CHECK(shell(f, "$talus verify --formulation springs").code == 2);
 }
+
+TEST_SUITE_END();
 
 TEST_CASE("command verify: without its cases it says what builds them") {
   const Folder f;

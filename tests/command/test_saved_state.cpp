@@ -229,7 +229,9 @@ TEST_CASE(
   const auto stage = nlohmann::json::parse(read_text_file(folder / "out/summary.json"))["stages"][0];
   CHECK(stage["at_rest"] == true);
   CHECK(stage["left_out_share"].get<double>() == approx(0.01 / 6.01));
-  const Outcome waits = shell(folder, "$talus run model.toml -o waits --set stage.rest.strict_rest=true");
+  const Outcome waits =
+      shell(folder,
+            "$talus run model.toml -o waits --set stage.rest.strict_rest=true --set output.save_interval=5");
   has(waits.text, "followed by damped motion");
   const Outcome on = shell(folder, "$talus run model.toml --from out/saved/stage_01.h5 -o on");
   INFO(on.text);

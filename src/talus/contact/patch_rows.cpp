@@ -110,13 +110,10 @@ class PatchRows {
   void add_mixed_compliance(const Patch& c, const JointLaw& law, double half_area,
                             const std::array<double, 2>& u, PointRows& p) const {
     if (c.other_share == 0) return add_compliance(law, half_area, true, clock_, u, p);
-    const JointLaw& other = c.other_joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.other_joint)];
     const double k = clock_.position_factor();
     for (int i = 0; i < 2; ++i) {
       if (!law.is_soft(i)) continue;
-      const double second = other.is_soft(i) ? other.stiffness(i, half_area) : law.stiffness(i, half_area);
-      const double mixed = (1 - c.other_share) * law.stiffness(i, half_area) + c.other_share * second;
-      p.row[i].compliance = 2 * k / (mixed * clock_.dt * clock_.dt_kick);
+      p.row[i].compliance = 2 * k / (mixed_stiffness(w_.laws, c, i, half_area) * clock_.dt * clock_.dt_kick);
       p.row[i].bias = k * p.row[i].bias - clock_.old_share() * u[static_cast<size_t>(i)];
     }
   }

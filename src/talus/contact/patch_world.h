@@ -17,4 +17,15 @@ struct PatchWorld {
   const std::vector<JointLaw>& laws;
 };
 
+/// Stiffness of a patch along the normal (0) or the tangent (1) [N/m]: of its joint, mixed with the other one's where two
+/// meet (theory 3.8).
+/// @pre  its joint is elastic in that direction
+inline double mixed_stiffness(const std::vector<JointLaw>& laws, const Patch& patch, int i, double area) {
+  const double one = laws[static_cast<size_t>(patch.joint)].stiffness(i, area);
+  if (patch.other_share == 0 || patch.other_joint < 0) return one;
+  const JointLaw& other = laws[static_cast<size_t>(patch.other_joint)];
+  return other.is_soft(i) ? (1 - patch.other_share) * one + patch.other_share * other.stiffness(i, area)
+                          : one;
+}
+
 }  // namespace talus

@@ -208,14 +208,15 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
   return report;
 }
 
-double unseen_overlap(const Scene& scene, double time_end, StepWork& work, const State& state,
-                      StepReport report) {
-  const auto is_elastic = [](const JointLaw& law) { return law.is_soft(0); };
-  if (!scene.by_patches() || std::all_of(scene.laws.begin(), scene.laws.end(), is_elastic)) return 0;
+Unseen unseen(const Scene& scene, double time_end, StepWork& work, const State& state, StepReport report) {
+  if (!scene.by_patches()) return {};
+  const double stored = work.patches.unseen().stored;
   State end = state;
   drift(scene, time_end, work, end, report);
   seek_contacts(scene, work, end, report);
-  return work.patches.born();
+  Unseen found = work.patches.unseen();
+  found.stored -= stored;
+  return found;
 }
 
 }  // namespace talus

@@ -1,0 +1,62 @@
+// A step from rest ends where joints hold no more than was done on them: a corner that goes into a face finds more of it than
+// its first row had (theory 14.2).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "support/relative.h"
+#include "support/run_case.h"
+
+namespace test_unpaid {
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+// A block on two feet, which touch a floor by their corners alone.
+std::string two_feet(double stiffness, double time_step) {
+  return fmt::format(
+      "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\n[joint.j]\n"
+      "friction_angle = \"30 deg\"\nnormal_stiffness = {0}\nshear_stiffness = {0}\n[contact]\njoint = \"j\"\n"
+      "[[block]]\nname = \"floor\"\npolygon = [[-3, -1], [3, -1], [3, 0], [-3, 0]]\nmaterial = \"m\"\nkind = \"fixed\"\n"
+      "[[block]]\nname = \"trestle\"\npolygon = [[-1, 0], [0, 0.5], [1, 0], [1.5, 1], [-1.5, 1]]\nmaterial = \"m\"\n"
+      "kind = \"rigid\"\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 10\ntime_step = {1}\nunbalanced = 1e-9\n",
+      stiffness, time_step);
+}
+
+struct Stood {
+  double sunk = 0, given = 0;
+  int64_t steps = 0;
+};
+
+Stood stood(double stiffness, double time_step) {
+  Stood out;
+  double largest = 0;
+  const CaseResult r = run_case(two_feet(stiffness, time_step), {}, [&](const Instant& i) {
+    const Energy& e = i.report.energy;
+    largest = std::max(largest, e.largest());
+    out.given = std::max(out.given, e.work[Cause::kJoints]);
+  });
+  const StageResult& stage = r.run.stages.at(0);
+  CHECK(stage.at_rest);
+  CHECK(!stage.followed());
+  out.sunk = -r.state.displacement[1].y, out.steps = stage.steps, out.given /= largest;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("joints of corners that go into a face from rest hold no more than was done on them") {
+  // from a softer floor, into which the feet go as far as the first step takes them, to one a hundred times stiffer
+  for (const double stiffness : {1e9, 1e10, 1e11}) {
+    CAPTURE(stiffness);
+    const Stood whole = stood(stiffness, 0.02), half = stood(stiffness, 0.01);
+    CHECK(whole.given <= 1e-3);
+    CHECK(whole.steps <= 40);
+    CHECK(half.sunk == approx(whole.sunk).epsilon(1e-6));
+  }
+}
+
+}  // namespace test_unpaid

@@ -59,4 +59,27 @@ TEST_CASE("joints of corners that go into a face from rest hold no more than was
   }
 }
 
+TEST_CASE("a face that breaks at the end of a step from rest has borne its joint until then") {
+  // a block whose foot breaks in shear and slides against a soft stop
+  const auto block = [](const char* name, const char* polygon, const char* kind) {
+    return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n", name,
+                       polygon, kind);
+  };
+  const std::string text =
+      "talus = 1\n[model]\ngravity = [3, -10]\n[material.m]\ndensity = 2500\n[joint.foot]\n"
+      "friction_angle = \"10 deg\"\ncohesion = 100\nnormal_stiffness = 1e9\nshear_stiffness = 1e9\n"
+      "[joint.stop]\nfriction_angle = 0\nnormal_stiffness = 1e7\nshear_stiffness = 1e7\n[contact]\njoint = \"stop\"\n"
+      "[[contact_pair]]\nbetween = [\"floor\", \"block\"]\njoint = \"foot\"\n" +
+      block("floor", "[[0, -1], [3, -1], [3, 0], [0, 0]]", "fixed") +
+      block("block", "[[1, 0], [2, 0], [2, 1], [1, 1]]", "rigid") +
+      block("stop", "[[2, 0], [3, 0], [3, 1], [2, 1]]", "fixed") +
+      "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 10\n";
+  double shortest = 1;
+  const CaseResult r =
+      run_case(text, {}, [&](const Instant& i) { shortest = std::min(shortest, i.work.clock.dt); });
+  CHECK(r.run.stages.at(0).at_rest);
+  CHECK(r.state.face.at(0).broken);
+  CHECK(shortest == 0.02);
+}
+
 }  // namespace test_unpaid

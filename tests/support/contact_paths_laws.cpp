@@ -111,8 +111,8 @@ class PatchForces : public ContactForces {
                         per * rotation_minus_identity(to[i].turn - from[i].turn)};
     const std::vector<BlockRate> still(path_->blocks.size());
     for (size_t r = rows_.range(Family::kContact).begin; r < rows_.range(Family::kContact).end; ++r)
-      remember_patch(scene_->blocks, rows_, r, relative_velocity(rows_.points[r], state_.rate), still, kClock,
-                     state_);
+      remember_patch(scene_->blocks, scene_->laws, rows_, r, relative_velocity(rows_.points[r], state_.rate),
+                     still, kClock, state_);
   }
 
   PathForces summed() const {

@@ -17,6 +17,17 @@ inline void bound(const JointStrength& impulses, PointRows& p) {
   p.lower = -impulses.tension;
 }
 
+/// Turns a row whose bias is still position / dt into a compliant one (theory 4.6, eq. 4.1b).
+/// @param stiffness     of the area that the point stands for [N/m]
+/// @param damping_time  of its dashpots [s]
+inline void make_compliant(double stiffness, double damping_time, bool in_face, const StepClock& clock,
+                           double u_before, Row& row) {
+  const StepClock::JointWeights w = clock.joint_weights(damping_time);
+  const double one = w.position / (stiffness * clock.dt * clock.dt_kick);
+  row.compliance = in_face ? 2 * one : one;
+  row.bias = w.position * row.bias - w.old * u_before;
+}
+
 /// Turns rows of a point, whose biases are still position / dt, into compliant ones where a stiffness is
 /// given.
 /// @param half_area  area of joint that the point stands for [m2]
@@ -25,13 +36,10 @@ inline void bound(const JointStrength& impulses, PointRows& p) {
 /// @param u_before   relative velocity of the point half a step ago [m/s]
 inline void add_compliance(const JointLaw& law, double half_area, bool in_face, const StepClock& clock,
                            const std::array<double, 2>& u_before, PointRows& p) {
-  const double k = clock.position_factor();
-  for (int i = 0; i < 2; ++i) {
-    if (!law.is_soft(i)) continue;
-    const double one = k / (law.stiffness(i, half_area) * clock.dt * clock.dt_kick);
-    p.row[i].compliance = in_face ? 2 * one : one;
-    p.row[i].bias = k * p.row[i].bias - clock.old_share() * u_before[static_cast<size_t>(i)];
-  }
+  for (int i = 0; i < 2; ++i)
+    if (law.is_soft(i))
+      make_compliant(law.stiffness(i, half_area), 0, in_face, clock, u_before[static_cast<size_t>(i)],
+                     p.row[i]);
 }
 
 /// First guess of a compliant row (k = 0 normal, 1 tangential) of the two ends of a face: the impulses that
@@ -64,12 +72,13 @@ inline void guess_compliant(const std::array<const PointRows*, 2>& p,
   }
 }
 
-/// Elastic slip of point r of a compliant joint under the impulses of a step, along the tangent [m].
-inline double elastic_slip(const RowSet& rows, size_t r, const StepClock& clock) {
+/// Elastic slip of point r of a compliant joint under the impulses of a step, along the tangent; with dashpots what their
+/// velocity adds to it [m].
+inline double elastic_slip(const RowSet& rows, size_t r, const StepClock& clock, double damping_time = 0) {
   const PointRows& p = rows.points[r];
   double rate = p.row[1].compliance * rows.impulse[r][1];
   if (p.partner >= 0) rate += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
-  return -rate * (p.is_soft(1) ? clock.dt / clock.position_factor() : clock.dt);
+  return -rate * (p.is_soft(1) ? clock.dt / clock.joint_weights(damping_time).position : clock.dt);
 }
 
 }  // namespace talus

@@ -84,7 +84,7 @@ class PatchRows {
     }
     if (springs) {
       p.partner = static_cast<int>(end == 0 ? r + 1 : r - 1);
-      add_mixed_compliance(c, law, half_area, u, p);
+      add_joint(c, law, half_area, u, p);
     }
     rows_.impulse[r] = {c.force[end][0] * clock_.dt_kick, c.force[end][1] * clock_.dt_kick};
     rows_.owner[r] = {Family::kContact, static_cast<int>(2 * i + end)};
@@ -105,17 +105,13 @@ class PatchRows {
     return s;
   }
 
-  // The two ends share the compliance 2/(k b t) [[2, -1], [-1, 2]] (eq. 3.4), that of a foundation (eq. 4.1a); where two
-  // joints meet, k is mixed.
-  void add_mixed_compliance(const Patch& c, const JointLaw& law, double half_area,
-                            const std::array<double, 2>& u, PointRows& p) const {
-    if (c.other_share == 0) return add_compliance(law, half_area, true, clock_, u, p);
-    const double k = clock_.position_factor();
-    for (int i = 0; i < 2; ++i) {
-      if (!law.is_soft(i)) continue;
-      p.row[i].compliance = 2 * k / (mixed_stiffness(w_.laws, c, i, half_area) * clock_.dt * clock_.dt_kick);
-      p.row[i].bias = k * p.row[i].bias - clock_.old_share() * u[static_cast<size_t>(i)];
-    }
+  // The two ends share the compliance 2/(k b t) [[2, -1], [-1, 2]] (eq. 3.4), that of a foundation (eq. 4.1a).
+  void add_joint(const Patch& c, const JointLaw& law, double half_area, const std::array<double, 2>& u,
+                 PointRows& p) const {
+    for (int i = 0; i < 2; ++i)
+      if (law.is_soft(i))
+        make_compliant(mixed_stiffness(w_.laws, c, i, half_area), mixed_damping_time(w_.laws, c, i), true,
+                       clock_, u[static_cast<size_t>(i)], p.row[i]);
   }
 
   // Whether a face that has broken lay on the sides of a patch.
@@ -154,8 +150,9 @@ void add_patch_rows(const PatchWorld& world, const ContactGive& give, const Stat
 }
 
 // Eq. 4.7.
-void remember_patch(const BlockSet& blocks, const RowSet& rows, size_t r, const std::array<double, 2>& u,
-                    const std::vector<BlockRate>& before, const StepClock& clock, State& state) {
+void remember_patch(const BlockSet& blocks, const std::vector<JointLaw>& laws, const RowSet& rows, size_t r,
+                    const std::array<double, 2>& u, const std::vector<BlockRate>& before,
+                    const StepClock& clock, State& state) {
   const RowRange all = rows.range(Family::kContact);
   TALUS_ASSERT(all.size() == 2 * state.patches.size() && r >= all.begin && r < all.end);
   const PointRows& p = rows.points[r];
@@ -165,15 +162,20 @@ void remember_patch(const BlockSet& blocks, const RowSet& rows, size_t r, const 
   const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
   if (slid) {
     // the law holds at a place between the two ends of the step; what is left of the step goes on from there
-    const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock) : 0;
-    const double until = p.is_soft(1) ? clock.dt / clock.position_factor() *
-                                            (u[1] - clock.old_share() * relative_velocity(p, before)[1])
-                                      : clock.dt * u[1];
+    const double damping_time = p.is_soft(1) && !clock.from_rest ? mixed_damping_time(laws, c, 1) : 0;
+    const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock, damping_time) : 0;
+    const double u_before = p.is_soft(1) ? relative_velocity(p, before)[1] : 0;
+    const double until = p.is_soft(1) ? clock.way_until(u_before, u[1]) : clock.dt * u[1];
+    double stays = elastic;
     if (held) {
-      const double gone = c.stretch[end] + until - elastic;
+      // what slips takes its rate from the dashpots, too
+      const double gone =
+          (c.stretch[end] + until + damping_time * clock.rate_then(u_before, u[1]) - elastic) /
+          (1 + damping_time / clock.dt);
       c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
+      if (damping_time > 0) stays = c.stretch[end] + until - gone;
     }
-    c.stretch[end] = held ? elastic + clock.dt * u[1] - until : 0;
+    c.stretch[end] = held ? stays + clock.dt * u[1] - until : 0;
   } else {
     c.stretch[end] += clock.dt * u[1];
   }

@@ -19,7 +19,8 @@ void add_patch_rows(const PatchWorld& world, const ContactGive& give, const Stat
 /// Stores force, elastic slip at the end of the step and slip of the end of a patch that row r stands for in the state.
 /// @param u       its relative velocity after the kick [m/s]
 /// @param before  rates half a step ago
-void remember_patch(const BlockSet& blocks, const RowSet& rows, size_t r, const std::array<double, 2>& u,
-                    const std::vector<BlockRate>& before, const StepClock& clock, State& state);
+void remember_patch(const BlockSet& blocks, const std::vector<JointLaw>& laws, const RowSet& rows, size_t r,
+                    const std::array<double, 2>& u, const std::vector<BlockRate>& before,
+                    const StepClock& clock, State& state);
 
 }  // namespace talus

@@ -28,4 +28,15 @@ inline double mixed_stiffness(const std::vector<JointLaw>& laws, const Patch& pa
                           : one;
 }
 
+/// Damping time of the same [s]: that at which its dashpots take what those of the two joints would.
+/// @pre  its joint is elastic in that direction
+inline double mixed_damping_time(const std::vector<JointLaw>& laws, const Patch& patch, int i) {
+  const JointLaw& law = laws[static_cast<size_t>(patch.joint)];
+  if (patch.other_share == 0 || patch.other_joint < 0) return law.damping_time();
+  const JointLaw& other = laws[static_cast<size_t>(patch.other_joint)];
+  if (!other.is_soft(i)) return law.damping_time();
+  const double one = (1 - patch.other_share) * law.stiffness(i), two = patch.other_share * other.stiffness(i);
+  return (one * law.damping_time() + two * other.damping_time()) / (one + two);
+}
+
 }  // namespace talus

@@ -379,7 +379,10 @@ class PairSearch {
 
   // What dilates gets energy along the tangent, too.
   bool stores(const Patch& p) const {
-    return is_elastic(p.joint) && !w_.laws[static_cast<size_t>(p.joint)].dilates();
+    const auto keeps = [this](int joint) {
+      return is_elastic(joint) && !w_.laws[static_cast<size_t>(joint)].dilates();
+    };
+    return keeps(p.joint) && (p.other_share == 0 || keeps(p.other_joint));
   }
 
   // Energy of what was measured (theory 3.5).

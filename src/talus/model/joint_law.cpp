@@ -29,6 +29,7 @@ JointLaw::JointLaw(const JointProperty& joint)
       dilation_(std::tan(joint.dilation_angle)),
       dilation_slip_(joint.dilation_slip),
       stiffness_{joint.normal_stiffness, joint.shear_stiffness},
+      damping_time_(joint.damping_time),
       restitution_(joint.restitution),
       worn_(joint_kinds().at(static_cast<size_t>(joint.kind)).worn),
       own_(joint.own),
@@ -62,6 +63,11 @@ std::vector<JointDefect> JointLaw::defects(const JointProperty& joint) {
                    .text = "is only for hard joints without strength, weakening and dilation",
                    .hint = "leave out the stiffness, the strengths and the dilation"});
   if (joint.bonded) return out;
+  if (joint.damping_time > 0 && !law.is_soft())
+    out.push_back({.key = "damping_time",  // what they leave of a blow: eq. 4.1c
+                   .bound = "",
+                   .text = "has no meaning without a stiffness, which its dashpots stand beside",
+                   .hint = "give normal_stiffness and shear_stiffness, or leave it out"});
   if (joint.friction_scatter.given() && joint.dilation_angle > 0)
     out.push_back(
         {.key = "dilation_angle",

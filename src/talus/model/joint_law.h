@@ -70,6 +70,9 @@ class JointLaw {
   bool is_soft() const { return is_soft(0) || is_soft(1); }
   /// Stiffness of an area [N/m], 0: hard. [Pa/m] without one.
   double stiffness(int k, double area = 1) const { return stiffness_[k] * area; }
+  /// Time by which the force of its dashpots is that of its stiffness over the velocity [s]: they bear
+  /// stiffness x damping_time x velocity.
+  double damping_time() const { return damping_time_; }
   /// How far an area gives under a force [m], 0 where it is hard.
   double give(int k, double force, double area = 1) const {
     return is_soft(k) ? force / stiffness(k, area) : 0;
@@ -90,6 +93,7 @@ class JointLaw {
   JointStrength peak_, residual_;
   double dilation_ = 0, dilation_slip_ = 0;  // rise per slip; [m]
   double stiffness_[2] = {0, 0};             // [Pa/m]
+  double damping_time_ = 0;                  // [s]
   double restitution_ = -1;
   JointStrength (*worn_)(const JointLaw&, double) = nullptr;
   std::vector<double> own_;

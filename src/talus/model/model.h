@@ -40,6 +40,7 @@ struct JointProperty {
   double tensile_strength = 0;  // [Pa]
   double normal_stiffness = 0;  // kn [Pa/m], 0 = hard
   double shear_stiffness = 0;   // ks [Pa/m], 0 = hard
+  double damping_time = 0;      // [s] of dashpots beside kn and ks (eq. 4.1b)
   double restitution = -1;      // ratio of normal velocities, -1 = as the scheme gives (theory 7.1)
   double dilation_angle = 0;    // [rad] rise per slip
   double dilation_slip = std::numeric_limits<double>::infinity();             // [m] slip up to which it rises

@@ -198,6 +198,7 @@ class ModelReader : private SectionReader {
       j.where = f.where();
       j.normal_stiffness = f.get("normal_stiffness", 0.0);
       j.shear_stiffness = f.get("shear_stiffness", 0.0);
+      j.damping_time = f.get("damping_time", 0.0);
       j.restitution = f.get("restitution", -1.0);
       j.dilation_angle = f.get("dilation_angle", 0.0);
       j.dilation_slip = f.get("dilation_slip", j.dilation_slip);
@@ -206,9 +207,10 @@ class ModelReader : private SectionReader {
       j.residual_tensile_strength = f.get("residual_tensile_strength", 0.0);
       for (const JointDefect& d : JointLaw::defects(j))
         findings_.error(f.where(d.key), f.path_of(d.key), d.text, d.hint);
-      for (const char* key : {"friction_angle", "cohesion", "tensile_strength", "normal_stiffness",
-                              "shear_stiffness", "restitution", "dilation_angle", "dilation_slip",
-                              "residual_friction_angle", "residual_cohesion", "residual_tensile_strength"}) {
+      for (const char* key :
+           {"friction_angle", "cohesion", "tensile_strength", "normal_stiffness", "shear_stiffness",
+            "damping_time", "restitution", "dilation_angle", "dilation_slip", "residual_friction_angle",
+            "residual_cohesion", "residual_tensile_strength"}) {
         if (j.bonded && f.given(key))
           findings_.error(f.where(key), f.path_of(key),
                           "has no meaning for a bonded joint, which never breaks",

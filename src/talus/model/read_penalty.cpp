@@ -42,6 +42,9 @@ class PenaltyReader : private SectionReader {
         refuse_at(b.where, "block." + b.name + ".kind", "no block is driven; a support may follow a history");
     for (const JointProperty& j : model_.joints) {
       if (j.dilation_angle > 0) refuse_at(j.where, "joint." + j.name + ".dilation_angle", "no joint dilates");
+      if (j.damping_time > 0)
+        refuse_at(j.where, "joint." + j.name + ".damping_time",
+                  "damping is the scheme's own: no joint has dashpots");
       if (j.restitution >= 0)
         refuse_at(j.where, "joint." + j.name + ".restitution", "no restitution can be given");
       if (j.kind > kBondedJoint)

@@ -206,7 +206,12 @@ double closing_at(const Instant& i, size_t row) {
   const double before = relative_velocity(p, i.work.rate_before)[0],
                after = relative_velocity(p, i.state.rate)[0];
   if (!p.is_soft(0)) return clock.dt * std::max({0.0, -before, -after});
-  return -clock.dt / clock.position_factor() * (after - clock.old_share() * before);
+  const RowOwner owner = i.work.rows.owner[row];
+  double closing = -clock.way_until(before, after);
+  if (owner.family == Family::kContact && i.scene.by_patches() && !clock.from_rest)
+    closing -=
+        mixed_damping_time(i.scene.laws, i.state.patches[owner.at() / 2], 0) * clock.rate_then(before, after);
+  return closing;
 }
 
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {

@@ -62,6 +62,7 @@ ordered_json joints(const Model& model) {
     j["normal_stiffness [Pa/m]"] = p.normal_stiffness;  // 0: hard
     j["shear_stiffness [Pa/m]"] = p.shear_stiffness;
     if (p.dilation_angle > 0) j["dilation_angle [deg]"] = p.dilation_angle / kDegree;
+    if (p.damping_time > 0) j["damping_time [s]"] = p.damping_time;
     if (p.restitution >= 0) j["restitution"] = p.restitution;
     const JointKind& kind = joint_kinds()[static_cast<size_t>(p.kind)];
     for (size_t k = 0; k < p.own.size(); ++k) {

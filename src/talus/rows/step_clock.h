@@ -23,6 +23,23 @@ struct StepClock {
     const double r = (1 - alpha) / (1 + alpha);
     return r * r;
   }
+  /// The same two of a joint with dashpots of this damping time (eq. 4.1b), none in steps from rest: they have no velocity.
+  struct JointWeights {
+    double position, old;
+  };
+  JointWeights joint_weights(double damping_time) const {
+    if (from_rest || damping_time == 0) return {position_factor(), old_share()};
+    const double share = position_factor() * damping_time / (2 * dt), all = 1 + (1 + alpha) * share;
+    return {position_factor() / all, (old_share() - (1 - alpha) * share) / all};
+  }
+  /// Way of a point until the instant at which the law of its joint holds, and its velocity then, of those before and after
+  /// the kick.
+  double way_until(double before, double after) const {
+    return dt / position_factor() * (after - old_share() * before);
+  }
+  double rate_then(double before, double after) const {
+    return 0.5 * ((1 + alpha) * after + (1 - alpha) * before);
+  }
 };
 
 }  // namespace talus

@@ -23,8 +23,8 @@ constexpr double kMostApproach = 0.05, kMostWay = 10;
 constexpr double kMostUnseen = 1e-6;
 
 // Energy of elastic joints at the end of a step that its forces have not taken, as share of the largest term of the ledger: a
-// corner that goes in finds a wider face than its first row had. Joints that hold more than was done on them give it back:
-// this is what the audit allows them to give in all.
+// corner that goes in finds a wider face than its first row had. Joints that hold more than was done on them give it back.
+// A step may leave what the audit allows in all; the sum is that of the model, so that a heavy part may hide a light one.
 constexpr double kMostUnpaid = 1e-3;
 
 // Steps in a row that have to go without halving before one is longer, and what that count begins at after one beyond the
@@ -77,8 +77,9 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
     const bool ends_near = solved && !is_far(approach) && approach.of_margin <= 1;
     Unseen u;
     if (ends_near && length > shortest) u = unseen(scene_, state_.time + advance, work_, state_, report);
-    // with the motion of this step, which the ledger books at its end
-    const double largest = std::max(report.energy.largest(), 2 * kinetic_energy(scene_.blocks, state_.rate));
+    // with the motion and the work of this step, which the ledger books at its end
+    const double largest = std::max(
+        {report.energy.largest(), 2 * kinetic_energy(scene_.blocks, state_.rate), std::abs(u.taken)});
     const bool unpaid = u.stored - u.taken > kMostUnpaid * largest;
     if (ends_near && u.deep <= kMostUnseen && !unpaid) {
       state_.rest.length = length;

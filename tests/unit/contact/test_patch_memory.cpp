@@ -66,8 +66,8 @@ class PutBlocks {
                           (1 / kClock.dt) * turn_between(pose_[i].turn, to[i].turn)};
       solve();  // slip is what the end of the step leaves of it
       for (size_t r = rows_.range(Family::kContact).begin; r < rows_.range(Family::kContact).end; ++r)
-        remember_patch(scene_.blocks, rows_, r, relative_velocity(rows_.points[r], state_.rate), still,
-                       kClock, state_);
+        remember_patch(scene_.blocks, scene_.laws, rows_, r, relative_velocity(rows_.points[r], state_.rate),
+                       still, kClock, state_);
     }
     for (size_t i = 0; i < to.size(); ++i) {
       state_.displacement[i] = to[i].way, state_.angle[i] = to[i].turn;

@@ -59,8 +59,6 @@ class PairSearch {
     const Outlines& o = w_.outlines;
     for (int p = o.part_begin[a]; p < o.part_begin[a + 1]; ++p)
       for (int q = o.part_begin[b]; q < o.part_begin[b + 1]; ++q) look_at_parts(p, q, out);
-    if (ahead_.clock.from_rest)
-      for (const Patch& p : known_) unseen_.taken += taken_by(p);
     return margin_;
   }
 
@@ -68,7 +66,7 @@ class PairSearch {
   float lead() const { return static_cast<float>((1 - 1e-6) * std::max(0.0, lead_)); }
 
   // Of all pairs that were looked at.
-  const Unseen& unseen() const { return unseen_; }
+  double unseen() const { return unseen_; }
 
  private:
   bool is_elastic(int joint) const { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].is_soft(0); }
@@ -277,12 +275,12 @@ class PairSearch {
     for (size_t end = 0; end < 2; ++end)
       if (lifted > 0) patch.closure[end] += rise(patch, end) - lifted;
     if (soft)
-      measure(met, before, patch), count_from_ground(lifted > 0, patch), add_stored(met, patch);
+      measure(met, before, patch), count_from_ground(lifted > 0, patch);
     else if (!before || dot(before->normal, patch.normal) < kSameWay)
       for (size_t end = 0; end < 2; ++end) {
         const double deep = std::max(0.0, patch.closure[end]);
         if (goes_out_at_once())
-          unseen_.deep = std::max(unseen_.deep, deep / size_);
+          unseen_ = std::max(unseen_, deep / size_);
         else
           patch.allowed[end] = deep;
       }
@@ -377,34 +375,6 @@ class PairSearch {
     for (double& c : patch.closure) c *= share;
   }
 
-  // What dilates gets energy along the tangent, too.
-  bool stores(const Patch& p) const {
-    const auto keeps = [this](int joint) {
-      return is_elastic(joint) && !w_.laws[static_cast<size_t>(joint)].dilates();
-    };
-    return keeps(p.joint) && (p.other_share == 0 || keeps(p.other_joint));
-  }
-
-  // Energy of what was measured (theory 3.5).
-  void add_stored(const PartsMet& met, const Patch& patch) {
-    if (!patch.overlaps || !stores(patch)) return;
-    const double root = std::max(0.0, std::sqrt(std::max(0.0, met.energy)) - patch.root_kept);
-    unseen_.stored += root * root * mixed_stiffness(w_.laws, patch, 0, w_.blocks.thickness);
-  }
-
-  // Work that the normal forces of a step took, at their value of its end, while the closures went from those at its begin to
-  // those that belong to them (eq. 3.4) [J].
-  double taken_by(const Patch& p) const {
-    if (!stores(p) || !(p.length > 0)) return 0;
-    const double k = mixed_stiffness(w_.laws, p, 0, 0.5 * p.length * w_.blocks.thickness);
-    double taken = 0;
-    for (size_t end = 0; end < 2; ++end) {
-      const double force = p.force[end][0], other = p.force[1 - end][0];
-      taken += force * ((2 * force - other) / k - p.closure[end]);
-    }
-    return taken;
-  }
-
   // Gaps of elastic patches count from what the stress of the ground has closed; closures hold the rise of each end.
   void count_from_ground(bool lifted, Patch& patch) const {
     for (size_t end = 0; end < 2; ++end)
@@ -473,7 +443,7 @@ class PairSearch {
   bool all_laws_elastic_ = false, elastic_ = false;  // all joints, those of this pair
   bool any_rises_ = false;                           // some joint does
   std::span<const Patch> known_;
-  Unseen unseen_;
+  double unseen_ = 0;
   double size_ = 0, approach_ = 0, highest_ = 0, margin_ = 0, rounding_ = 0;
   double distance_ = 0;         // of the two centroids
   double closing_ = 0;          // of these in the step to come, at most
@@ -546,7 +516,7 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
   changed_.resize((n + kPatchGrain - 1) / kPatchGrain);
   workers.for_chunks(n, kPatchGrain, [&](size_t begin, size_t end) {
     Changed& changed = changed_[begin / kPatchGrain];
-    changed.pair.clear(), changed.patch.clear(), changed.met = 0, changed.unseen = {};
+    changed.pair.clear(), changed.patch.clear(), changed.met = 0, changed.unseen = 0;
     PairSearch search(world, ahead, *this, state);
     std::vector<Patch> found;
     for (size_t i = begin; i < end; ++i) {
@@ -567,13 +537,12 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
     }
     changed.unseen = search.unseen();
   });
-  unseen_ = {};
+  unseen_ = 0;
   int met = 0;
   bool any = false;
   for (const Changed& c : changed_) {
     met += c.met, any = any || !c.pair.empty();
-    unseen_.deep = std::max(unseen_.deep, c.unseen.deep);
-    unseen_.stored += c.unseen.stored, unseen_.taken += c.unseen.taken;
+    unseen_ = std::max(unseen_, c.unseen);
   }
   if (any) put_together(state), changed_.clear();  // at the start it holds all patches
   return met;

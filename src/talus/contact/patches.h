@@ -12,14 +12,6 @@
 
 namespace talus {
 
-/// What a search finds behind a step from rest that its forces did not know of (theory 14.2).
-struct Unseen {
-  double deep =
-      0;  // how deep hard parts are in each other that were not in touch; share of the smaller block, largest
-  double stored = 0;  // energy of the elastic overlaps of joints that do not dilate [J]
-  double taken = 0;   // work that their normal forces took in the step before [J]
-};
-
 /// Memory of the search from step to step; nothing of it matters to the result.
 ///
 /// Nor does ContactPair::lead: by how much all ways of a pair were behind those of its patches when the list of pairs was
@@ -32,8 +24,9 @@ class PatchSearch {
   /// @return  pairs whose parts overlap or are near enough to touch
   int update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers, State& state);
 
-  /// Of the last update(), in steps from rest.
-  const Unseen& unseen() const { return unseen_; }
+  /// In the last update() of a step from rest: how deep hard parts are in each other that were not in touch; share of the
+  /// smaller block, largest.
+  double unseen() const { return unseen_; }
 
  private:
   std::vector<Vec2> corner_, along_;  // of all parts as they lie, from each block's centroid
@@ -55,10 +48,10 @@ class PatchSearch {
     std::vector<std::pair<size_t, int>> pair;  // and how many it has now
     std::vector<Patch> patch;
     int met = 0;
-    Unseen unseen;
+    double unseen = 0;
   };
   std::vector<Changed> changed_;
-  Unseen unseen_;
+  double unseen_ = 0;
 
   void place_parts(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                    const State& state);

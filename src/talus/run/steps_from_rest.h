@@ -52,6 +52,8 @@ class StepsFromRest {
   static constexpr double kFarToGo = 1e-3;
 
  private:
+  enum class AtEnd { kAsForcesSay, kUnseen, kTooFar };
+  AtEnd at_end(double time_end, const StepReport& report);
   bool is_far(const Approach& approach) const;
   double longest_way(double length, double less) const;
   double history_dt(double goal, double length) const;

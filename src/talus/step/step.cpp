@@ -210,16 +210,13 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 
 Unseen unseen(const Scene& scene, double time_end, StepWork& work, const State& state, StepReport report) {
   if (!scene.by_patches()) return {};
-  const double stored = work.patches.unseen().stored;
   State end = state;
   drift(scene, time_end, work, end, report);
   // a face that breaks at the end has borne its joint until then: patches that take over from it hold what it took
   for (size_t f = 0; report.broken_faces > 0 && f < end.face.size(); ++f)
     end.face[f].broken = state.face[f].broken;
   seek_contacts(scene, work, end, report);
-  Unseen found = work.patches.unseen();
-  found.stored -= stored;
-  return found;
+  return {work.patches.unseen(), unpaid_energy(patch_world(scene), state, end)};
 }
 
 }  // namespace talus

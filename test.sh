@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs what is missing, builds, and runs the tests: optimised, then all but the cases with known answers under the sanitizers.
+# Installs what is missing, builds, and runs the tests: optimised, then under the sanitizers, but for what ./test.sh long sanitized is for.
 # Usage: ./test.sh [release|sanitize]    (default: both)
 #        ./test.sh long [PART]           what is too long for every day, all parts or one (tests/long.sh)
 set -eu

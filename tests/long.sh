@@ -9,7 +9,7 @@ tunnels | random tunnels in elastic joints end in equilibrium, or name what is l
 hard_steps | the first step of each of 100 random models that sweeps alone do not solve is solved by the chain of solvers | tests/families/hard_steps.py build/release/app/talus
 sliding | joints slide at their strength, whatever the mesh | build/release/studies/sliding_joints
 includes | every file compiled by itself, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
-sanitized | the verification cases under the sanitizers, which are to watch for memory and not for answers | tests/sanitized.sh
+sanitized | under the sanitizers what the daily tests leave out there: verification, Python, suites "optimised" | tests/sanitized.sh
 slurm | a study on a Slurm of two nodes, one of which dies (root, Debian's slurmctld, slurmd, slurm-client, munge; else skipped) | tests/slurm/two_nodes.sh build/release
 "
 

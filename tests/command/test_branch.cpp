@@ -59,7 +59,8 @@ void same_end(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-TEST_CASE("command run --from -o: a branch with nothing changed has the bits of the unbroken run") {
+TEST_CASE("command run --from -o: a branch with nothing changed has the bits of the unbroken run" *
+          doctest::test_suite("optimised")) {
   Folder folder;
   write_model(folder, kShakenBricks);
   REQUIRE(shell(folder, "$talus run model.toml -o whole -q").code == 0);

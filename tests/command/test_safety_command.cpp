@@ -43,7 +43,8 @@ TEST_CASE("command: safety prints its trials and writes them") {
   has(dynamic.text, "the first stage is not static");
 }
 
-TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on after a kill") {
+TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on after a kill" *
+          doctest::test_suite("optimised")) {
   const Folder f;
   const std::string model = std::string(TALUS_SOURCE_DIR) + "/examples/pushed_wall/pushed_wall.toml";
   const Outcome o = shell(f, fmt::format("$talus safety {} --set safety.tolerance=0.01 -o s", model));

@@ -257,7 +257,8 @@ double off(const PartsMet& met, const PartsMet& like) {
 
 }  // namespace
 
-TEST_CASE("overlap: area and energy of random pairs are those of a fine quadrature") {
+TEST_CASE("overlap: area and energy of random pairs are those of a fine quadrature" *
+          doctest::test_suite("optimised")) {
   Random random(10);
   double worst_area = 0, worst_energy = 0;
   for (int i = 0; i < 150; ++i) {

@@ -142,7 +142,8 @@ TEST_CASE("loose steps: the run goes on over them, and counts them") {
   CHECK(loose.state.displacement[2].x == approx(solved.state.displacement[2].x).epsilon(1e-4));
 }
 
-TEST_CASE("loose steps: above the limit a step fails, and a limit that is the tolerance leaves none loose") {
+TEST_CASE("loose steps: above the limit a step fails, and a limit that is the tolerance leaves none loose" *
+          doctest::test_suite("optimised")) {
   for (const char* limit : {"1e-300", "1e-290"}) {
     std::vector<std::string> overrides = kOutOfReach;
     overrides.push_back(std::string("solver.limit=") + limit);
@@ -173,7 +174,8 @@ TEST_CASE("loose steps: the smoothed law has none, as its error is no measure of
   CHECK(r.loose_steps == 0);
 }
 
-TEST_CASE("loose steps: one from rest is taken again with half the length as long as it can be") {
+TEST_CASE("loose steps: one from rest is taken again with half the length as long as it can be" *
+          doctest::test_suite("optimised")) {
   const std::string text = kBricks + R"([[stage]]
 name = "rest"
 kind = "static"

@@ -44,7 +44,8 @@ RunResult run(const std::string& text, double& end) {
 
 }  // namespace
 
-TEST_CASE("steps in parts: what no solver solves is solved in shorter steps") {
+TEST_CASE("steps in parts: what no solver solves is solved in shorter steps" *
+          doctest::test_suite("optimised")) {
   // round-off leaves more than 2e-19 m in some steps of 2 ms: of velocities, which in half the step is half of that
   const std::string sharp = "tolerance = 3e-19\nlimit = 3e-19\non_failure = \"continue\"\n";
   double end = 0;

@@ -120,7 +120,8 @@ TEST_CASE("block factor: the solutions of Eigen's simplicial one") {
   }
 }
 
-TEST_CASE("block factor: the same bits for any number of threads, any kernels, and when used again") {
+TEST_CASE("block factor: the same bits for any number of threads, any kernels, and when used again" *
+          doctest::test_suite("optimised")) {
   const Matrix a = sheet(60, 50, 10, 3, 11);
   const std::vector<double> one = solved(a, 1);
   for (const int threads : {2, 3, 4}) CHECK(solved(a, threads) == one);

@@ -189,7 +189,8 @@ TEST_CASE("a step from rest that is taken again begins where it ended") {
   CHECK(largest > 100);
 }
 
-TEST_CASE("sweeps give up where more are to be expected than they are worth, and only there") {
+TEST_CASE("sweeps give up where more are to be expected than they are worth, and only there" *
+          doctest::test_suite("optimised")) {
   const std::string text = ground(6, 200, "deformable", 1e6);
   for (const bool soft : {true, false}) {
     std::string other = text;

@@ -204,7 +204,7 @@ std::vector<SectionSpec> sections_of_model() {
          .doc =
              "Dashpots beside kn and ks: each bears its stiffness x this time x the velocity (theory 4.6). A blow between "
              "blocks of mass m on a joint of stiffness k is damped by damping_time sqrt(k/m)/2 of critical: 0.2 to 0.3 ms "
-             "for blocks of 1 m at 20 GPa/m, which then rebound with a third of their speed. None while a face is intact, in "
+             "for blocks of 1 m at 20 GPa/m, which then rebound with 0.47 to 0.35 of their speed. None while a face is intact, in "
              "steps from rest, and by default."},
         {.name = "restitution",
          .range = {.min = 0, .max = 1},

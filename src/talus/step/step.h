@@ -13,8 +13,8 @@ StepReport kick(const Scene& scene, const StepSettings& settings, double dt, Ste
 
 /// What the end of a step from rest has that its forces did not know of (theory 14.2).
 struct Unseen {
-  double deep =
-      0;  // how deep hard parts are in each other that were not in touch; share of the smaller block, largest
+  // how deep hard parts are in each other that were not in touch; share of the smaller block, largest
+  double deep = 0;
   double unpaid = 0;  // energy that elastic joints hold more than by the forces of the step [J]
 };
 

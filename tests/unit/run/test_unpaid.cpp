@@ -15,20 +15,23 @@ using namespace talus::test;
 
 namespace {
 
-// A block on two feet, which touch a floor by their corners alone.
-std::string two_feet(double stiffness, double time_step, const std::string& beside = {}) {
-  return fmt::format(
-      "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\n[joint.j]\n"
-      "friction_angle = \"30 deg\"\nnormal_stiffness = {0}\nshear_stiffness = {0}\n[contact]\njoint = \"j\"\n"
-      "[[block]]\nname = \"floor\"\npolygon = [[-3, -1], [3, -1], [3, 0], [-3, 0]]\nmaterial = \"m\"\nkind = \"fixed\"\n"
-      "[[block]]\nname = \"trestle\"\npolygon = [[-1, 0], [0, 0.5], [1, 0], [1.5, 1], [-1.5, 1]]\nmaterial = \"m\"\n"
-      "kind = \"rigid\"\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 10\ntime_step = {1}\nunbalanced = 1e-9\n{2}",
-      stiffness, time_step, beside);
-}
-
 std::string block_text(const char* name, const char* polygon, const char* kind) {
   return fmt::format("[[block]]\nname = \"{}\"\npolygon = {}\nmaterial = \"m\"\nkind = \"{}\"\n", name,
                      polygon, kind);
+}
+
+// A block on two feet, which touch a floor by their corners alone.
+std::string two_feet(double stiffness, double time_step, const std::string& beside = {}) {
+  return fmt::format(
+             "talus = 1\n[model]\ngravity = [0, -10]\n[material.m]\ndensity = 2500\n[joint.j]\n"
+             "friction_angle = \"30 deg\"\nnormal_stiffness = {0}\nshear_stiffness = {0}\n[contact]\njoint = \"j\"\n",
+             stiffness) +
+         block_text("floor", "[[-3, -1], [3, -1], [3, 0], [-3, 0]]", "fixed") +
+         block_text("trestle", "[[-1, 0], [0, 0.5], [1, 0], [1.5, 1], [-1.5, 1]]", "rigid") +
+         fmt::format(
+             "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 10\ntime_step = {}\nunbalanced = 1e-9\n",
+             time_step) +
+         beside;
 }
 
 // On a floor and a joint of its own, far from all else: a square, or a block that leans out and stands on a part of its foot.

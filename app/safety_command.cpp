@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "plot_blocks.h"
@@ -22,6 +23,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kTrials = "safety.csv";
+constexpr const char* kStates = "states";  // of trials that stood, until the search has ended
+
+fs::path state_of(const fs::path& folder, const SafetyTrial& t) {
+  return folder / kStates / fmt::format("{}_from_{}.state", t.factor, t.from);
+}
 
 // The trials of a search of the same model that was broken off.
 std::vector<SafetyTrial> known_trials(const fs::path& folder, const Model& model) {
@@ -93,6 +99,7 @@ int safety_command(const ModelArguments& args, const SafetyArguments& how) {
   std::error_code ec;
   if (force)
     for (const char* part : {"stands", "fails"}) fs::remove_all(root / part, ec);
+  if (!how.resume) fs::remove_all(root / kStates, ec);
   ResultFolder out(how.folder, force, ResultKind::kSafety);
   out.write("model.toml", model.text);
   fmt::print("  {:>9}  {:<6}  {:<18}  {:>9}  {:>8}  {:>10}  {:>10}  {}\n",
@@ -108,6 +115,16 @@ int safety_command(const ModelArguments& args, const SafetyArguments& how) {
     fmt::print("{}", safety_line(t));
     std::fflush(stdout);
   };
+  settings.save = [&](const SafetyTrial& t, const Archive& state) {
+    const fs::path path = state_of(root, t);
+    if (is_there(path)) return;
+    out.make_folder(kStates);
+    write_archive(path, state);
+  };
+  settings.saved = [&](const SafetyTrial& t) -> std::optional<Archive> {
+    if (!how.resume || !is_there(state_of(root, t))) return std::nullopt;
+    return read_archive(state_of(root, t));
+  };
   settings.keeper = [&](const Scene& scene, const SafetyTrial& t) {
     RunNotes notes;
     notes.overrides = args.overrides;
@@ -120,6 +137,7 @@ int safety_command(const ModelArguments& args, const SafetyArguments& how) {
     static_cast<Recorder&>(keeper).finish(result);
   };
   const SafetyResult result = seek_safety(prepared, workers, settings);
+  fs::remove_all(root / kStates, ec);
   out.write(kTrials, safety_csv(result));
   out.write("safety.json", safety_json(model, result));
   out.note_picture("displacement");

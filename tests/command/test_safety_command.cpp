@@ -3,11 +3,14 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "support/command.h"
 #include "talus/base/text_file.h"
@@ -18,6 +21,13 @@ using namespace talus;
 using namespace talus::test;
 
 namespace {
+
+std::vector<std::string> split(const std::string& row) {
+  std::vector<std::string> out;
+  std::stringstream in(row);
+  for (std::string cell; std::getline(in, cell, ',');) out.push_back(cell);
+  return out;
+}
 
 const std::string kToppling = std::string(TALUS_SOURCE_DIR) + "/examples/toppling/toppling.toml";
 
@@ -84,14 +94,33 @@ TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on afte
           model));
   const std::string begun = read_text_file((f / "k/safety.csv").string());
   CHECK(std::count(begun.begin(), begun.end(), '\n') >= 2);
-  if (!std::filesystem::exists(f / "k/safety.json"))  // the search was quicker than the kill
-    has(shell(f, "$talus report k").text, "has not ended; go on with it by talus safety MODEL -o k --resume");
-  const Outcome rest =
-      shell(f, fmt::format("$talus safety {} --set safety.tolerance=0.0001 -o k --resume", model));
-  CHECK(rest.code == 0);
   CHECK(shell(f, fmt::format("$talus safety {} --set safety.tolerance=0.0001 -o whole --threads 1", model))
             .code == 0);
-  CHECK(read_text_file((f / "k/safety.csv").string()) == read_text_file((f / "whole/safety.csv").string()));
+  const std::string whole = read_text_file((f / "whole/safety.csv").string());
+  CHECK(!std::filesystem::exists(f / "whole/states"));
+  REQUIRE(!std::filesystem::exists(f / "k/safety.json"));  // or the search was quicker than the kill
+  has(shell(f, "$talus report k").text, "has not ended; go on with it by talus safety MODEL -o k --resume");
+  // a trial that stood is taken from its row and its state, and run again where that has gone
+  const size_t row = begun.find('\n') + 1, end = begun.find('\n', row);
+  std::vector<std::string> cells = split(begun.substr(row, end - row));
+  REQUIRE(cells.at(1) == "1");
+  cells[5] = "424242";
+  const auto marked = [&](const std::string& csv) {
+    return csv.substr(0, row) + fmt::format("{}", fmt::join(cells, ",")) + csv.substr(end);
+  };
+  std::filesystem::copy(f / "k", f / "none", std::filesystem::copy_options::recursive);
+  std::filesystem::remove_all(f / "none/states");
+  const auto resumed = [&](const std::string& folder) {
+    write_file((f / folder / "safety.csv").string(), marked(begun));
+    const Outcome o =
+        shell(f, fmt::format("$talus safety {} --set safety.tolerance=0.0001 -o {} --resume", model, folder));
+    INFO(o.text);
+    CHECK(o.code == 0);
+    CHECK(!std::filesystem::exists(f / folder / "states"));
+    return read_text_file((f / folder / "safety.csv").string());
+  };
+  CHECK(resumed("k") == marked(whole));
+  CHECK(resumed("none") == whole);
   has(shell(f, fmt::format("$talus safety {} -o k --resume", model)).text, "of another model");
   has(shell(f, fmt::format("$talus safety {} -o new --resume", model)).text,
       "there is no search to go on with");

@@ -254,6 +254,7 @@ class Search {
     for (size_t k = 0; k < factors.size(); ++k) {
       if (wrong[k]) std::rethrow_exception(wrong[k]);
       result_.trials.push_back(tried[k].trial);
+      if (tried[k].after) save(tried[k].trial, *tried[k].after);
       if (settings_.told) settings_.told(tried[k].trial);
       // of several that were tried at once the first that fails ends it: what lies above is not asked
       if (tried[k].trial.stands && all_stand) {
@@ -277,17 +278,46 @@ class Search {
     base->plans.assign(prepared_.plans.begin(),
                        prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
     if (input_.by == SafetyBy::kLoad) model.loads[static_cast<size_t>(input_.load)].factor = 0;
-    base->state = start_state(base->scene);
-    struct Nobody : Observer {
-      void at(const Instant&) override {}
-    } nobody;
-    base->standing.result = run_stages(base->scene, base->plans, base->state, nobody, workers_);
-    if (!base->standing.result.failure.empty())
-      throw NumericalError("the model does not come to rest before anything is raised: " +
-                           base->standing.result.failure);
-    add_raised(*base, prepared_);
-    base->since = base->state.displacement;
+    SafetyTrial settled;
+    settled.factor = 0;
+    if (take_saved(settled, *base)) {
+      model.joints = full_;  // changes of joints are not made again
+    } else {
+      base->state = start_state(base->scene);
+      struct Nobody : Observer {
+        void at(const Instant&) override {}
+      } nobody;
+      base->standing.result = run_stages(base->scene, base->plans, base->state, nobody, workers_);
+      if (!base->standing.result.failure.empty())
+        throw NumericalError("the model does not come to rest before anything is raised: " +
+                             base->standing.result.failure);
+    }
+    save(settled, *base);
+    count_from_here(*base, 0);
     base_ = before_ = std::move(base);
+  }
+
+  // What has come to rest is where trials begin.
+  void count_from_here(Base& base, double factor) const {
+    add_raised(base, prepared_);
+    base.since = base.state.displacement;
+    base.factor = factor;
+  }
+
+  void save(const SafetyTrial& trial, const Base& after) const {
+    if (settings_.save) settings_.save(trial, run_archive(after.scene, after.standing, after.state));
+  }
+
+  // The end of a trial as a search that was broken off has saved it; whether it has.
+  bool take_saved(const SafetyTrial& trial, Base& base) const {
+    std::optional<Archive> archive = settings_.saved ? settings_.saved(trial) : std::nullopt;
+    if (!archive) return false;
+    SavedRun run =
+        saved_run_of(fmt::format("the saved trial at {:g}", trial.factor), std::move(*archive), prepared_);
+    base.scene.give.shortest_step = run.archive.numbers.at(kSavedGive).at(1);
+    base.state = std::move(run.state);
+    base.standing = {run.standing.result, true};
+    return true;
   }
 
   // Puts the action into a scene whose blocks stand as `state` says. The ledger goes on: what turns is no work.
@@ -311,9 +341,18 @@ class Search {
 
   Tried attempt(double factor, const Workers& workers) const {
     const bool needs_no_state = input_.by == SafetyBy::kStrength && input_.from_start;
-    for (const SafetyTrial& k : settings_.known)
-      if (k.factor == factor && k.from == (base_ ? base_->factor : 0) && (!k.stands || needs_no_state))
-        return {k, nullptr};
+    for (const SafetyTrial& k : settings_.known) {
+      if (k.factor != factor || k.from != (base_ ? base_->factor : 0)) continue;
+      if (!k.stands || needs_no_state) return {k, nullptr};
+      auto after = std::make_unique<Base>(base_ ? *base_ : beginning(factor));
+      if (base_) raise(after->scene, after->state, factor);
+      if (!take_saved(k, *after)) break;
+      if (base_)
+        after->factor = factor;
+      else
+        count_from_here(*after, factor);
+      return {k, std::move(after)};
+    }
     return base_ ? of_action(factor, *base_, workers, nullptr) : of_start(factor, workers, nullptr);
   }
 
@@ -328,20 +367,23 @@ class Search {
       of_start(factor, workers_, &told);
   }
 
+  // The stages with this strength, before they are run.
+  Base beginning(double factor) const {
+    Base base{weakened(prepared_, factor), {}, {}, {}, {}};
+    base.plans.assign(prepared_.plans.begin(),
+                      prepared_.plans.begin() + static_cast<std::ptrdiff_t>(base.scene.model.stages.size()));
+    base.state = start_state(base.scene);
+    return base;
+  }
+
   Tried of_start(double factor, const Workers& workers, const SafetyTrial* kept) const {
-    auto after = std::make_unique<Base>(Base{weakened(prepared_, factor), {}, {}, {}, {}});
-    after->plans.assign(
-        prepared_.plans.begin(),
-        prepared_.plans.begin() + static_cast<std::ptrdiff_t>(after->scene.model.stages.size()));
-    after->state = start_state(after->scene);
+    auto after = std::make_unique<Base>(beginning(factor));
     Tried tried = judged(factor, 0, *after, kept, [&](Observer& observer) {
       after->standing.result = run_stages(after->scene, after->plans, after->state, observer, workers);
       return after->standing.result;
     });
     if (!tried.trial.stands || input_.from_start) return tried;
-    add_raised(*after, prepared_);
-    after->since = after->state.displacement;
-    after->factor = factor;
+    count_from_here(*after, factor);
     tried.after = std::move(after);
     return tried;
   }

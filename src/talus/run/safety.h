@@ -4,8 +4,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
-#include "talus/run/run.h"
+#include "talus/run/saved_state.h"
 
 namespace talus {
 
@@ -51,7 +52,11 @@ struct SafetySettings {
   std::function<std::unique_ptr<Observer>(const Scene& scene, const SafetyTrial& trial)> keeper;
   /// Shown what that run came to, before its observer ends.
   std::function<void(Observer& keeper, const RunResult& result)> kept;
-  std::vector<SafetyTrial> known;  // of a search that was broken off: those that failed are not run again
+  std::vector<SafetyTrial> known;  // of a search that was broken off: what they say is taken over
+  /// Keeps the state of a trial that stood, before it is told, and has it again for a search that goes on: where there is
+  /// none the trial is run again. Factor 0: the stages before anything is raised.
+  std::function<void(const SafetyTrial& trial, const Archive& state)> save;
+  std::function<std::optional<Archive>(const SafetyTrial& trial)> saved;
 };
 
 /// Seeks what the model bears between model.safety.lowest and .highest. Throws NumericalError naming the factor when a

@@ -112,10 +112,10 @@ TEST_CASE("command: safety by acceleration keeps the mechanism, and goes on afte
   std::filesystem::remove_all(f / "none/states");
   const auto resumed = [&](const std::string& folder) {
     write_file((f / folder / "safety.csv").string(), marked(begun));
-    const Outcome o =
+    const Outcome again =
         shell(f, fmt::format("$talus safety {} --set safety.tolerance=0.0001 -o {} --resume", model, folder));
-    INFO(o.text);
-    CHECK(o.code == 0);
+    INFO(again.text);
+    CHECK(again.code == 0);
     CHECK(!std::filesystem::exists(f / folder / "states"));
     return read_text_file((f / folder / "safety.csv").string());
   };

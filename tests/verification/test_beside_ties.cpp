@@ -28,7 +28,7 @@ std::string bricks_text(const std::string& push, const std::string& stage) {
   return fmt::format(
              "talus = 1\n[model]\ngravity = [0, -{0}]\n[material.m]\ndensity = 2300\n[joint.face]\n"
              "friction_angle = \"25 deg\"\ncohesion = \"10 MPa\"\ntensile_strength = \"10 MPa\"\n"
-             "normal_stiffness = {1:g}\nshear_stiffness = {1:g}\n[contact]\njoint = \"face\"\n"
+             "normal_stiffness = {1:g}\nshear_stiffness = {1:g}\ndamping_time = 0\n[contact]\njoint = \"face\"\n"
              "[[load]]\nname = \"push\"\nacceleration_x = {2}\n{3}",
              kG, kStiffness, push, stage) +
          block_text("a", {{0, 0}, {1, 0}, {1, 0.4}, {0, 0.4}}, "fixed") +

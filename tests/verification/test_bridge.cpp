@@ -42,7 +42,7 @@ std::string model_of(const Layout& layout, double closed, const std::string& kin
       "talus = 1\n[material.rock]\ndensity = 2500\nyoung = 1e12\npoisson = 0.0\n"
       "[joint.bridge]\nfriction_angle = \"30 deg\"\ncohesion = 1e9\ntensile_strength = 1e9\n"
       "normal_stiffness = {0}\nshear_stiffness = {1}\n[joint.open]\nfriction_angle = \"30 deg\"\n"
-      "normal_stiffness = {0}\nshear_stiffness = {1}\n[[region]]\nname = \"r\"\n"
+      "normal_stiffness = {0}\nshear_stiffness = {1}\ndamping_time = 0\n[[region]]\nname = \"r\"\n"
       "polygon = [[0, 0], [3, 0], [3, 2], [0, 2]]\nmaterial = \"rock\"\nkind = \"{2}\"\n"
       "[history.u]\nexpression = \"t<0.1 ? 0 : {3}*sin(2*_pi*(t-0.1))\"\nduration = \"3.1 s\"\nsamples = 31000\n"
       "[history.v]\nexpression = \"t<0.1 ? {4}*(t/0.1) : {4}\"\nduration = \"3.1 s\"\nsamples = 31000\n"

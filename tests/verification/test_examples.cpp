@@ -331,12 +331,12 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
     near = std::max(near, speed(i, {4, 0})), far = std::max(far, speed(i, {12, 0}));
   });
   check_below("blast_hole kinetic energy before / largest", before / most, 1e-6, 1e-8);
-  // what opened joints keep moving, most of it crumbs at the wall of the hole: 2.1 % with slivers = "delete"
-  check_below("blast_hole kinetic energy left / largest", last / most, 8e-2, 6e-2);
+  // what opened joints keep moving, most of it crumbs at the wall of the hole
+  check_below("blast_hole kinetic energy left / largest", last / most, 3e-2, 2.8e-2);
   // no formula: what the example's README quotes
-  check_close("blast_hole velocity past 4 m [m/s]", near, 0.2647, 1e-2, 1e-3);
-  check_close("blast_hole velocity past 12 m [m/s]", far, 0.1268, 1e-2, 1e-3);
-  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 190, 2e-2, 1e-12);
+  check_close("blast_hole velocity past 4 m [m/s]", near, 0.2623, 1e-2, 1e-3);
+  check_close("blast_hole velocity past 12 m [m/s]", far, 0.1258, 1e-2, 1e-3);
+  check_close("blast_hole faces that lose their cohesion", r.run.broken_faces, 163, 2e-2, 1e-12);
   check_below("blast_hole energy left over / largest term", r.run.closure(), 1e-2, 1e-6);
 }
 
@@ -374,12 +374,12 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
   // crest, five tolerances from 1e-9 to 1e-8 0.384 to 0.517 m for the slip of the loosest joint: no trend, so these two are asked
   // for within such a scatter
   check_close("shaken_slope largest velocity of the base [m/s]", base, 0.347, 1e-2, 2e-3);
-  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.425, 5e-2, 1e-2);
+  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.448, 5e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.45, 2.7e-1, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.34, 2.7e-1, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
-              (behind_end - behind_start - base_end + base_start).x, -0.0730, 1e-1, 6e-2);
-  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.344, 2.7e-1, 1e-2);
+              (behind_end - behind_start - base_end + base_start).x, -0.0762, 1e-1, 6e-2);
+  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.414, 2.7e-1, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
 }
 

@@ -11,6 +11,7 @@ using namespace talus::test::junction;
 
 TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is covered that is free") {
   // nothing known by hand but what the audit asks: a collapse meets every way in which corners can meet
+  // (of forty such piles two are not valid, with dashpots and without: docs/limits.md)
   Random random(3);
   constexpr int kColumns = 20, kStones = 200;
   const double width = 1.2 * kColumns + 1;
@@ -18,7 +19,7 @@ TEST_CASE("falling stones: no force is lost, none crosses a gap, nothing is cove
       "talus = 1\n[model]\ngravity = [0, -9.81]\n[material.m]\ndensity = 2600\nyoung = \"5 GPa\"\npoisson = "
       "0.2\n"
       "[joint.j]\nfriction_angle = \"35 deg\"\nnormal_stiffness = \"10 GPa/m\"\nshear_stiffness = \"10 "
-      "GPa/m\"\n"
+      "GPa/m\"\ndamping_time = 0\n"
       "[contact]\njoint = \"j\"\n[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.5\ntime_step = "
       "\"1 ms\"\n" +
       block_text("floor", box_polygon(-3, -2, width + 3, 0), "fixed") +

@@ -151,9 +151,11 @@ void Watch::judge_patch(const Step& step, const StepPoint& before, const StepPoi
   const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
   const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance +
                          rules_.give * before.normal_force + 3 * step.step * speed;
+  const double parting =
+      std::max({0.0, dot(before.normal, moves(&Block::velocity)), dot(before.normal, moves(&Block::next))});
   // both surfaces must lie that deep in the other block
   const double depth = depth_in(a.polygon, place) + depth_in(b.polygon, place);
-  if (depth <= allowed) return;
+  if (depth <= allowed + before.damping_time * parting) return;
   // hard, and keeps the overlap that it has: it lets go, but for the arc by which corners leave their tangent in a step
   const auto arc = [&](const Block& x, int block) {
     const double turn = step.step * turning(x, &Block::next);

@@ -16,6 +16,7 @@ struct StepPoint {
   double normal_force = 0, gap = 0;  // [N], [m] of positions
   bool hard = false;                 // no force by its overlap: it may keep one as the two part
   Vec2 place = {}, normal = {};      // of an end of a patch, whose edge is less than -1
+  double damping_time = 0;           // of its dashpots, which take from its force as the two part [s]
 
   bool same_place(const StepPoint& o) const {
     return block_a == o.block_a && corner == o.corner && block_b == o.block_b && edge == o.edge;

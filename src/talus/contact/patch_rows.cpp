@@ -110,8 +110,9 @@ class PatchRows {
                  PointRows& p) const {
     for (int i = 0; i < 2; ++i)
       if (law.is_soft(i))
-        make_compliant(mixed_stiffness(w_.laws, c, i, half_area), mixed_damping_time(w_.laws, c, i), true,
-                       clock_, u[static_cast<size_t>(i)], p.row[i]);
+        make_compliant(mixed_stiffness(w_.laws, c, i, half_area),
+                       mixed_damping_time(w_.blocks, w_.laws, c, i), true, clock_, u[static_cast<size_t>(i)],
+                       p.row[i]);
   }
 
   // Whether a face that has broken lay on the sides of a patch.
@@ -162,26 +163,56 @@ void remember_patch(const BlockSet& blocks, const std::vector<JointLaw>& laws, c
   const bool held = impulse[0] > 0 || bounds_of(p, 1, impulse[0]).upper > 0, slid = slides(p, impulse);
   if (slid) {
     // the law holds at a place between the two ends of the step; what is left of the step goes on from there
-    const double damping_time = p.is_soft(1) && !clock.from_rest ? mixed_damping_time(laws, c, 1) : 0;
+    const double damping_time = p.is_soft(1) ? mixed_damping_time(blocks, laws, c, 1) : 0;
+    const double dashpot = clock.dashpot_time(damping_time);
     const double elastic = p.row[1].compliance > 0 ? elastic_slip(rows, r, clock, damping_time) : 0;
     const double u_before = p.is_soft(1) ? relative_velocity(p, before)[1] : 0;
     const double until = p.is_soft(1) ? clock.way_until(u_before, u[1]) : clock.dt * u[1];
-    double stays = elastic;
-    if (held) {
-      // what slips takes its rate from the dashpots, too
-      const double gone =
-          (c.stretch[end] + until + damping_time * clock.rate_then(u_before, u[1]) - elastic) /
-          (1 + damping_time / clock.dt);
-      c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
-      if (damping_time > 0) stays = c.stretch[end] + until - gone;
-    }
-    c.stretch[end] = held ? stays + clock.dt * u[1] - until : 0;
+    // what slips takes its rate from the dashpots, too
+    const double gone = (c.stretch[end] + until + dashpot * clock.rate_then(u_before, u[1]) - elastic) /
+                        (1 + dashpot / clock.dt);
+    if (held) c.slip[end] += std::abs(gone), c.slip_signed[end] += gone;
+    c.stretch[end] = held ? c.stretch[end] + clock.dt * u[1] - gone : 0;
   } else {
     c.stretch[end] += clock.dt * u[1];
   }
   c.touched = c.touched || held;
   c.force[end] = {impulse[0] / clock.dt_kick, impulse[1] / clock.dt_kick};
   push_out(c.closure[end], blocks.smaller_size(c.block_a, c.block_b), c.allowed[end]);
+}
+
+// Eq. 4.1b: of the two ends, of which a free one has its law and one at a bound bears what that is.
+std::array<double, 2> dashpot_impulse(const BlockSet& blocks, const std::vector<JointLaw>& laws,
+                                      const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                                      const std::vector<BlockRate>& before,
+                                      const std::vector<BlockRate>& after, const StepClock& clock,
+                                      const State& state) {
+  const PointRows& p = rows.points[r];
+  if (!p.is_soft()) return {0, 0};
+  const Patch& c = state.patches[(r - rows.range(Family::kContact).begin) / 2];
+  const auto second = static_cast<size_t>(p.partner);
+  const PointRows& q = rows.points[second];
+  const auto is_free = [&](size_t row, size_t k) {
+    const Impulse& impulse = rows.impulse[row];
+    return k == 0 ? impulse[0] > rows.points[row].lower : !slides(rows.points[row], impulse);
+  };
+  std::array<double, 2> out{0, 0}, before_p{}, before_q{}, after_q{};
+  bool looked = false;
+  for (size_t k = 0; k < 2; ++k) {
+    const int i = static_cast<int>(k);
+    if (!p.is_soft(i) || !is_free(r, k)) continue;
+    const double time = mixed_damping_time(blocks, laws, c, i);
+    if (clock.dashpot_time(time) == 0) continue;
+    if (!looked) {
+      before_p = relative_velocity(p, before), before_q = relative_velocity(q, before);
+      after_q = relative_velocity(q, after), looked = true;
+    }
+    const double scale =
+        clock.dashpot_time(time) * clock.joint_weights(time).position / (clock.dt * p.row[k].compliance);
+    const double one = clock.rate_then(before_p[k], u[k]), two = clock.rate_then(before_q[k], after_q[k]);
+    out[k] = -scale * (is_free(second, k) ? 4.0 / 3 * (one + 0.5 * two) : one);
+  }
+  return out;
 }
 
 }  // namespace talus

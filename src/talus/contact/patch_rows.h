@@ -23,4 +23,13 @@ void remember_patch(const BlockSet& blocks, const std::vector<JointLaw>& laws, c
                     const std::array<double, 2>& u, const std::vector<BlockRate>& before,
                     const StepClock& clock, State& state);
 
+/// What of the impulses of row r of a patch its dashpots bear, along the normal and the tangent [N s]: none where it slides or
+/// opens, where the row bears what its bounds let it.
+/// @param u  as above
+std::array<double, 2> dashpot_impulse(const BlockSet& blocks, const std::vector<JointLaw>& laws,
+                                      const RowSet& rows, size_t r, const std::array<double, 2>& u,
+                                      const std::vector<BlockRate>& before,
+                                      const std::vector<BlockRate>& after, const StepClock& clock,
+                                      const State& state);
+
 }  // namespace talus

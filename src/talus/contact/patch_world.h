@@ -2,6 +2,7 @@
 // What the patches of a model hang on and do not change.
 
 #include "talus/contact/bonds.h"
+#include "talus/contact/joint_state.h"
 #include "talus/contact/outlines.h"
 #include "talus/model/joint_law.h"
 
@@ -28,9 +29,14 @@ inline double mixed_stiffness(const std::vector<JointLaw>& laws, const Patch& pa
                           : one;
 }
 
-/// Damping time of the same [s]: that at which its dashpots take what those of the two joints would.
+/// Damping time of the same [s]: that at which its dashpots take what those of the two joints would. What is apart has none, and
+/// is not slowed down ahead of what it is to hit.
 /// @pre  its joint is elastic in that direction
-inline double mixed_damping_time(const std::vector<JointLaw>& laws, const Patch& patch, int i) {
+inline double mixed_damping_time(const BlockSet& blocks, const std::vector<JointLaw>& laws,
+                                 const Patch& patch, int i) {
+  const double closed =
+      -noticeable(blocks, static_cast<size_t>(patch.block_a), static_cast<size_t>(patch.block_b));
+  if (patch.closure[0] < closed && patch.closure[1] < closed) return 0;
   const JointLaw& law = laws[static_cast<size_t>(patch.joint)];
   if (patch.other_share == 0 || patch.other_joint < 0) return law.damping_time();
   const JointLaw& other = laws[static_cast<size_t>(patch.other_joint)];

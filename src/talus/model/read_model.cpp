@@ -198,7 +198,8 @@ class ModelReader : private SectionReader {
       j.where = f.where();
       j.normal_stiffness = f.get("normal_stiffness", 0.0);
       j.shear_stiffness = f.get("shear_stiffness", 0.0);
-      j.damping_time = f.get("damping_time", 0.0);
+      const bool may = model_.formulation == Formulation::kContactForces && JointLaw(j).is_soft();
+      j.damping_time = may || f.given("damping_time") ? f.get("damping_time", 0.0) : 0;  // the default
       j.restitution = f.get("restitution", -1.0);
       j.dilation_angle = f.get("dilation_angle", 0.0);
       j.dilation_slip = f.get("dilation_slip", j.dilation_slip);

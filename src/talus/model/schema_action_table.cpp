@@ -22,7 +22,9 @@ std::vector<SectionSpec> action_sections() {
         {.name = "alpha",
          .range = {.min = 0, .max = 1},
          .default_text = "0.2",
-         .doc = "Numerical damping of joints with stiffness: 0 loses nothing, 1 is backward Euler."},
+         .doc =
+             "Numerical damping of joints with stiffness: 0 loses nothing, 1 is backward Euler. Of what steps of dt resolve it is a "
+             "damping time of alpha dt, which is counted in the joint's own (`damping_time`)."},
         {.name = "stiffness",
          .type = K::kChoice,
          .default_text = "\"auto\"",

@@ -200,12 +200,12 @@ std::vector<SectionSpec> sections_of_model() {
          .dimension = D::kTime,
          .range = kNonNegative,
          .usual = {.min = 1e-6, .max = 0.01},
-         .default_text = "\"0 s\"",
+         .default_text = "\"0.25 ms\"",
          .doc =
              "Dashpots beside kn and ks: each bears its stiffness x this time x the velocity (theory 4.6). A blow between "
              "blocks of mass m on a joint of stiffness k is damped by damping_time sqrt(k/m)/2 of critical: 0.2 to 0.3 ms "
              "for blocks of 1 m at 20 GPa/m, which then rebound with 0.47 to 0.35 of their speed. None while a face is intact, in "
-             "steps from rest, and by default."},
+             "steps from rest, and beside no stiffness. Of steps above damping_time / contact.alpha the numerical damping is the larger."},
         {.name = "restitution",
          .range = {.min = 0, .max = 1},
          .doc = "Ratio of the normal velocities after and before a touch; none: what the scheme gives "

@@ -126,7 +126,8 @@ void Auditor::watch(const Instant& i) {
     for (int end = 0; end < 2; ++end) {
       const auto [corner, edge] = patch_numbers(scene_, state.patches, k, end);
       points_.push_back({c.block_a, corner, c.block_b, edge, c.force[static_cast<size_t>(end)][0],
-                         c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal});
+                         c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal,
+                         hard ? 0 : mixed_damping_time(scene_.blocks, scene_.laws, c, 0)});
     }
   }
   for (size_t k = 0; k < state.contacts.size(); ++k) {

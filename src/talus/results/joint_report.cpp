@@ -208,9 +208,10 @@ double closing_at(const Instant& i, size_t row) {
   if (!p.is_soft(0)) return clock.dt * std::max({0.0, -before, -after});
   const RowOwner owner = i.work.rows.owner[row];
   double closing = -clock.way_until(before, after);
-  if (owner.family == Family::kContact && i.scene.by_patches() && !clock.from_rest)
-    closing -=
-        mixed_damping_time(i.scene.laws, i.state.patches[owner.at() / 2], 0) * clock.rate_then(before, after);
+  if (owner.family == Family::kContact && i.scene.by_patches())
+    closing -= clock.dashpot_time(
+                   mixed_damping_time(i.scene.blocks, i.scene.laws, i.state.patches[owner.at() / 2], 0)) *
+               clock.rate_then(before, after);
   return closing;
 }
 

@@ -23,13 +23,19 @@ struct StepClock {
     const double r = (1 - alpha) / (1 + alpha);
     return r * r;
   }
-  /// The same two of a joint with dashpots of this damping time (eq. 4.1b), none in steps from rest: they have no velocity.
+  /// What dashpots of this damping time add to what alpha damps, which is that of a damping time of alpha dt: joints are damped
+  /// by theirs whatever the step, as long as that is not longer [s]. None in steps from rest: they have no velocity.
+  double dashpot_time(double damping_time) const {
+    const double more = damping_time - alpha * dt;
+    return from_rest || more < 0 ? 0 : more;
+  }
+  /// The same two of a joint with dashpots of this damping time (eq. 4.1b).
   struct JointWeights {
     double position, old;
   };
   JointWeights joint_weights(double damping_time) const {
-    if (from_rest || damping_time == 0) return {position_factor(), old_share()};
-    const double share = position_factor() * damping_time / (2 * dt), all = 1 + (1 + alpha) * share;
+    const double share = position_factor() * dashpot_time(damping_time) / (2 * dt),
+                 all = 1 + (1 + alpha) * share;
     return {position_factor() / all, (old_share() - (1 - alpha) * share) / all};
   }
   /// Way of a point until the instant at which the law of its joint holds, and its velocity then, of those before and after

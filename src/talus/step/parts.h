@@ -41,6 +41,11 @@ struct RowSums {
 void tally_row(const BlockSet& blocks, const StepWork& work, const State& state, size_t r,
                const std::array<double, 2>& u, RowSums& sums);
 
+/// What of that dashpots have taken is the work of damping.
+/// @param impulse  what they bear [N s]
+void tally_dashpots(const StepWork& work, size_t r, const std::array<double, 2>& u,
+                    const std::array<double, 2>& impulse, RowSums& sums);
+
 /// Puts the work of rows and blocks into the ledger (theory 8), and what is left out of balance into the
 /// report; writes state.row_force.
 void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,

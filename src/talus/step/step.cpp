@@ -128,8 +128,12 @@ RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
         for (size_t r = begin; r < end; ++r) {
           const std::array<double, 2> u = relative_velocity(work.rows.points[r], state.rate);
           tally_row(blocks, work, state, r, u, s);
-          if (scene.by_patches() && r >= contacts.begin && r < contacts.end)
-            remember_patch(blocks, scene.laws, work.rows, r, u, work.rate_before, work.clock, state);
+          if (!scene.by_patches() || r < contacts.begin || r >= contacts.end) continue;
+          tally_dashpots(work, r, u,
+                         dashpot_impulse(blocks, scene.laws, work.rows, r, u, work.rate_before, state.rate,
+                                         work.clock, state),
+                         s);
+          remember_patch(blocks, scene.laws, work.rows, r, u, work.rate_before, work.clock, state);
         }
         const RowRange here{std::max(begin, contacts.begin), std::min(end, contacts.end)};
         if (!scene.by_patches() && here.begin < here.end)

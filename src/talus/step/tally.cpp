@@ -154,6 +154,18 @@ void tally_row(const BlockSet& blocks, const StepWork& step, const State& state,
   s.closed += contact || (is_joint(owner.family) && p.is_soft());
 }
 
+// Theory 8.
+void tally_dashpots(const StepWork& step, size_t r, const std::array<double, 2>& u,
+                    const std::array<double, 2>& impulse, RowSums& s) {
+  if (impulse[0] == 0 && impulse[1] == 0) return;
+  const auto u0 = relative_velocity(step.rows.points[r], step.rate_before);
+  for (size_t k = 0; k < 2; ++k)
+    for (const auto& [cause, sign] : {std::pair(Cause::kDamping, 0.5), std::pair(Cause::kJoints, -0.5)}) {
+      s.work.before[cause] += sign * impulse[k] * u0[k];
+      s.work.after[cause] += sign * impulse[k] * u[k];
+    }
+}
+
 void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWork& work, State& state,
            StepReport& report) {
   work.work.before += rows.work.before, work.work.after += rows.work.after;

@@ -109,15 +109,24 @@ int safety_command(const ModelArguments& args, const SafetyArguments& how) {
              "", "ended by", "time [s]", "steps", "unbalanced", "moved [m]", "block");
   settings.jobs = how.jobs;
   SafetyResult so_far;
+  // should the search be broken off: what has been told, and what an earlier one knew beside it
+  const auto keep_known = [&] {
+    SafetyResult all = so_far;
+    for (const SafetyTrial& k : settings.known)
+      if (std::none_of(all.trials.begin(), all.trials.end(),
+                       [&](const SafetyTrial& t) { return t.factor == k.factor && t.from == k.from; }))
+        all.trials.push_back(k);
+    out.write(kTrials, safety_csv(all));
+  };
+  if (how.resume) keep_known();
   settings.told = [&](const SafetyTrial& t) {
     so_far.trials.push_back(t);
-    out.write(kTrials, safety_csv(so_far));  // what is known, should the search be broken off
+    keep_known();
     fmt::print("{}", safety_line(t));
     std::fflush(stdout);
   };
   settings.save = [&](const SafetyTrial& t, const Archive& state) {
     const fs::path path = state_of(root, t);
-    if (is_there(path)) return;
     out.make_folder(kStates);
     write_archive(path, state);
   };

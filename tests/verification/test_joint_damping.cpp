@@ -35,11 +35,20 @@ TEST_CASE("joint damping: a blow gives back what stiffness and dashpot leave of 
     const double root = std::sqrt(1 - share * share),
                  exact = std::exp(-2 * share / root * std::atan(root / share));  // eq. 4.1c
     for (const double step : {2e-6, 1e-6}) {
+      Energy end;
       const CaseResult r = run_case(
           block_on_floor("[0, 0]", "polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]\nvelocity = [0, -0.1]",
-                         2 * share / omega, step, 4e-3));
+                         2 * share / omega, step, 4e-3),
+          {}, [&](const Instant& i) { end = i.report.energy; });
       check_close(fmt::format("rebound at {} of critical, step {:g} us", share, 1e6 * step),
                   r.state.rate[1].a.y / 0.1, exact, 1e-4, 1e-5);
+      // the spring has given back what it took; where the two cancel it still bears, and sheds that
+      const double came = 0.5 * kDensity * 0.01;
+      const double bears = came * 4 * share * share * exact * exact;
+      check_close("damping work of the blow [J]", -end.work[Cause::kDamping] - end.work[Cause::kJoints],
+                  came * (1 - exact * exact), 1e-4, 1e-5);
+      check_close("what the spring has taken for good [J]", -end.work[Cause::kJoints], bears,
+                  omega * step / share, 1e-3);  // in the last step it changes by that
     }
   }
 }
@@ -70,31 +79,35 @@ TEST_CASE("joint damping: what flies feels no dashpot before it touches") {
 }
 
 TEST_CASE("joint damping: blocks swing out on their joints as a damped oscillator does") {
-  // wide and low: it hardly rocks. Gravity comes at once, and what it closes is never let go
-  const double height = 0.05, mass = kDensity * height;
+  // wide and low: it hardly rocks. Gravity comes at once, and what it closes is never let go. Alpha damps as a time of alpha dt
+  // does, here 0.01 ms of the 0.25: counted in it leaves 0.6 %, added to the joint's own 1.5 and 1.9 %
+  const double height = 0.05, mass = kDensity * height, duration = 2e-3;
   const std::string block = "polygon = [[-2, 0], [2, 0], [2, 0.05], [-2, 0.05]]";
-  const double duration = 2e-3, step = 1e-6;
-  const CaseResult r = run_case(
-      block_on_floor("[0.5, -10]", block, kTime, step, duration, "[output]\nhistory_interval = \"1 us\"\n"));
-  const std::vector<double>& t = r.column("t [s]");
-  for (const auto& [axis, stiffness, pull] :
-       {std::tuple("y", kNormal, -10.0), std::tuple("x", kShear, 0.5)}) {
-    const std::vector<double>& u = r.column(fmt::format("c.displacement_{}", axis));
-    const double omega = std::sqrt(stiffness / mass), share = 0.5 * kTime * omega,
-                 rest = pull * mass / stiffness;
-    double worst = 0;
-    for (size_t i = 0; i < t.size(); ++i) {
-      double exact = 1 - std::exp(-omega * t[i]) * (1 + omega * t[i]);
-      const double root = std::sqrt(std::abs(1 - share * share));
-      if (share < 1)
-        exact = 1 - std::exp(-share * omega * t[i]) *
-                        (std::cos(root * omega * t[i]) + share / root * std::sin(root * omega * t[i]));
-      else if (share > 1)
-        exact = 1 - std::exp(-share * omega * t[i]) *
-                        (std::cosh(root * omega * t[i]) + share / root * std::sinh(root * omega * t[i]));
-      worst = std::max(worst, std::abs(u[i] / rest - exact));
+  for (const auto& [alpha, step, allowed] : {std::tuple(0.0, 1e-6, 1e-3), std::tuple(0.5, 2e-5, 1e-2)}) {
+    const CaseResult r = run_case(
+        block_on_floor("[0.5, -10]", block, kTime, step, duration, "[output]\nhistory_interval = \"1 us\"\n"),
+        {fmt::format("contact.alpha={}", alpha)});
+    const std::vector<double>& t = r.column("t [s]");
+    for (const auto& [axis, stiffness, pull] :
+         {std::tuple("y", kNormal, -10.0), std::tuple("x", kShear, 0.5)}) {
+      const std::vector<double>& u = r.column(fmt::format("c.displacement_{}", axis));
+      const double omega = std::sqrt(stiffness / mass), share = 0.5 * kTime * omega,
+                   rest = pull * mass / stiffness;
+      double worst = 0;
+      for (size_t i = 0; i < t.size(); ++i) {
+        double exact = 1 - std::exp(-omega * t[i]) * (1 + omega * t[i]);
+        const double root = std::sqrt(std::abs(1 - share * share));
+        if (share < 1)
+          exact = 1 - std::exp(-share * omega * t[i]) *
+                          (std::cos(root * omega * t[i]) + share / root * std::sin(root * omega * t[i]));
+        else if (share > 1)
+          exact = 1 - std::exp(-share * omega * t[i]) *
+                          (std::cosh(root * omega * t[i]) + share / root * std::sinh(root * omega * t[i]));
+        worst = std::max(worst, std::abs(u[i] / rest - exact));
+      }
+      check_below(fmt::format("damped swing along {}, {:.3g} of critical, alpha {:g}", axis, share, alpha),
+                  worst, allowed, 1e-4);
     }
-    check_below(fmt::format("damped swing along {}, {:.3g} of critical", axis, share), worst, 1e-3, 1e-4);
   }
 }
 

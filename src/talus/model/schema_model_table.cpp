@@ -202,9 +202,9 @@ std::vector<SectionSpec> sections_of_model() {
          .usual = {.min = 1e-6, .max = 0.01},
          .default_text = "\"0.25 ms\"",
          .doc =
-             "Dashpots beside kn and ks: each bears its stiffness x this time x the velocity (theory 4.6). A blow between "
-             "blocks of mass m on a joint of stiffness k is damped by damping_time sqrt(k/m)/2 of critical: 0.2 to 0.3 ms "
-             "for blocks of 1 m at 20 GPa/m, which then rebound with 0.47 to 0.35 of their speed. None while a face is intact, in "
+             "Dashpots beside kn and ks: each bears its stiffness x this time x the velocity (theory 4.6). A block of mass m "
+             "that hits ground on a joint of stiffness k is damped by damping_time sqrt(k/m)/2 of critical: 0.2 to 0.3 ms for one "
+             "of 1 m at 20 GPa/m, which then rebounds with 0.47 to 0.35 of its speed. None while a face is intact or apart, in "
              "steps from rest, and beside no stiffness. Of steps above damping_time / contact.alpha the numerical damping is the larger."},
         {.name = "restitution",
          .range = {.min = 0, .max = 1},

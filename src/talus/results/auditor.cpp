@@ -125,9 +125,10 @@ void Auditor::watch(const Instant& i) {
     const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
     for (int end = 0; end < 2; ++end) {
       const auto [corner, edge] = patch_numbers(scene_, state.patches, k, end);
-      points_.push_back({c.block_a, corner, c.block_b, edge, c.force[static_cast<size_t>(end)][0],
-                         c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal,
-                         hard ? 0 : mixed_damping_time(scene_.blocks, scene_.laws, c, 0)});
+      points_.push_back(
+          {c.block_a, corner, c.block_b, edge, c.force[static_cast<size_t>(end)][0],
+           c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal,
+           hard ? 0 : i.work.clock.dashpot_time(mixed_damping_time(scene_.blocks, scene_.laws, c, 0))});
     }
   }
   for (size_t k = 0; k < state.contacts.size(); ++k) {

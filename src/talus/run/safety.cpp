@@ -15,6 +15,7 @@
 #include "talus/base/parallel.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/safety_watch.h"
+#include "talus/step/change.h"
 
 namespace talus {
 
@@ -280,9 +281,7 @@ class Search {
     if (input_.by == SafetyBy::kLoad) model.loads[static_cast<size_t>(input_.load)].factor = 0;
     SafetyTrial settled;
     settled.factor = 0;
-    if (take_saved(settled, *base)) {
-      model.joints = full_;  // changes of joints are not made again
-    } else {
+    if (!take_saved_stages(settled, *base)) {
       base->state = start_state(base->scene);
       struct Nobody : Observer {
         void at(const Instant&) override {}
@@ -308,15 +307,26 @@ class Search {
     if (settings_.save) settings_.save(trial, run_archive(after.scene, after.standing, after.state));
   }
 
-  // The end of a trial as a search that was broken off has saved it; whether it has.
+  // The end of a trial as a search that was broken off has saved it; whether it has, and it can be used.
   bool take_saved(const SafetyTrial& trial, Base& base) const {
-    std::optional<Archive> archive = settings_.saved ? settings_.saved(trial) : std::nullopt;
-    if (!archive) return false;
-    SavedRun run =
-        saved_run_of(fmt::format("the saved trial at {:g}", trial.factor), std::move(*archive), prepared_);
-    base.scene.give.shortest_step = run.archive.numbers.at(kSavedGive).at(1);
-    base.state = std::move(run.state);
-    base.standing = {run.standing.result, true};
+    const PreparedRun of{base.scene, base.plans};
+    try {
+      std::optional<Archive> archive = settings_.saved ? settings_.saved(trial) : std::nullopt;
+      if (!archive) return false;
+      SavedRun run = saved_run_of(fmt::format("trial at {:g}", trial.factor), std::move(*archive), of);
+      base.scene.give.shortest_step = run.archive.numbers.at(kSavedGive).at(1);
+      base.state = std::move(run.state);
+      base.standing = {run.standing.result, true};
+    } catch (const FileError&) {  // the trial is run again
+      return false;
+    }
+    return true;
+  }
+
+  // The same of the end of the stages, whose scene is that of their end.
+  bool take_saved_stages(const SafetyTrial& trial, Base& base) const {
+    if (!take_saved(trial, base)) return false;
+    for (size_t i = 0; i < base.scene.model.stages.size(); ++i) change_scene(static_cast<int>(i), base.scene);
     return true;
   }
 
@@ -346,7 +356,7 @@ class Search {
       if (!k.stands || needs_no_state) return {k, nullptr};
       auto after = std::make_unique<Base>(base_ ? *base_ : beginning(factor));
       if (base_) raise(after->scene, after->state, factor);
-      if (!take_saved(k, *after)) break;
+      if (!(base_ ? take_saved(k, *after) : take_saved_stages(k, *after))) break;
       if (base_)
         after->factor = factor;
       else
@@ -391,17 +401,18 @@ class Search {
   Tried of_action(double factor, const Base& from, const Workers& workers, const SafetyTrial* kept) const {
     auto after = std::make_unique<Base>(from);
     const StageInput stage = after->scene.model.stages.back();
+    // another go of the stage in which the trial before has come to rest, whatever did not there
+    Standing begin = after->standing;
+    if (begin.result.stages.size() == after->scene.model.stages.size()) begin.result.stages.pop_back();
+    begin.result.failure.clear(), begin.result.no_rest = false;
     raise(after->scene, after->state, factor);
-    RunResult run;
     Tried tried = judged(factor, from.factor, *after, kept, [&](Observer& observer) {
-      run = continue_stages(after->scene, after->plans, after->standing, after->state, observer, workers);
-      return run;
+      after->standing.result =
+          continue_stages(after->scene, after->plans, begin, after->state, observer, workers);
+      return after->standing.result;
     });
     if (!tried.trial.stands) return tried;
-    // the next trial is another go of the same stage, from rest again
-    run.stages.pop_back();
     after->scene.model.stages.back() = stage;
-    after->standing = {run, true};
     after->factor = factor;
     tried.after = std::move(after);
     return tried;

@@ -754,6 +754,8 @@ class Check {
       const Seen& s = seen_[i];
       const Law* here = law_of(p);
       if (p.bond() || !here || here->normal_stiffness <= 0 || p.in_situ != 0 || p.rise != 0) return;
+      // what the ground has closed lies in sides that did not face each other at the start, too, and no patch tells
+      if (rules_.in_situ && p.patch()) return;
       if (law && law != here) return;
       law = here;
       if (s.depth > 0 && 3 * frame_.step * s.approach > 0.1 * s.depth) return;

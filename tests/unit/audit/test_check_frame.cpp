@@ -365,6 +365,9 @@ TEST_CASE("audit: stiffness times overlap is asked of one interface that hardly 
   Case two = patch(c, 6);  // ends on two sides at 0.2 rad
   two.frame.points[1].normal = {std::sin(0.2), -std::cos(0.2)};
   CHECK(!has_any(two.look(), Defect::kNormalLaw));
+  Case ground = patch(c, 6);  // a tunnel's blocks have slid to the next ones, whose outlines are moved as theirs are
+  ground.rules.in_situ = true;
+  CHECK(!has_any(ground.look(), Defect::kNormalLaw));
 }
 
 TEST_CASE("audit: the force of a patch is that of the energy of the overlap") {

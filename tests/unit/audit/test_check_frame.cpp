@@ -365,7 +365,8 @@ TEST_CASE("audit: stiffness times overlap is asked of one interface that hardly 
   Case two = patch(c, 6);  // ends on two sides at 0.2 rad
   two.frame.points[1].normal = {std::sin(0.2), -std::cos(0.2)};
   CHECK(!has_any(two.look(), Defect::kNormalLaw));
-  Case ground = patch(c, 6);  // a tunnel's blocks have slid to the next ones, whose outlines are moved as theirs are
+  Case ground =
+      patch(c, 6);  // a tunnel's blocks have slid to the next ones, whose outlines are moved as theirs are
   ground.rules.in_situ = true;
   CHECK(!has_any(ground.look(), Defect::kNormalLaw));
 }

@@ -68,41 +68,44 @@ SafetyResult search(const PreparedRun& prepared, Kept& kept, const Kept* before,
 }  // namespace
 
 TEST_CASE("safety resumed: the answer and every trial have the bits of a search that was never broken off") {
-  for (const std::string safety :
-       {"joints = [\"lower\"]\ntolerance = 0.05\n", "tolerance = 0.05\nlowest = 0.2\n",
-        "by = \"tilt\"\ntolerance = 0.5\n", "by = \"acceleration\"\ntolerance = 0.02\n"})
-    for (const std::string integration :
-         {"", "integration = \"dynamic\"\ntime_step = \"2 ms\"\nunbalanced = 1e-4\n"}) {
-      CAPTURE(safety);
-      CAPTURE(integration);
-      const std::string text = row_of_two(integration, safety);
-      Findings findings("case.toml", text);
-      const PreparedRun prepared = prepare_run("case.toml", text, {}, findings);
-      Kept whole;
-      int taken = 0;
-      const SafetyResult all = search(prepared, whole, nullptr, taken);
-      CHECK(all.status == SafetyStatus::kFound);
-      REQUIRE(whole.told.size() > 3);
-      const std::string csv = safety_csv(all);
-      for (size_t n : {size_t{1}, whole.told.size() / 2, whole.told.size() - 1}) {
-        Kept cut{{whole.told.begin(), whole.told.begin() + static_cast<std::ptrdiff_t>(n)}, whole.states},
-            again;
-        int64_t stood = 0;
-        // run again their steps would be counted anew
-        for (SafetyTrial& t : cut.told) t.steps = -1, stood += t.stands;
-        REQUIRE(stood > 0);
-        taken = 0;
-        SafetyResult resumed = search(prepared, again, &cut, taken);
-        CHECK(taken >= stood);
-        REQUIRE(resumed.trials.size() == all.trials.size());
-        for (size_t k = 0; k < all.trials.size(); ++k) {
-          CHECK(resumed.trials[k].steps == (k < n ? -1 : all.trials[k].steps));
-          resumed.trials[k].steps = all.trials[k].steps;
-        }
-        CHECK(safety_csv(resumed) == csv);
-        CHECK(resumed.coarse == all.coarse);
+  const std::string by_rest,
+      by_motion = "integration = \"dynamic\"\ntime_step = \"2 ms\"\nunbalanced = 1e-4\n";
+  const std::string lower = "joints = [\"lower\"]\ntolerance = 0.1\n";
+  for (const auto& [safety, integration] :
+       {std::pair(lower, by_rest), std::pair(lower, by_motion),
+        std::pair(std::string("tolerance = 0.1\nlowest = 0.2\n"), by_rest),
+        std::pair(std::string("by = \"tilt\"\ntolerance = 1\n"), by_rest),
+        std::pair(std::string("by = \"acceleration\"\ntolerance = 0.05\n"), by_motion)}) {
+    CAPTURE(safety);
+    CAPTURE(integration);
+    const std::string text = row_of_two(integration, safety);
+    Findings findings("case.toml", text);
+    const PreparedRun prepared = prepare_run("case.toml", text, {}, findings);
+    Kept whole;
+    int taken = 0;
+    const SafetyResult all = search(prepared, whole, nullptr, taken);
+    CHECK(all.status == SafetyStatus::kFound);
+    REQUIRE(whole.told.size() > 3);
+    const std::string csv = safety_csv(all);
+    for (size_t n : {whole.told.size() / 2, whole.told.size() - 1}) {
+      Kept cut{{whole.told.begin(), whole.told.begin() + static_cast<std::ptrdiff_t>(n)}, whole.states},
+          again;
+      int64_t stood = 0;
+      // run again their steps would be counted anew
+      for (SafetyTrial& t : cut.told) t.steps = -1, stood += t.stands;
+      REQUIRE(stood > 0);
+      taken = 0;
+      SafetyResult resumed = search(prepared, again, &cut, taken);
+      CHECK(taken >= stood);
+      REQUIRE(resumed.trials.size() == all.trials.size());
+      for (size_t k = 0; k < all.trials.size(); ++k) {
+        CHECK(resumed.trials[k].steps == (k < n ? -1 : all.trials[k].steps));
+        resumed.trials[k].steps = all.trials[k].steps;
       }
+      CHECK(safety_csv(resumed) == csv);
+      CHECK(resumed.coarse == all.coarse);
     }
+  }
 }
 
 }  // namespace test_safety_resume

@@ -265,10 +265,6 @@ SlipShares slip_exact(double beta) {
   return {std::sqrt(back), std::sqrt(through), std::sqrt(std::max(0.0, 1 - through - back))};
 }
 
-}  // namespace
-
-namespace {
-
 void slips_under_a_wave(const std::vector<double>& betas) {
   CHECK(std::abs(slip_exact(0.3).reflected - .63604) < 1e-5);
   CHECK(std::abs(slip_exact(0.3).transmitted - .39607) < 1e-5);

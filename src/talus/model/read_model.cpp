@@ -199,7 +199,8 @@ class ModelReader : private SectionReader {
       j.normal_stiffness = f.get("normal_stiffness", 0.0);
       j.shear_stiffness = f.get("shear_stiffness", 0.0);
       const bool may = model_.formulation == Formulation::kContactForces && JointLaw(j).is_soft();
-      j.damping_time = may || f.given("damping_time") ? f.get("damping_time", 0.0) : 0;  // the default
+      j.damping_time =
+          may || f.given("damping_time") ? f.get("damping_time", 0.0) : 0;  // its default is one of stiffness
       j.restitution = f.get("restitution", -1.0);
       j.dilation_angle = f.get("dilation_angle", 0.0);
       j.dilation_slip = f.get("dilation_slip", j.dilation_slip);

@@ -71,14 +71,9 @@ class PatchRows {
     p.row[0].bias = soft || gives ? gap / clock_.dt : hard_gap_bias(gap, slop, clock_.dt);
     p.row[1].bias =
         (law.is_soft(1) || gives ? c.stretch[end] : beyond_slop(c.stretch[end], slop)) / clock_.dt;
-    bool rebounds = false;
-    if (springs || law.restitution() >= 0) u = relative_velocity(p, before_);
-    if (law.restitution() >= 0 && gap + clock_.dt * u[0] <= 0 && u[0] < 0) {
-      rebounds = true;
-      p.row[0].bias = std::min(p.row[0].bias, law.restitution() * u[0]);
-    }
+    if (springs) u = relative_velocity(p, before_);
     if (gives) {
-      p.gives = {!soft && !rebounds, !law.is_soft(1)};
+      p.gives = {!soft, !law.is_soft(1)};
       for (size_t row = 0; row < 2; ++row)
         if (p.gives[row]) p.row[row].compliance = give;
     }

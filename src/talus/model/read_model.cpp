@@ -382,6 +382,11 @@ class ModelReader : private SectionReader {
         findings_.error(f.where("law"), f.path_of("law"),
                         fmt::format("never slips by its rules, and joint \"{}\" dilates with slip", j.name),
                         "use law = \"exact\", or leave dilation_angle out");
+    for (const JointProperty& j : model_.joints)
+      if (contact.law == ContactLaw::kSmoothed && j.restitution >= 0)
+        findings_.error(f.where("law"), f.path_of("law"),
+                        fmt::format("knows no blows, and joint \"{}\" has a restitution", j.name),
+                        "use law = \"exact\", or leave restitution out");
     for_list("contact_pair", [this](const Fields& p) {
       ContactPairInput c;
       const auto names = p.get<std::vector<std::string>>("between");

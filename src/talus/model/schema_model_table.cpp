@@ -208,8 +208,9 @@ std::vector<SectionSpec> sections_of_model() {
              "steps from rest, and beside no stiffness. Of steps above damping_time / contact.alpha the numerical damping is the larger."},
         {.name = "restitution",
          .range = {.min = 0, .max = 1},
-         .doc = "Ratio of the normal velocities after and before a touch; none: what the scheme gives "
-                "(docs/theory.md 7.1). Only for hard joints."},
+         .doc =
+             "Ratio of the normal velocities after and before a blow, of blocks of any kind and of what bonds tie together, as "
+             "whole bodies (theory 4.7); in dynamic stages. None: what the scheme gives (7.1). Only for hard joints and contact.law = \"exact\"."},
         {.name = "dilation_angle",
          .dimension = D::kAngle,
          .range = {.min = 0, .max = 1.5533430342749532},

@@ -205,7 +205,12 @@ double closing_at(const Instant& i, size_t row) {
   const StepClock& clock = i.work.clock;
   const double before = relative_velocity(p, i.work.rate_before)[0],
                after = relative_velocity(p, i.state.rate)[0];
-  if (!p.is_soft(0)) return clock.dt * std::max({0.0, -before, -after});
+  if (!p.is_soft(0)) {
+    const std::vector<Blows::One>& blows = i.work.blows.list;
+    const auto blow = std::ranges::lower_bound(blows, row, {}, &Blows::One::row);
+    const double blown = blow != blows.end() && blow->row == row ? blow->approach : 0;
+    return clock.dt * std::max({0.0, -before, -after, blown});
+  }
   const RowOwner owner = i.work.rows.owner[row];
   double closing = -clock.way_until(before, after);
   if (owner.family == Family::kContact && i.scene.by_patches())

@@ -9,6 +9,7 @@
 #include "talus/blocks/validate.h"
 #include "talus/corners/corner_rows.h"
 #include "talus/rows/validate_rows.h"
+#include "talus/step/blows.h"
 #include "talus/step/chunks.h"
 #include "talus/step/parts.h"
 
@@ -157,6 +158,19 @@ void remember(const Scene& scene, const StepWork& work, State& state) {
   remember_bolts(work.rows, work.clock, state);
 }
 
+// Lets bodies that come together rebound, before anything else acts in the step. Returns the rates before that, none: nothing did.
+std::vector<BlockRate> deliver_blows(const Scene& scene, const Scheme& scheme, StepWork& work, State& state) {
+  work.blows = {};
+  if (!scheme.settings.dynamic || !scene.by_patches()) return {};
+  work.blows = find_blows(scene, work, state);
+  if (work.blows.waves == 0) return {};
+  std::vector<BlockRate> before = std::move(work.rate_before);
+  state.rate = std::move(work.blows.rate);
+  predict(scene, scheme, work, state);
+  gather_rows(scene, work, state);
+  return before;
+}
+
 // The recipe (eq. 2.1).
 StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt, StepWork& work,
                      State& state) {
@@ -183,12 +197,14 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   profile.go_on_with(Profile::kMargins);
   seek_contacts(scene, work, state, report);
   gather_rows(scene, work, state);
+  const std::vector<BlockRate> rate_before = deliver_blows(scene, scheme, work, state);
   ++profile.steps;
   profile.points += static_cast<int64_t>(work.rows.size());
   profile.go_on_with(Profile::kRest);
   solve_rows(scene, settings, work, state, report);
   if (report.failed && settings.may_shorten) {
-    state.rate = work.rate_before, state.column_rate = work.column_rate_before;
+    state.rate = rate_before.empty() ? work.rate_before : rate_before;
+    state.column_rate = work.column_rate_before;
     report.taken = false;
     return report;
   }
@@ -196,7 +212,10 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   const RowSums rows = settle_rows(scene, work, state);
   remember(scene, work, state);
   profile.go_on_with(Profile::kLedger);
+  state.work += work.blows.work;
+  report.loose = report.loose || work.blows.failed;
   tally(scene, scheme, rows, work, state, report);
+  remember_blows(work.blows, work.rows, state);
   return report;
 }
 

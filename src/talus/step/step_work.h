@@ -60,6 +60,20 @@ struct StepReport {
   int broken_faces = 0;  // in the drift that follows
 };
 
+/// What bodies gave each other at the beginning of a step, where joints have a restitution (theory 4.7).
+struct Blows {
+  struct One {
+    size_t row = 0;       // of contacts
+    Impulse impulse{};    // [N s]
+    double approach = 0;  // the fastest at which its sides came together [m/s]
+  };
+  int waves = 0;                // 0: none
+  std::vector<One> list;        // by rows
+  std::vector<BlockRate> rate;  // [count] half a step ago, with them
+  WorkDone work;
+  bool failed = false;  // a wave was not solved to the last digits
+};
+
 /// Memory reused from step to step, and what the step found at this instant.
 struct StepWork {
   Workers workers;
@@ -76,6 +90,7 @@ struct StepWork {
   ColumnMotion columns;                  // of the free field
   std::vector<Vec2> column_rate_before;  // State::column_rate before the kick
   KickWork work;
+  Blows blows;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted
   std::vector<BlockForce> load;         // by loads and kept rock, on each block

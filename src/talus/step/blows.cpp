@@ -1,0 +1,369 @@
+#include "talus/step/blows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace talus {
+
+namespace {
+
+// What is slower than the fastest one by so much is no blow any more; how exactly their equations are solved, as share of that
+// speed; waves of a step after which what still comes together does so without restitution.
+constexpr double kLeastBlow = 1e-9, kExactBlow = 1e-10;
+constexpr int kMostWaves = 1000;
+
+// Sets of things that belong together, each known by its first one.
+class Sets {
+ public:
+  explicit Sets(size_t n) : of_(n) { std::iota(of_.begin(), of_.end(), size_t{0}); }
+  size_t find(size_t i) {
+    while (of_[i] != i) i = of_[i] = of_[of_[i]];
+    return i;
+  }
+  void join(size_t i, size_t j) {
+    i = find(i), j = find(j);
+    of_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<size_t> of_;
+};
+
+// Blocks that move as one.
+struct Body {
+  double mass = 0, inertia = 0;  // [kg], about its centroid [kg m2]
+  bool moves = true;
+  Vec2 centre;  // from the reference centroid of its first block [m]
+};
+
+// One end of a patch whose joint has a restitution.
+struct Place {
+  size_t row = 0;  // of the step
+  PointRows rows;  // between bodies that move, by the number of their first blocks
+  Vec2 given[2];   // velocities there of what does not move freely [m/s]
+  double restitution = 0;
+  double reach = 0;     // how far apart it were at the end of the step, but for the motion of the bodies [m]
+  Impulse all{};        // of the waves so far [N s]
+  double approach = 0;  // the fastest of them [m/s]
+
+  // Velocity along an axis that the bodies have nothing to do with.
+  double given_along(size_t axis) const {
+    return dot(axis == 0 ? rows.normal : turn_right(rows.normal), given[0] - given[1]);
+  }
+};
+
+class Waves {
+ public:
+  Waves(const Scene& scene, StepWork& work, const State& state)
+      : scene_(scene), work_(work), state_(state), blocks_(scene.blocks) {}
+
+  Blows find() {
+    Blows out;
+    // what weight gives in a step: what flies up by less is back within two
+    const double slow = norm(scene_.model.gravity) * work_.clock.dt;
+    if (!may_come(slow)) return out;
+    make_bodies();
+    make_places();
+    for (; out.waves < kMostWaves; ++out.waves) {
+      const std::vector<Place*> meet = coming(slow);
+      if (meet.empty()) break;
+      part(meet, out.work);
+    }
+    if (out.waves == 0) return out;
+    out.failed = failed_;
+    for (const Place& p : places_)
+      if (p.all[0] != 0 || p.all[1] != 0) out.list.push_back({p.row, p.all, p.approach});
+    out.rate = work_.rate_before;
+    for (size_t i = 0; i < out.rate.size(); ++i) hand_on(i, out.rate[i]);
+    return out;
+  }
+
+ private:
+  double restitution_of(size_t patch) const {
+    const int joint = state_.patches[patch].joint;
+    return joint < 0 ? -1 : scene_.laws[static_cast<size_t>(joint)].restitution();
+  }
+
+  // Whether any place comes together at all: in most steps none does.
+  bool may_come(double slow) const {
+    const size_t first = work_.rows.range(Family::kContact).begin;
+    for (size_t i = 0; i < state_.patches.size(); ++i) {
+      if (restitution_of(i) < 0) continue;
+      for (size_t end = 0; end < 2; ++end)
+        if (relative_velocity(work_.rows.points[first + 2 * i + end], work_.rate_before)[0] < -slow)
+          return true;
+    }
+    return false;
+  }
+
+  // Where a block is, from the first one of its body: no digits are lost far from the origin.
+  Vec2 place_of(size_t i) const {
+    return (blocks_.centroid[i] - blocks_.centroid[root_[i]]) + state_.displacement[i];
+  }
+  Mat2 shape_of(size_t i) const { return kIdentity + state_.strain_part[i]; }
+  bool deforms(size_t i) const { return blocks_.kind[i] == BlockKind::kDeformable; }
+  // Moment of momentum of a block about its centroid [kg m2/s].
+  double moment_of(size_t i) const {
+    const Mat2& G = work_.rate_before[i].G;
+    if (!deforms(i)) return blocks_.polar_inertia[i] * G.yx;
+    const Mat2 m = shape_of(i) * blocks_.inertia[i] * transpose(G);
+    return m.xy - m.yx;
+  }
+  double inertia_of(size_t i) const {
+    if (!deforms(i)) return blocks_.polar_inertia[i];
+    return trace(shape_of(i) * blocks_.inertia[i] * transpose(shape_of(i)));
+  }
+
+  void find_bodies() {
+    const auto n = static_cast<size_t>(blocks_.count);
+    Sets sets(n);
+    for (size_t f = 0; f < scene_.bonds.faces.size(); ++f) {
+      const BondFace& face = scene_.bonds.faces[f];
+      if (!state_.face[f].broken && !scene_.laws[static_cast<size_t>(face.joint)].is_soft() &&
+          !blocks_.removed(face.block_a) && !blocks_.removed(face.block_b))
+        sets.join(static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
+    }
+    root_.resize(n), body_.assign(n, {});
+    for (size_t i = 0; i < n; ++i) root_[i] = sets.find(i);
+    for (size_t i = 0; i < n; ++i)
+      if (!blocks_.moves_freely(static_cast<int>(i))) body_[root_[i]].moves = false;
+    // what is held in both directions stands; what is held along one the forces of the step hold
+    for (const SupportedPoint& p : scene_.supported) {
+      const SupportInput& s = scene_.model.supports[static_cast<size_t>(p.support)];
+      if (p.active && s.x.kind != Motion::kFree && s.y.kind != Motion::kFree)
+        body_[root_[static_cast<size_t>(p.block)]].moves = false;
+    }
+  }
+
+  // Their motion is that rigid one which has the momentum of their blocks.
+  void make_bodies() {
+    find_bodies();
+    const size_t n = body_.size();
+    rate_.assign(n, {});
+    std::vector<double> moment(n, 0);
+    for (size_t i = 0; i < n; ++i) {
+      Body& b = body_[root_[i]];
+      b.mass += blocks_.mass[i];
+      b.centre += blocks_.mass[i] * place_of(i);
+      rate_[root_[i]].a += blocks_.mass[i] * work_.rate_before[i].a;
+    }
+    for (size_t i = 0; i < n; ++i)
+      if (body_[i].mass > 0)
+        body_[i].centre = body_[i].centre / body_[i].mass, rate_[i].a = rate_[i].a / body_[i].mass;
+    for (size_t i = 0; i < n; ++i) {
+      Body& b = body_[root_[i]];
+      const Vec2 r = place_of(i) - b.centre;
+      b.inertia += inertia_of(i) + blocks_.mass[i] * dot(r, r);
+      moment[root_[i]] += moment_of(i) + blocks_.mass[i] * cross(r, work_.rate_before[i].a);
+    }
+    mobility_.assign(n, {});
+    for (size_t i = 0; i < n; ++i) {
+      const Body& b = body_[i];
+      if (!b.moves || b.mass == 0) continue;
+      rate_[i].G = spin_matrix(moment[i] / b.inertia);
+      const double turns = 1 / b.inertia;
+      mobility_[i].mass = 1 / b.mass;
+      mobility_[i].shear[0] = mobility_[i].shear[2] = turns, mobility_[i].shear[1] = -turns;
+    }
+    rate_old_ = rate_;
+    // what is slower by far than anything that moves is round-off
+    for (size_t i = 0; i < n; ++i)
+      if (mobility_[i].moves())
+        fastest_ = std::max(fastest_, norm(rate_[i].a) + std::abs(rate_[i].G.yx) * blocks_.radius[i]);
+  }
+
+  void make_places() {
+    const size_t first = work_.rows.range(Family::kContact).begin;
+    for (size_t i = 0; i < state_.patches.size(); ++i) {
+      const Patch& c = state_.patches[i];
+      if (restitution_of(i) < 0) continue;
+      for (size_t end = 0; end < 2; ++end) {
+        Place p;
+        p.row = first + 2 * i + end, p.restitution = restitution_of(i);
+        const PointRows& rows = work_.rows.points[p.row];
+        p.rows.normal = rows.normal, p.rows.friction = rows.friction;
+        p.rows.lower = p.rows.cohesion = 0;
+        std::tie(p.rows.block_a, p.rows.arm_a, p.given[0]) = on_body(rows.block_a, rows.arm_a);
+        std::tie(p.rows.block_b, p.rows.arm_b, p.given[1]) = on_body(rows.block_b, rows.arm_b);
+        if (p.rows.block_a == p.rows.block_b) continue;
+        // weight and what else acts, and the motion that is not that of the bodies
+        p.reach = c.allowed[end] - c.closure[end] +
+                  work_.clock.dt * (relative_velocity(rows, work_.rate_free)[0] - speed(p)[0]);
+        places_.push_back(p);
+      }
+    }
+  }
+
+  // A point of a block as one of its body, if that moves; else -1 and the velocity there.
+  std::tuple<int, Vec2, Vec2> on_body(int block, Vec2 arm) const {
+    const auto k = static_cast<size_t>(block);
+    if (!body_[root_[k]].moves) return {-1, Vec2{}, velocity_at(work_.rate_before[k], arm)};
+    const Vec2 now = deforms(k) ? shape_of(k) * arm : arm;
+    return {static_cast<int>(root_[k]), place_of(k) - body_[root_[k]].centre + now, Vec2{}};
+  }
+
+  std::array<double, 2> speed(const Place& p) const {
+    const std::array<double, 2> u = relative_velocity(p.rows, rate_);
+    return {u[0] + p.given_along(0), u[1] + p.given_along(1)};
+  }
+
+  // The places of the next wave.
+  std::vector<Place*> coming(double slow) {
+    std::vector<Place*> out;
+    double fastest = fastest_;
+    for (Place& p : places_) {
+      const double u = speed(p)[0];
+      if (!(u < -slow) || !(-u > kLeastBlow * fastest_) || p.reach + work_.clock.dt * u > 0) continue;
+      out.push_back(&p), fastest = std::max(fastest, -u);
+    }
+    fastest_ = fastest;
+    return out;
+  }
+
+  // Eq. 4.7a, with a share of the restitution.
+  std::vector<Impulse> solve(const std::vector<Place*>& meet, double share) {
+    RowSet set;
+    for (const Place* p : meet) {
+      PointRows rows = p->rows;
+      rows.row[0].bias = p->given_along(0) + share * p->restitution * speed(*p)[0];
+      rows.row[1].bias = p->given_along(1);
+      set.add(rows, {0, 0}, {Family::kContact, static_cast<int>(p->row)});
+    }
+    std::vector<BlockRate> rate = rate_;
+    std::vector<Impulse> guess;
+    SolverSet solvers;
+    const double exact = kExactBlow * fastest_ * work_.clock.dt;
+    const StepProblem problem{mobility_, rate_, work_.clock.dt, {}, set, rate, work_.profile};
+    const Solved solved =
+        solve_step(scene_.model, {}, exact, exact, 1, false, work_.workers, solvers, problem, guess);
+    failed_ = failed_ || solved.failed;
+    return set.impulse;
+  }
+
+  // Which of them hang together, by bodies that move.
+  std::vector<size_t> islands(const std::vector<Place*>& meet) const {
+    Sets sets(body_.size());
+    std::vector<size_t> out;
+    for (const Place* p : meet)
+      if (p->rows.block_a >= 0 && p->rows.block_b >= 0)
+        sets.join(static_cast<size_t>(p->rows.block_a), static_cast<size_t>(p->rows.block_b));
+    for (const Place* p : meet)
+      out.push_back(sets.find(static_cast<size_t>(std::max(p->rows.block_a, p->rows.block_b))));
+    return out;
+  }
+
+  // Friction at places that rebound may give energy by the law of Newton. Of an island where it does, the impulses are as far
+  // between those and the ones without rebound, which never give any, as it takes.
+  void hold_back(const std::vector<Place*>& meet, std::vector<Impulse>& impulse) {
+    const std::vector<size_t> island = islands(meet);
+    const auto work_of = [&](const std::vector<Impulse>& p, const std::vector<BlockRate>& rate) {
+      std::vector<double> work(body_.size(), 0);
+      for (size_t i = 0; i < meet.size(); ++i) {
+        const auto before = speed(*meet[i]), after = relative_velocity(meet[i]->rows, rate);
+        for (size_t k = 0; k < 2; ++k)
+          work[island[i]] += 0.5 * p[i][k] * (before[k] + after[k] + meet[i]->given_along(k));
+      }
+      return work;
+    };
+    const std::vector<double> gives = work_of(impulse, rates_with(meet, impulse));
+    if (std::ranges::none_of(gives, [](double w) { return w > 0; })) return;
+    const std::vector<Impulse> least = solve(meet, 0);
+    const std::vector<double> takes = work_of(least, rates_with(meet, least));
+    std::vector<Impulse> middle = impulse;
+    for (size_t i = 0; i < meet.size(); ++i)
+      for (size_t k = 0; k < 2; ++k) middle[i][k] = 0.5 * (impulse[i][k] + least[i][k]);
+    const std::vector<double> between = work_of(middle, rates_with(meet, middle));
+    for (size_t i = 0; i < meet.size(); ++i) {
+      const size_t s = island[i];
+      if (!(gives[s] > 0)) continue;
+      // of the parabola through the three works its root
+      const double a = 2 * (gives[s] + takes[s] - 2 * between[s]), b = gives[s] - takes[s] - a;
+      const double share = root_between(a, b, std::min(takes[s], 0.0));
+      for (size_t k = 0; k < 2; ++k) impulse[i][k] = least[i][k] + share * (impulse[i][k] - least[i][k]);
+    }
+  }
+  // Of a x^2 + b x + c, c <= 0 < a + b + c, in [0, 1].
+  static double root_between(double a, double b, double c) {
+    double low = 0, high = 1;
+    for (int n = 0; n < 60; ++n) {
+      const double x = 0.5 * (low + high);
+      ((a * x + b) * x + c > 0 ? high : low) = x;
+    }
+    return low;
+  }
+
+  std::vector<BlockRate> rates_with(const std::vector<Place*>& meet,
+                                    const std::vector<Impulse>& impulse) const {
+    std::vector<BlockRate> rate = rate_;
+    for (size_t i = 0; i < meet.size(); ++i) {
+      const PointRows& p = meet[i]->rows;
+      for (const auto& [body, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
+        if (body < 0) continue;
+        const BlockRate more =
+            accelerate(mobility_[static_cast<size_t>(body)], impulse_on(p, impulse[i], sign));
+        rate[static_cast<size_t>(body)].a += more.a, rate[static_cast<size_t>(body)].G += more.G;
+      }
+    }
+    return rate;
+  }
+
+  void part(const std::vector<Place*>& meet, WorkDone& work) {
+    std::vector<Impulse> impulse = solve(meet, 1);
+    hold_back(meet, impulse);
+    const std::vector<BlockRate> after = rates_with(meet, impulse);
+    for (size_t i = 0; i < meet.size(); ++i) {
+      Place& p = *meet[i];
+      const auto u0 = speed(p), u1 = relative_velocity(p.rows, after);
+      for (size_t k = 0; k < 2; ++k) {
+        work[k == 0 ? Cause::kContactClosing : Cause::kFriction] +=
+            0.5 * impulse[i][k] * (u0[k] + u1[k] + p.given_along(k));
+        // what does not move freely passes on the work of what drives it
+        work[Cause::kSupports] -= impulse[i][k] * p.given_along(k);
+        p.all[k] += impulse[i][k];
+      }
+      p.approach = std::max(p.approach, -u0[0]);
+    }
+    rate_ = after;
+  }
+
+  // The jump of its body, to the rates of a block.
+  void hand_on(size_t i, BlockRate& rate) const {
+    const size_t b = root_[i];
+    if (!mobility_[b].moves()) return;
+    const Mat2 spin = rate_[b].G - rate_old_[b].G;
+    rate.a += rate_[b].a - rate_old_[b].a + spin * (place_of(i) - body_[b].centre);
+    rate.G += deforms(i) ? spin * shape_of(i) : spin;
+  }
+
+  const Scene& scene_;
+  StepWork& work_;
+  const State& state_;
+  const BlockSet& blocks_;
+  std::vector<size_t> root_;  // [count] first block of the body of a block
+  // [count], of bodies, by their first blocks
+  std::vector<Body> body_;
+  std::vector<Mobility> mobility_;
+  std::vector<BlockRate> rate_, rate_old_;
+  std::vector<Place> places_;
+  double fastest_ = 0;  // of what has met so far [m/s]
+  bool failed_ = false;
+};
+
+}  // namespace
+
+Blows find_blows(const Scene& scene, StepWork& work, const State& state) {
+  return Waves(scene, work, state).find();
+}
+
+// The state does not keep them: they are no guess for the forces of the next step.
+void remember_blows(const Blows& blows, RowSet& rows, State& state) {
+  const size_t first = rows.range(Family::kContact).begin;
+  for (const Blows::One& blow : blows.list) {
+    for (size_t i = 0; i < 2; ++i) rows.impulse[blow.row][i] += blow.impulse[i];
+    state.patches[(blow.row - first) / 2].touched = true;
+  }
+}
+
+}  // namespace talus

@@ -21,6 +21,9 @@ struct BlockRate {
   Mat2 G;
 };
 
+inline BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a, u.G + v.G}; }
+inline BlockRate operator-(const BlockRate& u, const BlockRate& v) { return {u.a - v.a, u.G - v.G}; }
+
 /// Generalised force on a block: resultant f [N] and Q = sum of f X^T - V P [N m]. Conjugate to BlockRate.
 struct BlockForce {
   Vec2 f;

@@ -206,8 +206,8 @@ double closing_at(const Instant& i, size_t row) {
   const double before = relative_velocity(p, i.work.rate_before)[0],
                after = relative_velocity(p, i.state.rate)[0];
   if (!p.is_soft(0)) {
-    const std::vector<Blows::One>& blows = i.work.blows.list;
-    const auto blow = std::ranges::lower_bound(blows, row, {}, &Blows::One::row);
+    const std::vector<Meeting::Blow>& blows = i.work.meeting.blows;
+    const auto blow = std::ranges::lower_bound(blows, row, {}, &Meeting::Blow::row);
     const double blown = blow != blows.end() && blow->row == row ? blow->approach : 0;
     return clock.dt * std::max({0.0, -before, -after, blown});
   }

@@ -85,8 +85,8 @@ std::string problem_text(const Instant& i) {
   for (size_t k = 0; k < static_cast<size_t>(b.count); ++k) {
     j["blocks"].push_back({{"name", b.name[k]},
                            {"mobility", mobility_json(i.work.mobility[k])},
-                           {"velocity", vec(i.work.rate_free[k].a)},
-                           {"gradient_rate", mat(i.work.rate_free[k].G)}});
+                           {"velocity", vec(i.work.rate_given()[k].a)},
+                           {"gradient_rate", mat(i.work.rate_given()[k].G)}});
     if (!b.tile.empty()) j["blocks"].back()["tile"] = b.tile[k];
   }
   const RowKinds kinds = row_kinds(i.scene, i.work);

@@ -45,7 +45,7 @@ struct Place {
   Vec2 given[2];   // velocities there of what does not move freely [m/s]
   double restitution = 0;
   double reach = 0;     // how far apart it were at the end of the step, but for the motion of the bodies [m]
-  Impulse all{};        // of the waves so far [N s]
+  Impulse impulse{};    // of the waves so far [N s]
   double approach = 0;  // the fastest of them [m/s]
 
   // Velocity along an axis that the bodies have nothing to do with.
@@ -54,50 +54,76 @@ struct Place {
   }
 };
 
+double restitution_of(const Scene& scene, const Patch& patch) {
+  return patch.joint < 0 ? -1 : scene.laws[static_cast<size_t>(patch.joint)].restitution();
+}
+
+// How far an end of a patch is apart, but for an overlap that it may keep [m].
+double gap_of(const State& state, size_t patch, size_t end) {
+  return state.patches[patch].allowed[end] - state.patches[patch].closure[end];
+}
+
+// What weight gives in a step: what flies up by less is back within two [m/s].
+double least_blow(const Scene& scene, const StepWork& work) {
+  return norm(scene.model.gravity) * work.clock.dt;
+}
+
 class Waves {
  public:
   Waves(const Scene& scene, StepWork& work, const State& state)
       : scene_(scene), work_(work), state_(state), blocks_(scene.blocks) {}
 
-  Blows find() {
-    Blows out;
-    // what weight gives in a step: what flies up by less is back within two
-    const double slow = norm(scene_.model.gravity) * work_.clock.dt;
-    if (!may_come(slow)) return out;
-    make_bodies();
-    make_places();
-    for (; out.waves < kMostWaves; ++out.waves) {
+  /// @param rate   of the blocks [count]
+  /// @param drift  that of the step from now on, but for blows
+  void begin(const std::vector<BlockRate>& rate, const std::vector<BlockRate>& drift) {
+    find_bodies();
+    place_bodies();
+    rate_ = rates_of_bodies(rate), rate_old_ = rate_;
+    make_places(rate, drift);
+  }
+
+  void go() {
+    const double slow = least_blow(scene_, work_);
+    for (int wave = 0; wave < kMostWaves; ++wave) {
       const std::vector<Place*> meet = coming(slow);
-      if (meet.empty()) break;
-      part(meet, out.work);
+      if (meet.empty()) return;
+      part(meet);
     }
-    if (out.waves == 0) return out;
-    out.failed = failed_;
+  }
+
+  std::vector<Meeting::Blow> blows() const {
+    std::vector<Meeting::Blow> out;
     for (const Place& p : places_)
-      if (p.all[0] != 0 || p.all[1] != 0) out.list.push_back({p.row, p.all, p.approach});
-    out.rate = work_.rate_before;
-    for (size_t i = 0; i < out.rate.size(); ++i) hand_on(i, out.rate[i]);
+      if (p.impulse[0] != 0 || p.impulse[1] != 0) out.push_back({p.row, p.impulse, p.approach});
     return out;
   }
 
- private:
-  double restitution_of(size_t patch) const {
-    const int joint = state_.patches[patch].joint;
-    return joint < 0 ? -1 : scene_.laws[static_cast<size_t>(joint)].restitution();
+  // The jump of its body, to the rates of a block.
+  void hand_on(size_t i, BlockRate& rate) const {
+    const size_t b = root_[i];
+    if (!mobility_[b].moves()) return;
+    const Mat2 spin = rate_[b].G - rate_old_[b].G;
+    rate.a += rate_[b].a - rate_old_[b].a + spin * (place_of(i) - body_[b].centre);
+    rate.G += deforms(i) ? spin * shape_of(i) : spin;
   }
 
-  // Whether any place comes together at all: in most steps none does.
-  bool may_come(double slow) const {
-    const size_t first = work_.rows.range(Family::kContact).begin;
-    for (size_t i = 0; i < state_.patches.size(); ++i) {
-      if (restitution_of(i) < 0) continue;
-      for (size_t end = 0; end < 2; ++end)
-        if (relative_velocity(work_.rows.points[first + 2 * i + end], work_.rate_before)[0] < -slow)
-          return true;
+  // The work of half of what a place has got, as its blocks move so.
+  void tally_half(const std::vector<Meeting::Blow>& blows, WorkDone& work) const {
+    for (const Place& p : places_) {
+      const auto blow = std::ranges::lower_bound(blows, p.row, {}, &Meeting::Blow::row);
+      if (blow == blows.end() || blow->row != p.row) continue;
+      const std::array<double, 2> u = speed(p);
+      for (size_t k = 0; k < 2; ++k) {
+        work[k == 0 ? Cause::kContactClosing : Cause::kFriction] += 0.5 * blow->impulse[k] * u[k];
+        // what does not move freely passes on the work of what drives it
+        work[Cause::kSupports] -= 0.5 * blow->impulse[k] * p.given_along(k);
+      }
     }
-    return false;
   }
 
+  bool failed() const { return failed_; }
+
+ private:
   // Where a block is, from the first one of its body: no digits are lost far from the origin.
   Vec2 place_of(size_t i) const {
     return (blocks_.centroid[i] - blocks_.centroid[root_[i]]) + state_.displacement[i];
@@ -105,8 +131,7 @@ class Waves {
   Mat2 shape_of(size_t i) const { return kIdentity + state_.strain_part[i]; }
   bool deforms(size_t i) const { return blocks_.kind[i] == BlockKind::kDeformable; }
   // Moment of momentum of a block about its centroid [kg m2/s].
-  double moment_of(size_t i) const {
-    const Mat2& G = work_.rate_before[i].G;
+  double moment_of(size_t i, const Mat2& G) const {
     if (!deforms(i)) return blocks_.polar_inertia[i] * G.yx;
     const Mat2 m = shape_of(i) * blocks_.inertia[i] * transpose(G);
     return m.xy - m.yx;
@@ -137,69 +162,74 @@ class Waves {
     }
   }
 
-  // Their motion is that rigid one which has the momentum of their blocks.
-  void make_bodies() {
-    find_bodies();
+  void place_bodies() {
     const size_t n = body_.size();
-    rate_.assign(n, {});
-    std::vector<double> moment(n, 0);
     for (size_t i = 0; i < n; ++i) {
-      Body& b = body_[root_[i]];
-      b.mass += blocks_.mass[i];
-      b.centre += blocks_.mass[i] * place_of(i);
-      rate_[root_[i]].a += blocks_.mass[i] * work_.rate_before[i].a;
+      body_[root_[i]].mass += blocks_.mass[i];
+      body_[root_[i]].centre += blocks_.mass[i] * place_of(i);
     }
-    for (size_t i = 0; i < n; ++i)
-      if (body_[i].mass > 0)
-        body_[i].centre = body_[i].centre / body_[i].mass, rate_[i].a = rate_[i].a / body_[i].mass;
+    for (Body& b : body_)
+      if (b.mass > 0) b.centre = b.centre / b.mass;
     for (size_t i = 0; i < n; ++i) {
       Body& b = body_[root_[i]];
       const Vec2 r = place_of(i) - b.centre;
       b.inertia += inertia_of(i) + blocks_.mass[i] * dot(r, r);
-      moment[root_[i]] += moment_of(i) + blocks_.mass[i] * cross(r, work_.rate_before[i].a);
     }
     mobility_.assign(n, {});
     for (size_t i = 0; i < n; ++i) {
       const Body& b = body_[i];
       if (!b.moves || b.mass == 0) continue;
-      rate_[i].G = spin_matrix(moment[i] / b.inertia);
       const double turns = 1 / b.inertia;
       mobility_[i].mass = 1 / b.mass;
       mobility_[i].shear[0] = mobility_[i].shear[2] = turns, mobility_[i].shear[1] = -turns;
     }
-    rate_old_ = rate_;
-    // what is slower by far than anything that moves is round-off
-    for (size_t i = 0; i < n; ++i)
-      if (mobility_[i].moves())
-        fastest_ = std::max(fastest_, norm(rate_[i].a) + std::abs(rate_[i].G.yx) * blocks_.radius[i]);
   }
 
-  void make_places() {
+  // Their motion is that rigid one which has the momentum of their blocks.
+  std::vector<BlockRate> rates_of_bodies(const std::vector<BlockRate>& rate) {
+    const size_t n = body_.size();
+    std::vector<BlockRate> out(n);
+    std::vector<double> moment(n, 0);
+    for (size_t i = 0; i < n; ++i) {
+      const size_t b = root_[i];
+      if (!mobility_[b].moves()) continue;
+      out[b].a += (blocks_.mass[i] / body_[b].mass) * rate[i].a;
+      moment[b] +=
+          moment_of(i, rate[i].G) + blocks_.mass[i] * cross(place_of(i) - body_[b].centre, rate[i].a);
+    }
+    for (size_t i = 0; i < n; ++i) {
+      if (!mobility_[i].moves()) continue;
+      out[i].G = spin_matrix(moment[i] / body_[i].inertia);
+      // what is slower by far than anything that moves is round-off
+      fastest_ = std::max(fastest_, norm(out[i].a) + std::abs(out[i].G.yx) * blocks_.radius[i]);
+    }
+    return out;
+  }
+
+  void make_places(const std::vector<BlockRate>& rate, const std::vector<BlockRate>& drift) {
     const size_t first = work_.rows.range(Family::kContact).begin;
     for (size_t i = 0; i < state_.patches.size(); ++i) {
-      const Patch& c = state_.patches[i];
-      if (restitution_of(i) < 0) continue;
+      if (restitution_of(scene_, state_.patches[i]) < 0) continue;
       for (size_t end = 0; end < 2; ++end) {
         Place p;
-        p.row = first + 2 * i + end, p.restitution = restitution_of(i);
+        p.row = first + 2 * i + end, p.restitution = restitution_of(scene_, state_.patches[i]);
         const PointRows& rows = work_.rows.points[p.row];
         p.rows.normal = rows.normal, p.rows.friction = rows.friction;
         p.rows.lower = p.rows.cohesion = 0;
-        std::tie(p.rows.block_a, p.rows.arm_a, p.given[0]) = on_body(rows.block_a, rows.arm_a);
-        std::tie(p.rows.block_b, p.rows.arm_b, p.given[1]) = on_body(rows.block_b, rows.arm_b);
+        std::tie(p.rows.block_a, p.rows.arm_a, p.given[0]) = on_body(rows.block_a, rows.arm_a, rate);
+        std::tie(p.rows.block_b, p.rows.arm_b, p.given[1]) = on_body(rows.block_b, rows.arm_b, rate);
         if (p.rows.block_a == p.rows.block_b) continue;
-        // weight and what else acts, and the motion that is not that of the bodies
-        p.reach = c.allowed[end] - c.closure[end] +
-                  work_.clock.dt * (relative_velocity(rows, work_.rate_free)[0] - speed(p)[0]);
+        // what acts, and the motion that is not that of the bodies
+        p.reach = gap_of(state_, i, end) + work_.clock.dt * (relative_velocity(rows, drift)[0] - speed(p)[0]);
         places_.push_back(p);
       }
     }
   }
 
   // A point of a block as one of its body, if that moves; else -1 and the velocity there.
-  std::tuple<int, Vec2, Vec2> on_body(int block, Vec2 arm) const {
+  std::tuple<int, Vec2, Vec2> on_body(int block, Vec2 arm, const std::vector<BlockRate>& rate) const {
     const auto k = static_cast<size_t>(block);
-    if (!body_[root_[k]].moves) return {-1, Vec2{}, velocity_at(work_.rate_before[k], arm)};
+    if (!body_[root_[k]].moves) return {-1, Vec2{}, velocity_at(rate[k], arm)};
     const Vec2 now = deforms(k) ? shape_of(k) * arm : arm;
     return {static_cast<int>(root_[k]), place_of(k) - body_[root_[k]].centre + now, Vec2{}};
   }
@@ -309,32 +339,15 @@ class Waves {
     return rate;
   }
 
-  void part(const std::vector<Place*>& meet, WorkDone& work) {
+  void part(const std::vector<Place*>& meet) {
     std::vector<Impulse> impulse = solve(meet, 1);
     hold_back(meet, impulse);
-    const std::vector<BlockRate> after = rates_with(meet, impulse);
     for (size_t i = 0; i < meet.size(); ++i) {
       Place& p = *meet[i];
-      const auto u0 = speed(p), u1 = relative_velocity(p.rows, after);
-      for (size_t k = 0; k < 2; ++k) {
-        work[k == 0 ? Cause::kContactClosing : Cause::kFriction] +=
-            0.5 * impulse[i][k] * (u0[k] + u1[k] + p.given_along(k));
-        // what does not move freely passes on the work of what drives it
-        work[Cause::kSupports] -= impulse[i][k] * p.given_along(k);
-        p.all[k] += impulse[i][k];
-      }
-      p.approach = std::max(p.approach, -u0[0]);
+      p.approach = std::max(p.approach, -speed(p)[0]);
+      for (size_t k = 0; k < 2; ++k) p.impulse[k] += impulse[i][k];
     }
-    rate_ = after;
-  }
-
-  // The jump of its body, to the rates of a block.
-  void hand_on(size_t i, BlockRate& rate) const {
-    const size_t b = root_[i];
-    if (!mobility_[b].moves()) return;
-    const Mat2 spin = rate_[b].G - rate_old_[b].G;
-    rate.a += rate_[b].a - rate_old_[b].a + spin * (place_of(i) - body_[b].centre);
-    rate.G += deforms(i) ? spin * shape_of(i) : spin;
+    rate_ = rates_with(meet, impulse);
   }
 
   const Scene& scene_;
@@ -353,17 +366,67 @@ class Waves {
 
 }  // namespace
 
-Blows find_blows(const Scene& scene, StepWork& work, const State& state) {
-  return Waves(scene, work, state).find();
+std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const State& state) {
+  const BlockSet& blocks = scene.blocks;
+  const size_t first = work.rows.range(Family::kContact).begin;
+  const double slow = least_blow(scene, work);
+  std::vector<size_t> closing;
+  for (size_t i = 0; i < state.patches.size(); ++i) {
+    const Patch& c = state.patches[i];
+    for (size_t end = 0; end < 2; ++end) {
+      const PointRows& p = work.rows.points[first + 2 * i + end];
+      if (p.is_soft(0)) continue;
+      const double gap = gap_of(state, i, end);
+      const bool apart =
+          gap > noticeable(blocks, static_cast<size_t>(c.block_a), static_cast<size_t>(c.block_b));
+      if (!apart && !(restitution_of(scene, c) >= 0)) continue;
+      if (relative_velocity(p, work.rate_before)[0] < -slow &&
+          gap + work.clock.dt * relative_velocity(p, work.rate_free)[0] <= 0)
+        closing.push_back(first + 2 * i + end);
+    }
+  }
+  if (closing.empty()) return closing;
+  // what its neighbours press a block with, over its mass [m/s2]
+  std::vector<double> pressed(blocks.mass.size(), 0);
+  for (const Patch& c : state.patches)
+    for (const int block : {c.block_a, c.block_b})
+      if (blocks.moves_freely(block)) {
+        const auto k = static_cast<size_t>(block);
+        pressed[k] += (std::abs(c.force[0][0]) + std::abs(c.force[1][0])) / blocks.mass[k];
+      }
+  std::erase_if(closing, [&](size_t r) {
+    const PointRows& p = work.rows.points[r];
+    const double back =
+        std::max(pressed[static_cast<size_t>(p.block_a)], pressed[static_cast<size_t>(p.block_b)]);
+    return !(relative_velocity(p, work.rate_before)[0] < -back * work.clock.dt);
+  });
+  return closing;
 }
 
-// The state does not keep them: they are no guess for the forces of the next step.
-void remember_blows(const Blows& blows, RowSet& rows, State& state) {
-  const size_t first = rows.range(Family::kContact).begin;
-  for (const Blows::One& blow : blows.list) {
-    for (size_t i = 0; i < 2; ++i) rows.impulse[blow.row][i] += blow.impulse[i];
-    state.patches[(blow.row - first) / 2].touched = true;
-  }
+void find_blows(const Scene& scene, StepWork& work, State& state) {
+  work.meeting.blows.clear(), work.meeting.failed = false;
+  if (std::ranges::none_of(scene.laws, [](const JointLaw& law) { return law.restitution() >= 0; })) return;
+  // bodies meet with the velocities of this instant: with those before the kick weight would take of each rebound, with
+  // those after it it would give
+  std::vector<BlockRate> now(state.rate.size());
+  for (size_t i = 0; i < now.size(); ++i) now[i] = mean(work.rate_before[i], state.rate[i]);
+  Waves waves(scene, work, state);
+  waves.begin(now, state.rate);
+  waves.go();
+  work.meeting.blows = waves.blows(), work.meeting.failed = waves.failed();
+  for (size_t i = 0; i < state.rate.size(); ++i) waves.hand_on(i, state.rate[i]);
+}
+
+RowSums tally_blows(const Scene& scene, StepWork& work, const State& state) {
+  RowSums out;
+  if (work.meeting.blows.empty()) return out;
+  const auto tally = [&](const std::vector<BlockRate>& rate, WorkDone& half) {
+    Waves waves(scene, work, state);
+    waves.begin(rate, rate);
+    waves.tally_half(work.meeting.blows, half);
+  };
+  tally(work.rate_before, out.work.before), tally(state.rate, out.work.after);
+  return out;
 }
 
 }  // namespace talus

@@ -1,20 +1,20 @@
 #pragma once
-// Blows between bodies whose joint has a restitution: jumps of velocity before the forces of a step. Theory:
+// Hard contacts that close within a step, and blows between bodies whose joint has a restitution. Theory:
 // docs/theory.md 4.7.
 
-#include <vector>
-
-#include "talus/step/step_work.h"
+#include "talus/step/parts.h"
 
 namespace talus {
 
-/// Finds the blows of a step, wave by wave: what comes together is parted, what that sends into others in the next
-/// one. Bodies are blocks and what is tied to them, and jump as rigid ones.
-/// @pre  the rows of the step are gathered; dynamic stages only
-/// @return  rates after them, impulses and work; none: no waves
-Blows find_blows(const Scene& scene, StepWork& work, const State& state);
+/// Rows of hard contacts that are apart, or whose joint has a restitution, and close within the step at more than what weight,
+/// or what presses their blocks, gives in one. @pre  the rows of the step are gathered
+std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const State& state);
 
-/// Adds them to what the contacts of the step carry. @pre  the step is in the ledger
-void remember_blows(const Blows& blows, RowSet& rows, State& state);
+/// Finds the blows, wave by wave: what comes together is parted, what that sends into others in the next one. Bodies are
+/// blocks and what is tied to them, and jump as rigid ones; `state.rate` gets the jumps.
+void find_blows(const Scene& scene, StepWork& work, State& state);
+
+/// The work of the blows, as bodies move before and after the kick (theory 8). @pre  the step is solved
+RowSums tally_blows(const Scene& scene, StepWork& work, const State& state);
 
 }  // namespace talus

@@ -8,8 +8,6 @@ namespace talus {
 
 namespace {
 
-BlockRate operator+(const BlockRate& u, const BlockRate& v) { return {u.a + v.a, u.G + v.G}; }
-
 // Theory 4.12.
 void kick_free_field(const Scene& scene, const StepSettings& settings, const std::vector<Vec2>& acceleration,
                      StepWork& work, State& state) {

@@ -96,7 +96,7 @@ Smoothing smoothing(const Model& model, const StepClock& clock) {
 void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
                 StepReport& report) {
   const StepProblem problem{work.mobility,
-                            work.rate_free,
+                            work.rate_given(),
                             work.clock.dt,
                             smoothing(scene.model, work.clock),
                             work.rows,
@@ -128,8 +128,11 @@ RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
       work.rows.size(), kChunkOfRows, [&](size_t begin, size_t end, RowSums& s) {
         for (size_t r = begin; r < end; ++r) {
           const std::array<double, 2> u = relative_velocity(work.rows.points[r], state.rate);
-          tally_row(blocks, work, state, r, u, s);
+          tally_row(blocks, work, state, r, s);
+          tally_impulse(blocks, work, r, work.rows.impulse[r], u, s);
           if (!scene.by_patches() || r < contacts.begin || r >= contacts.end) continue;
+          if (work.meeting.is_one())
+            tally_impulse(blocks, work, r, work.meeting.until[r - contacts.begin], u, s);
           tally_dashpots(work, r, u,
                          dashpot_impulse(blocks, scene.laws, work.rows, r, u, work.rate_before, state.rate,
                                          work.clock, state),
@@ -158,17 +161,64 @@ void remember(const Scene& scene, const StepWork& work, State& state) {
   remember_bolts(work.rows, work.clock, state);
 }
 
-// Lets bodies that come together rebound, before anything else acts in the step. Returns the rates before that, none: nothing did.
-std::vector<BlockRate> deliver_blows(const Scene& scene, const Scheme& scheme, StepWork& work, State& state) {
-  work.blows = {};
-  if (!scheme.settings.dynamic || !scene.by_patches()) return {};
-  work.blows = find_blows(scene, work, state);
-  if (work.blows.waves == 0) return {};
-  std::vector<BlockRate> before = std::move(work.rate_before);
-  state.rate = std::move(work.blows.rate);
-  predict(scene, scheme, work, state);
-  gather_rows(scene, work, state);
-  return before;
+// The sooner of two in the report, the worse in what is told of errors.
+void add_report(const StepReport& first, StepReport& report) {
+  report.solve.iterations += first.solve.iterations;
+  if (!(report.error.worst >= first.error.worst)) report.error = first.error, report.worst = first.worst;
+  report.failed = report.failed || first.failed, report.loose = report.loose || first.loose;
+}
+
+// Forces of the rows. Where hard contacts close that were apart they act from then on only, and what bore until then does not let
+// go of a step before it (theory 4.7).
+void solve_forces(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
+                  StepReport& report) {
+  RowSet& rows = work.rows;
+  Meeting& meeting = work.meeting;
+  meeting.until.clear(), meeting.blows.clear(), meeting.failed = false;
+  std::vector<size_t> closing;
+  if (settings.dynamic && scene.by_patches() && scene.model.contact.law == ContactLaw::kExact)
+    closing = closing_rows(scene, work, state);
+  if (closing.empty()) return solve_rows(scene, settings, work, state, report);
+  for (const size_t r : closing) rows.points[r].upper = 0, rows.impulse[r] = {0, 0};
+  solve_rows(scene, settings, work, state, report);
+  for (const size_t r : closing) rows.points[r].upper = PointRows{}.upper;
+  if (report.failed && settings.may_shorten) return;
+  const StepReport first = report;
+  const std::vector<BlockRate> before_blows = state.rate;
+  find_blows(scene, work, state);
+  // of contacts that can only push the forces until then stay; all others are those of the whole step
+  const RowRange contacts = rows.range(Family::kContact);
+  RowSet stay;
+  meeting.rate = work.rate_free;
+  std::vector<Impulse> until(contacts.size());
+  for (size_t r = contacts.begin; r < contacts.end; ++r) {
+    PointRows& p = rows.points[r];
+    if (p.is_soft() || p.lower != 0 || p.cohesion != 0) continue;
+    std::swap(until[r - contacts.begin], rows.impulse[r]);
+    if (until[r - contacts.begin][0] != 0) stay.add(p, until[r - contacts.begin], {Family::kContact, 0});
+  }
+  apply_impulses(work.mobility, stay, meeting.rate);
+  for (size_t i = 0; i < meeting.rate.size(); ++i)
+    meeting.rate[i] = meeting.rate[i] + (state.rate[i] - before_blows[i]);
+  meeting.until = std::move(until);
+  solve_rows(scene, settings, work, state, report);
+  add_report(first, report);
+  report.loose = report.loose || (meeting.failed && !report.failed);
+}
+
+// What contacts carried in all, for results; what comes together is no guess for the forces of the step after.
+void remember_meeting(StepWork& work, State& state) {
+  const Meeting& meeting = work.meeting;
+  const size_t first = work.rows.range(Family::kContact).begin;
+  for (size_t k = 0; k < meeting.until.size(); ++k)
+    for (size_t i = 0; i < 2; ++i) {
+      work.rows.impulse[first + k][i] += meeting.until[k][i];
+      state.patches[k / 2].force[k % 2][i] += meeting.until[k][i] / work.clock.dt_kick;
+    }
+  for (const Meeting::Blow& blow : meeting.blows) {
+    for (size_t i = 0; i < 2; ++i) work.rows.impulse[blow.row][i] += blow.impulse[i];
+    state.patches[(blow.row - first) / 2].touched = true;
+  }
 }
 
 // The recipe (eq. 2.1).
@@ -197,25 +247,22 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   profile.go_on_with(Profile::kMargins);
   seek_contacts(scene, work, state, report);
   gather_rows(scene, work, state);
-  const std::vector<BlockRate> rate_before = deliver_blows(scene, scheme, work, state);
   ++profile.steps;
   profile.points += static_cast<int64_t>(work.rows.size());
   profile.go_on_with(Profile::kRest);
-  solve_rows(scene, settings, work, state, report);
+  solve_forces(scene, settings, work, state, report);
   if (report.failed && settings.may_shorten) {
-    state.rate = rate_before.empty() ? work.rate_before : rate_before;
-    state.column_rate = work.column_rate_before;
+    state.rate = work.rate_before, state.column_rate = work.column_rate_before;
     report.taken = false;
     return report;
   }
   profile.go_on_with(Profile::kRemember);
-  const RowSums rows = settle_rows(scene, work, state);
+  RowSums rows = settle_rows(scene, work, state);
   remember(scene, work, state);
   profile.go_on_with(Profile::kLedger);
-  state.work += work.blows.work;
-  report.loose = report.loose || work.blows.failed;
+  if (!work.meeting.blows.empty()) rows += tally_blows(scene, work, state);
   tally(scene, scheme, rows, work, state, report);
-  remember_blows(work.blows, work.rows, state);
+  remember_meeting(work, state);
   return report;
 }
 

@@ -60,18 +60,21 @@ struct StepReport {
   int broken_faces = 0;  // in the drift that follows
 };
 
-/// What bodies gave each other at the beginning of a step, where joints have a restitution (theory 4.7).
-struct Blows {
-  struct One {
+/// A step in which hard contacts close that were apart (theory 4.7): the forces until then, the blows of joints with a
+/// restitution, and the forces from then on, which RowSet::impulse has.
+struct Meeting {
+  struct Blow {
     size_t row = 0;       // of contacts
     Impulse impulse{};    // [N s]
     double approach = 0;  // the fastest at which its sides came together [m/s]
   };
-  int waves = 0;                // 0: none
-  std::vector<One> list;        // by rows
-  std::vector<BlockRate> rate;  // [count] half a step ago, with them
-  WorkDone work;
-  bool failed = false;  // a wave was not solved to the last digits
+  std::vector<Impulse> until;  // of the rows of contacts that can only push [N s]; empty: none closes
+  std::vector<Blow> blows;     // by rows
+  std::vector<BlockRate>
+      rate;             // [count] what the forces from then on begin with, as work.rate_free those until then
+  bool failed = false;  // blows that are not solved to the last digits
+
+  bool is_one() const { return !until.empty(); }
 };
 
 /// Memory reused from step to step, and what the step found at this instant.
@@ -90,7 +93,7 @@ struct StepWork {
   ColumnMotion columns;                  // of the free field
   std::vector<Vec2> column_rate_before;  // State::column_rate before the kick
   KickWork work;
-  Blows blows;
+  Meeting meeting;
   std::vector<BlockRate> rate_free;     // rates as they would be without rows
   std::vector<Impulse> guess;           // of all rows; empty unless it is wanted
   std::vector<BlockForce> load;         // by loads and kept rock, on each block
@@ -98,6 +101,9 @@ struct StepWork {
   std::vector<BlockForce> bolt_forces;  // of them, the bars; empty without bolts
   std::vector<BlockForce> local_damping;
   std::vector<ElasticState> elastic;
+
+  /// The rates without the rows that these were solved with.
+  const std::vector<BlockRate>& rate_given() const { return meeting.is_one() ? meeting.rate : rate_free; }
 };
 
 /// Velocities of block i at this instant: the mean of those before and after the kick; at the start the

@@ -1,4 +1,4 @@
-// A4a (shear), A7a-c: plane waves that run straight up a column of level ground through no, one and several
+// A4a (shear), A7a-c, A7e: plane waves that run straight up a column of level ground through no, one and several
 // joints, through a joint that slips, and what comes back.
 
 #include <complex>
@@ -204,6 +204,66 @@ TEST_CASE("A7a one joint: transmitted and reflected share, P and S") {
                       std::pow(s.transmitted, 2) + std::pow(s.reflected, 2), 1, 1e-2, 2e-3);
         check_below(what + ": energy left over / largest term", s.closure, 1e-2, 1e-9);
       }
+}
+
+// Joints of Kelvin's kind, k (1 + i w T), that are pressed and do not slip: what of a pressure wave is lost. A row of them, far
+// nearer to each other than a wave is long, loses as a medium of wave number w sqrt(density (1/M + 1/(k s (1 + i w T)))),
+// in proportion to the length and, for w T << 1, to the square of the frequency.
+TEST_CASE("A7e damped joints: what one of them keeps of a wave, and the loss per length of a row") {
+  const auto pressed = [](Column& c, double stiffness, double time) {
+    c.joint = fmt::format(
+        "friction_angle = \"60 deg\"\nnormal_stiffness = {0:.17g}\nshear_stiffness = {0:.17g}\ndamping_time = {1:.17g}",
+        stiffness, time);
+    int height = 0;
+    for (const int n : c.parts) height += n;
+    c.more = fmt::format(R"toml(
+[history.weight]
+time = [0, 1]
+value = [1e6, 1e6]
+[[load]]
+name = "weight"
+edge = [[0, {0:.17g}], [{1}, {0:.17g}]]
+pressure = "weight"
+[[stage]]
+name = "load"
+kind = "static"
+duration = 1
+)toml",
+                         height * kH, kWide);
+  };
+  const auto kelvin = [](const Column& c, double time) { return Complex(1, c.omega() * time); };
+  for (const double time : {2e-5, 1e-4, 2.5e-4})
+    for (const double xi : {0.25, 1.0}) {
+      Column c;
+      c.parts = {16, 16};
+      pressed(c, c.omega() * c.impedance() / (2 * xi), time);
+      const Shares s = shares_of(c);
+      const Complex give = Complex(0, xi) / kelvin(c, time), through = 1.0 / (1.0 + give),
+                    back = give * through;
+      const std::string what = fmt::format("A7e T={} ms xi={}", 1e3 * time, xi);
+      check_close(what + " transmitted share", s.transmitted, std::abs(through), 1e-2, 3e-3);
+      check_close(what + " returned share", s.reflected, std::abs(back), 1e-2, 3e-3, 1);
+      check_close(what + " energy that is lost", 1 - std::pow(s.transmitted, 2) - std::pow(s.reflected, 2),
+                  1 - std::norm(through) - std::norm(back), 1e-2, 3e-3);
+    }
+  for (const double per_wavelength : {40.0, 80.0}) {
+    const double time = 2.5e-4;
+    const int joints = per_wavelength > 40 ? 19 : 9, apart = 2;
+    Column c;
+    c.per_wavelength = per_wavelength, c.periods_before = 8;
+    c.parts.assign(1, per_wavelength > 40 ? 26 : 16);
+    for (int i = 1; i < joints; ++i) c.parts.push_back(apart);
+    c.parts.push_back(16);
+    const double spacing = apart * kH,
+                 stiffness = 20 * kC11 / spacing;  // a twentieth of what the blocks give
+    pressed(c, stiffness, time);
+    const Shares s = shares_of(c);
+    // a loss is of the first order in what joints give, what the ends of the row send back of the second
+    const Complex k =
+        c.omega() * std::sqrt(kDensity * (1 / kC11 + 1.0 / (stiffness * spacing * kelvin(c, time))));
+    check_close(fmt::format("A7e loss per metre at {:.4g} Hz", 1 / c.period()),
+                -std::log(s.transmitted) / (joints * spacing), -k.imag(), 1e-2, 3e-3);
+  }
 }
 
 TEST_CASE("A7a the delay of one joint, and a bond that is no joint") {

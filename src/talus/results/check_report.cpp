@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "talus/base/text.h"
@@ -18,22 +19,27 @@ namespace {
 
 // Of taking all steps, by stages; writing and cutting are not in it.
 std::string time_text(const PreparedRun& run) {
-  constexpr double kTrial = 0.6;  // [s]
-  const std::vector<StepCost> cost = time_steps(run, kTrial, threads_for(run.scene.blocks.count));
-  double sum = 0;
-  bool at_most = false, at_least = false;
+  constexpr double kTrial = 3;  // [s]
+  const std::vector<StageCost> cost = time_stages(run, kTrial, threads_for(run.scene.blocks.count));
+  double low = 0, high = 0;
+  bool at_least = false;
   std::string stages;
   for (size_t i = 0; i < run.plans.size(); ++i) {
-    const bool is_static = run.scene.model.stages[i].kind == StageKind::kStatic;
-    const double seconds = cost[i].seconds * static_cast<double>(run.plans[i].steps);
-    sum += seconds, at_most = at_most || is_static, at_least = at_least || cost[i].at_least;
-    stages += fmt::format("{}\"{}\" {}{} ({} a step)", i > 0 ? ", " : "", run.scene.model.stages[i].name,
-                          is_static ? "at most " : "", readable_seconds(seconds),
-                          readable_seconds(cost[i].seconds));
+    const StageCost& c = cost[i];
+    low += c.low, high += c.high, at_least = at_least || c.at_least;
+    const std::string how =
+        c.steps_to_rest > 0
+            ? fmt::format("{} in {} steps to its rest", readable_seconds(c.low), c.steps_to_rest)
+            : fmt::format("{} to {}, {} a step", readable_seconds(c.low), readable_seconds(c.high),
+                          readable_seconds(c.step));
+    stages += fmt::format("{}\"{}\" {}", i > 0 ? "; " : "", run.scene.model.stages[i].name, how);
   }
-  if (!(sum > 0)) return "";
-  return fmt::format("  time       {}{} on this machine, by first steps: {}{}\n",
-                     at_most ? "at most about " : "about ", readable_seconds(sum), stages,
+  if (!(high > 0)) return "";
+  const std::string all = high > low
+                              ? fmt::format("about {}, {} to {}", readable_seconds(std::sqrt(low * high)),
+                                            readable_seconds(low), readable_seconds(high))
+                              : "about " + readable_seconds(low);
+  return fmt::format("  time       {} on this machine, by first steps: {}{}\n", all, stages,
                      at_least ? "; longer where the solver takes more sweeps than this trial allows" : "");
 }
 

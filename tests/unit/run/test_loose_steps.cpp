@@ -202,7 +202,7 @@ unbalanced = 1e-9
 TEST_CASE("loose steps: the trial of a solver calls what few sweeps leave no solution") {
   Findings findings("m.toml", kShaken);
   const PreparedRun p = prepare_run("m.toml", kShaken, {"solver.tolerance=1e-300"}, findings);
-  CHECK(time_steps(p, 0.05, 1).at(0).at_least);
+  CHECK(time_stages(p, 0.05, 1, 0).at(0).at_least);
 }
 
 TEST_CASE("loose steps: a search for what a model bears allows them, and no failed ones" *

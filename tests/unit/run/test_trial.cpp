@@ -16,12 +16,65 @@ TEST_CASE("trial steps: a cost for every stage, one that rests at once too, and 
       kShakenBlock + "[[stage]]\nname = \"short\"\nkind = \"dynamic\"\nduration = \"1 us\"\n";
   Findings findings("model.toml", text);
   const PreparedRun run = prepare_run("model.toml", text, {}, findings);
-  const std::vector<StepCost> cost = time_steps(run, 0.02, 1);
+  const std::vector<StageCost> cost = time_stages(run, 0.02, 1);
   REQUIRE(cost.size() == 2);
-  CHECK(cost[0].seconds > 0);
-  CHECK(cost[1].seconds == cost[0].seconds);  // too short to be measured
+  CHECK(cost[0].step > 0);
+  CHECK(cost[0].low < cost[0].high);
+  CHECK(cost[1].high > 0);  // of one step
   CHECK(!cost[0].at_least);
   CHECK(run.scene.model.stages.size() == 2);
+}
+
+TEST_CASE(
+    "trial steps: a static stage that comes to its rest is known, one that does not in the time has a range") {
+  const std::string text = R"(talus = 1
+[model]
+gravity = [0, -9.81]
+[material.rock]
+density = 2700
+[joint.face]
+friction_angle = "35 deg"
+normal_stiffness = "10 GPa/m"
+shear_stiffness = "5 GPa/m"
+[contact]
+joint = "face"
+[[block]]
+name = "floor"
+polygon = [[-1, -1], [7, -1], [7, 0], [-1, 0]]
+material = "rock"
+kind = "fixed"
+[[grid]]
+name = "wall"
+min = [0, 0]
+max = [6, 5]
+cells = [6, 5]
+material = "rock"
+joint = "face"
+kind = "rigid"
+[[stage]]
+name = "settle"
+kind = "static"
+duration = "10 s"
+[[stage]]
+name = "shake"
+kind = "dynamic"
+duration = "1 s"
+)";
+  Findings findings("model.toml", text);
+  const PreparedRun run = prepare_run("model.toml", text, {}, findings);
+  const std::vector<StageCost> cost = time_stages(run, 5, 1);
+  REQUIRE(cost.size() == 2);
+  CHECK(cost[0].steps_to_rest > 1);
+  CHECK(cost[0].steps_to_rest < 100);
+  CHECK(cost[0].low == cost[0].high);
+  CHECK(cost[1].steps_to_rest == 0);
+  CHECK(cost[1].high == doctest::Approx(9 * cost[1].low));
+  // a few steps of damped motion are no rest
+  std::string slow = text;
+  slow.replace(slow.find("kind = \"static\""), 15, "kind = \"static\"\nintegration = \"dynamic\"");
+  const std::vector<StageCost> hasty = time_stages(prepare_run("model.toml", slow, {}, findings), 0, 1);
+  CHECK(hasty[0].steps_to_rest == 0);
+  CHECK(hasty[0].low < hasty[0].high);
 }
 
 TEST_CASE("trial steps: a step that the solver does not get through ends soon, and is told") {
@@ -59,9 +112,9 @@ duration = "1 s"
 time_step = "1 ms"
 )";
   Findings findings("model.toml", text);
-  const std::vector<StepCost> cost = time_steps(prepare_run("model.toml", text, {}, findings), 0.02, 1);
+  const std::vector<StageCost> cost = time_stages(prepare_run("model.toml", text, {}, findings), 0.02, 1, 0);
   REQUIRE(cost.size() == 1);
-  CHECK(cost[0].seconds > 0);
+  CHECK(cost[0].step > 0);
   CHECK(cost[0].at_least);
 }
 

@@ -1,7 +1,10 @@
 // Dashpots beside the stiffness of joints (theory 4.6): a blow, blocks that swing on their joints, what slips.
 
 #include <numbers>
+#include <optional>
 
+#include "support/box_polygon.h"
+#include "support/model_text.h"
 #include "support/run_case.h"
 #include "support/tolerance.h"
 
@@ -151,6 +154,37 @@ TEST_CASE("joint damping: what slides bears its friction, and shaken at half the
               half.second);
   check_close("the same at a quarter", half.first, quarter.first, 5e-4, 1e-4, quarter.second);
   check_close("its largest way, at half the step", whole.second, half.second, 1e-4, 1e-5);
+}
+
+TEST_CASE("joint damping: accelerations far above those given are told with block, joint and time") {
+  const auto text_of = [](double above, bool stiff) {
+    return fmt::format(
+               "talus = 1\n[model]\ngravity = [0, -9.81]\n[material.m]\ndensity = 2600\n[joint.face]\nfriction_angle = \"30 "
+               "deg\"\n{}[contact]\njoint = \"face\"\n[history.base]\nexpression = \"0.05*sin(20*t)\"\nduration = 1\n[[stage]]\n"
+               "name = \"run\"\nkind = \"dynamic\"\nduration = 0.2\ntime_step = 2e-5\n",
+               stiff ? "normal_stiffness = 2e10\nshear_stiffness = 1e10\n" : "") +
+           block_text("floor", box_polygon(-2, -1, 3, 0), "driven", "motion_x = { velocity = \"base\" }") +
+           block_text("b", box_polygon(0, above, 1, 1 + above), "rigid");
+  };
+  const auto told = [&](double above, bool stiff) {
+    std::string out;
+    std::optional<Scene> scene;
+    const CaseResult r = run_case(text_of(above, stiff), {}, [&](const Instant& i) {
+      if (!scene) scene = i.scene;
+    });
+    // 0.05 sin(20 t): 1 m/s2; v sqrt(k/m) of a fall of 5 mm, damped
+    if (stiff && above > 0) {
+      CHECK(r.run.jolt > 300);
+      CHECK(r.run.jolt < 1000);
+      CHECK(r.run.jolt_time == doctest::Approx(std::sqrt(2 * above / 9.81)).epsilon(0.02));
+    }
+    return jolt_text(*scene, r.run);
+  };
+  const std::string text = told(5e-3, true);
+  CHECK_MESSAGE(text.find("accelerations: b (contact") == 0, text);
+  CHECK_MESSAGE(text.find("times the largest that is given (1 m/s2)") != std::string::npos, text);
+  CHECK(told(0, true) == "");      // at rest, but for the weight that it takes on
+  CHECK(told(5e-3, false) == "");  // a speed over a step
 }
 
 }  // namespace test_joint_damping

@@ -9,6 +9,8 @@
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/bonds.h"
 #include "talus/corners/find.h"
+#include "talus/run/resolution.h"
+#include "talus/run/run.h"
 
 namespace talus {
 
@@ -443,6 +445,16 @@ const Columns<JointRow, Cell>& joint_columns() {
     return out;
   }();
   return columns;
+}
+
+std::string jolt_text(const Scene& scene, const RunResult& result) {
+  constexpr double kTooMuch = 10;
+  const double given = result.jolt > 0 ? largest_input(scene.model) : 0;
+  if (!(result.jolt > kTooMuch * given)) return "";
+  return fmt::format(
+      "accelerations: {} with {:.3g} m/s2 at t = {:.4g} s, {:.2g} times the largest that is given ({:.3g} m/s2): blows on "
+      "joints with stiffness. Their damping_time rules them; half the step tells whether they do what is looked for",
+      result.jolt_row, result.jolt, result.jolt_time, result.jolt / given, given);
 }
 
 std::string free_field_side(const Scene& scene, const JointSummary& joints) {

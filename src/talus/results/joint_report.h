@@ -15,6 +15,8 @@
 
 namespace talus {
 
+struct RunResult;
+
 /// One point of a joint: an end of a glued face that may break, or a contact point.
 struct JointPoint : FramePoint {
   bool face = false;
@@ -89,5 +91,8 @@ const Columns<JointRow, Cell>& joint_columns();
 
 /// Name of the free-field side at which the joint with the largest slip ends; "" when it ends at none.
 std::string free_field_side(const Scene& scene, const JointSummary& joints);
+
+/// What a joint has pushed a block with that is above ten times what the model is shaken with; "" when nothing.
+std::string jolt_text(const Scene& scene, const RunResult& result);
 
 }  // namespace talus

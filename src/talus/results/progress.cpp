@@ -163,6 +163,8 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         r.penalty, r.cut_steps, r.steps, r.parts, r.penetration, r.condition);
   if (r.closed_share > 0.05)
     out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);
+  if (const std::string jolt = jolt_text(scene, r); !jolt.empty())
+    out += fmt::format("  WARNING         {}\n", jolt);
   if (audit) {
     out += fmt::format(
         "  audit           {}; {} frames and {} steps looked at; unexplained overlap {:.1e} of the smaller "

@@ -103,6 +103,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   j["valid"] = audit ? ordered_json(audit->valid()) : ordered_json();
   if (const std::string side = free_field_side(scene, joints); !side.empty())
     warnings.push_back("the largest slip ends at the free-field side " + side);
+  if (const std::string jolt = jolt_text(scene, r); !jolt.empty()) warnings.push_back(jolt);
   j["warnings"] = warnings;
   j["audit"] = audit_numbers(scene, audit);
 

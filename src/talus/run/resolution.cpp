@@ -113,6 +113,22 @@ double highest_frequency(const History& history, InputKind kind) {
   return record::highest_frequency(m);
 }
 
+double largest_input(const Model& model) {
+  double most = 0;
+  for (const auto& [history, kinds] : inputs_of(model)) {
+    const History& h = model.histories[static_cast<size_t>(history)];
+    if (h.time.size() < 2) continue;
+    record::Motion m = sampled(h);
+    for (const InputKind kind : kinds) {
+      std::vector<double> a = m.velocity;  // as it is called: the values of the history
+      const int orders = kind == InputKind::kVelocity ? 1 : kind == InputKind::kDisplacement ? 2 : 0;
+      for (int n = 0; n < orders; ++n) a = record::differentiate(a, m.dt);
+      if (kind != InputKind::kForce) most = std::max(most, largest(a));
+    }
+  }
+  return most;
+}
+
 double slowest_wave(const Ground& ground) {
   constexpr int kDirections = 180;  // of a half turn
   const Stiffness& c = ground.stiffness;

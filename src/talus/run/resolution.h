@@ -22,6 +22,9 @@ enum class InputKind { kAcceleration, kVelocity, kDisplacement, kForce };
 /// its jump is no part of it.
 double highest_frequency(const History& history, InputKind kind);
 
+/// Largest acceleration that histories prescribe, of loads and of the motion of supports, driven blocks and boundaries [m/s2].
+double largest_input(const Model& model);
+
 /// Speed of the slowest plane wave through the ground, of any direction [m/s].
 double slowest_wave(const Ground& ground);
 

@@ -17,6 +17,7 @@
 #include "talus/penalty/penalty_step.h"
 #include "talus/run/mechanism.h"
 #include "talus/run/path.h"
+#include "talus/run/resolution.h"
 #include "talus/run/steps_from_rest.h"
 #include "talus/run/unrest.h"
 #include "talus/step/change.h"
@@ -71,6 +72,7 @@ class StagedRun::Runner {
       scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
     work_.workers = workers;
     if (scene.model.formulation == Formulation::kPenalty) penalty_.emplace(scene_, work_);
+    shakes_ = largest_input(scene.model) > 0;
   }
 
   // Makes the state ready. Trouble is told by the first go().
@@ -621,6 +623,7 @@ class StagedRun::Runner {
     if (r.closed_share > kMostClosed)
       throw NumericalError(
           fmt::format("step {} at t = {:.9g} s: {}", state.step, state.time, result_.closed_row));
+    if (settings_.dynamic && shakes_ && r.jolt > result_.jolt) note_jolt(r, state);
     result_.loose_steps += r.loose;
     if (!r.failed) return;
     ++result_.failed_steps;
@@ -633,6 +636,22 @@ class StagedRun::Runner {
           state.step, state.time, r.error.worst, attempts_text(r.attempts), settings_.limit, r.worst,
           scene_.model.contact.law == ContactLaw::kExact ? "limit" : "tolerance"));
     }
+  }
+
+  // Hard contacts push by a speed over the step: their accelerations say nothing (theory 7.2).
+  void note_jolt(const StepReport& r, const State& state) {
+    size_t most = work_.rows.size();
+    double largest = 0;
+    for (size_t k = 0; k < work_.rows.size(); ++k) {
+      const PointRows& p = work_.rows.points[k];
+      if (p.block_a != r.jolted && p.block_b != r.jolted) continue;
+      if (const double push = std::hypot(work_.rows.impulse[k][0], work_.rows.impulse[k][1]); push > largest)
+        largest = push, most = k;
+    }
+    if (most == work_.rows.size() || !work_.rows.points[most].is_soft(0)) return;
+    result_.jolt = r.jolt, result_.jolt_time = state.time;
+    result_.jolt_row = fmt::format("{} ({})", scene_.blocks.name[static_cast<size_t>(r.jolted)],
+                                   row_name(scene_, state, work_, most));
   }
 
   // "80 iterations of gauss_seidel, 6 of primal_newton".
@@ -679,6 +698,7 @@ class StagedRun::Runner {
   }
 
   Scene& scene_;
+  bool shakes_ = false;  // something given moves the model
   std::vector<StagePlan> plans_;
   State& state_;
   Observer& observer_;

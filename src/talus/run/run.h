@@ -51,6 +51,9 @@ struct RunResult {
   double deepest_drift = 0;                  // [m] overlap of hard contacts
   double closed_share = 0, closed_time = 0;  // largest overlap, as share of the thinner block; when [s]
   std::string closed_row;
+  // largest acceleration in dynamic stages of a block that a joint with stiffness pushes the most [m/s2], when [s], which and what
+  double jolt = 0, jolt_time = 0;
+  std::string jolt_row;
   Energy energy;                                     // at the end
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;

@@ -96,6 +96,7 @@ void exchange_standing(auto& x, auto& standing) {
   x("run.worst_error_row", r.worst_error_row), x("run.deepest_drift", r.deepest_drift);
   x("run.closed_share", r.closed_share), x("run.closed_time", r.closed_time),
       x("run.closed_row", r.closed_row);
+  x("run.jolt", r.jolt), x("run.jolt_time", r.jolt_time), x("run.jolt_row", r.jolt_row);
   x("run.penalty", r.penalty), x("run.cut_steps", r.cut_steps), x("run.parts", r.parts);
   x("run.penetration", r.penetration), x("run.condition", r.condition);
   x("run.energy", r.energy);

@@ -53,6 +53,8 @@ struct StepReport {
   double drift = 0;         // deepest overlap of hard contacts before the step [m]
   double unbalanced = 0;    // largest unbalanced force of a block / mean force on blocks
   int worst_block = -1;     // whose unbalanced force is the largest
+  double jolt = 0;          // largest acceleration of a block's centroid [m/s2]
+  int jolted = -1;          // which
   double worst_force = 0;   // that force [N]
   double nudge = 0;         // kinetic energy that the forces on blocks would give them in half a step [J]
   double speed_left = 0;    // static stages: share of the velocity that is left (set by run/)

@@ -37,6 +37,8 @@ struct BlockSums {
   double jump = 0;                 // of the energy that central differences conserve
   double worst = 0, forces = 0;    // unbalanced force, and force
   double nudge = 0;                // kinetic energy that the forces would give in half a step
+  double jolt = 0;                 // largest change of a velocity
+  int jolted = -1;
   int worst_block = -1;
   int moving = 0;
 
@@ -45,6 +47,7 @@ struct BlockSums {
     gravity += o.gravity, strain += o.strain, kinetic += o.kinetic, jump += o.jump;
     mean += o.mean, both += o.both;
     if (o.worst > worst) worst = o.worst, worst_block = o.worst_block;
+    if (o.jolt > jolt) jolt = o.jolt, jolted = o.jolted;
     forces += o.forces, nudge += o.nudge, moving += o.moving;
     return *this;
   }
@@ -64,6 +67,7 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
   const BlockRate &v0 = step.rate_before[i], &v1 = state.rate[i];
   if (!blocks.moves_freely(static_cast<int>(i))) return;
   const double late = scheme.late_share(), kick = step.clock.dt_kick;
+  if (const double jolt = norm(v1.a - v0.a); jolt > s.jolt) s.jolt = jolt, s.jolted = static_cast<int>(i);
   add(s.work, Cause::kLoads, work_of(kick * step.load[i], v0, v1, late));
   if (is_weightless(step, state, i))
     add(s.work, Cause::kDamping, work_of(-kick * given_force(scene, step, i), v0, v1, late));
@@ -192,6 +196,7 @@ void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWo
   report.worst_block = sums.worst_block, report.worst_force = sums.worst;
   report.unbalanced = sums.forces > 0 ? sums.worst / (sums.forces / sums.moving) : 0;
   report.nudge = sums.nudge;
+  report.jolt = sums.jolt / work.clock.dt_kick, report.jolted = sums.jolted;
 
   Energy& e = report.energy;
   e.gravity = sums.gravity, e.strain = sums.strain;

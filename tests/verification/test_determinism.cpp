@@ -219,7 +219,7 @@ TEST_CASE("a shaken wall of 1010 bricks has the same bits for any number of thre
   Scene scene = wall(20);
   REQUIRE(scene.blocks.count == 1011);
   const Seen seen = check_threads(scene, 60);
-  CHECK(seen.closed > 3000);  // of the 4000 ends of faces
+  CHECK(seen.closed > 3000);     // of the 4000 ends of faces
   CHECK(seen.sweeps % 20 == 0);  // all that are allowed, twice where hard contacts close
   CHECK(seen.sweeps > 0);
 }
@@ -234,7 +234,7 @@ TEST_CASE("a thousand stones falling into a box have the same bits for any numbe
   Scene scene = pile(20);
   REQUIRE(scene.blocks.count == 1003);
   const Seen seen = check_threads(scene, 60);
-  CHECK(seen.closed > 300);  // not free flight
+  CHECK(seen.closed > 300);      // not free flight
   CHECK(seen.sweeps % 20 == 0);  // all that are allowed, twice where hard contacts close
   CHECK(seen.sweeps > 0);
 }

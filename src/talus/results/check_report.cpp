@@ -20,7 +20,8 @@ namespace {
 // Of taking all steps, by stages; writing and cutting are not in it.
 std::string time_text(const PreparedRun& run) {
   constexpr double kTrial = 3;  // [s]
-  const std::vector<StageCost> cost = time_stages(run, kTrial, threads_for(run.scene.blocks.count));
+  constexpr int kWhole = 5000;  // blocks up to which its steps are those of the run
+  const std::vector<StageCost> cost = time_stages(run, kTrial, threads_for(run.scene.blocks.count), kWhole);
   double low = 0, high = 0;
   bool at_least = false;
   std::string stages;
@@ -40,7 +41,10 @@ std::string time_text(const PreparedRun& run) {
                                             readable_seconds(low), readable_seconds(high))
                               : "about " + readable_seconds(low);
   return fmt::format("  time       {} on this machine, by first steps: {}{}\n", all, stages,
-                     at_least ? "; longer where the solver takes more sweeps than this trial allows" : "");
+                     !at_least ? ""
+                     : run.scene.blocks.count > kWhole
+                         ? "; longer where the solver takes more sweeps than this trial allows"
+                         : "; steps of the trial were not solved");
 }
 
 }  // namespace

@@ -449,10 +449,12 @@ const Columns<JointRow, Cell>& joint_columns() {
 
 std::string jolt_text(const Scene& scene, const RunResult& result) {
   constexpr double kTooMuch = 10;
-  const double given = result.jolt > 0 ? largest_input(scene.model) : 0;
+  if (!(result.jolt > 0)) return "";
+  // weight that is taken on at once is no blow
+  const double given = std::max(largest_input(scene.model), norm(scene.model.gravity));
   if (!(result.jolt > kTooMuch * given)) return "";
   return fmt::format(
-      "accelerations: {} with {:.3g} m/s2 at t = {:.4g} s, {:.2g} times the largest that is given ({:.3g} m/s2): blows on "
+      "accelerations: {} with {:.3g} m/s2 at t = {:.4g} s, {:.2g} times the largest that is given, gravity included ({:.3g} m/s2): blows on "
       "joints with stiffness. Their damping_time rules them; half the step tells whether they do what is looked for",
       result.jolt_row, result.jolt, result.jolt_time, result.jolt / given, given);
 }

@@ -115,7 +115,15 @@ double highest_frequency(const History& history, InputKind kind) {
 
 double largest_input(const Model& model) {
   double most = 0;
-  for (const auto& [history, kinds] : inputs_of(model)) {
+  Inputs inputs = inputs_of(model);
+  for (const BlockInput& b : model.blocks)  // not in metres
+    if (const auto turns = inputs.find(b.motion_rotation.history); turns != inputs.end()) {
+      std::vector<InputKind>& kinds = turns->second;
+      const InputKind kind =
+          b.motion_rotation.kind == Motion::kVelocity ? InputKind::kVelocity : InputKind::kDisplacement;
+      if (const auto k = std::find(kinds.begin(), kinds.end(), kind); k != kinds.end()) kinds.erase(k);
+    }
+  for (const auto& [history, kinds] : inputs) {
     const History& h = model.histories[static_cast<size_t>(history)];
     if (h.time.size() < 2) continue;
     record::Motion m = sampled(h);

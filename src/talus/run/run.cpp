@@ -72,7 +72,7 @@ class StagedRun::Runner {
       scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
     work_.workers = workers;
     if (scene.model.formulation == Formulation::kPenalty) penalty_.emplace(scene_, work_);
-    shakes_ = largest_input(scene.model) > 0;
+    shakes_ = largest_input(scene.model) > 0 && joints_give(scene.laws);
   }
 
   // Makes the state ready. Trouble is told by the first go().
@@ -648,7 +648,9 @@ class StagedRun::Runner {
       if (const double push = std::hypot(work_.rows.impulse[k][0], work_.rows.impulse[k][1]); push > largest)
         largest = push, most = k;
     }
-    if (most == work_.rows.size() || !work_.rows.points[most].is_soft(0)) return;
+    if (most == work_.rows.size() || !is_joint(work_.rows.owner[most].family) ||
+        !work_.rows.points[most].is_soft(0))
+      return;
     result_.jolt = r.jolt, result_.jolt_time = state.time;
     result_.jolt_row = fmt::format("{} ({})", scene_.blocks.name[static_cast<size_t>(r.jolted)],
                                    row_name(scene_, state, work_, most));

@@ -76,6 +76,7 @@ std::vector<StageCost> time_stages(const PreparedRun& run, double seconds, int t
       const StageResult& stage = standing.result.stages.back();
       if (stage.kind == StageKind::kStatic && stage.at_rest && stage.steps < plans[k].steps)
         c.steps_to_rest = stage.steps;
+      c.ended = stage.kind == StageKind::kDynamic && stage.steps == plans[k].steps;
       if (c.step == 0 && stage.steps > 0) c.step = c.low / static_cast<double>(stage.steps);
     }
     cost.push_back(c);
@@ -89,6 +90,7 @@ std::vector<StageCost> time_stages(const PreparedRun& run, double seconds, int t
     if (c.steps_to_rest > 0) continue;
     const StageInput& stage = run.scene.model.stages[k];
     const auto all = static_cast<double>(run.plans[k].steps);
+    if (c.ended) continue;
     if (stage.kind == StageKind::kDynamic)
       c.low = c.step * all / kApart, c.high = c.step * all * kApart;
     else if (stage.from_rest)

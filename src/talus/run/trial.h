@@ -12,6 +12,7 @@ struct StageCost {
   double step = 0;            // of a step, mean [s]; 0: none could be measured
   double low = 0, high = 0;   // of the stage [s]
   int64_t steps_to_rest = 0;  // a static stage that ended in the trial; 0: it has not, or is none
+  bool ended = false;         // a dynamic stage that was over in the trial
   bool at_least = false;      // of its steps some took more sweeps than a trial allows
 };
 
@@ -21,7 +22,6 @@ struct StageCost {
 /// duration has, the high one. A dynamic stage is within a factor of 3 of its steps at the mean of those tried.
 /// @param most_whole  blocks up to which the steps are those of the run; of more they have few sweeps, else the trial would take
 ///                    minutes
-std::vector<StageCost> time_stages(const PreparedRun& run, double seconds, int threads,
-                                   int most_whole = 5000);
+std::vector<StageCost> time_stages(const PreparedRun& run, double seconds, int threads, int most_whole);
 
 }  // namespace talus

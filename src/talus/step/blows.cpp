@@ -44,6 +44,8 @@ struct Place {
   PointRows rows;  // between bodies that move, by the number of their first blocks
   Vec2 given[2];   // velocities there of what does not move freely [m/s]
   double restitution = 0;
+  bool held = false;    // a support, which keeps the velocity that it has
+  double own = 0;       // part of its velocity along the normal that is not that of the bodies [m/s]
   double reach = 0;     // how far apart it were at the end of the step, but for the motion of the bodies [m]
   Impulse impulse{};    // of the waves so far [N s]
   double approach = 0;  // the fastest of them [m/s]
@@ -80,13 +82,15 @@ class Waves {
     place_bodies();
     rate_ = rates_of_bodies(rate), rate_old_ = rate_;
     make_places(rate, drift);
+    make_held();
   }
 
   void go() {
     const double slow = least_blow(scene_, work_);
     for (int wave = 0; wave < kMostWaves; ++wave) {
-      const std::vector<Place*> meet = coming(slow);
+      std::vector<Place*> meet = coming(slow);
       if (meet.empty()) return;
+      add_held(meet);
       part(meet);
     }
   }
@@ -114,6 +118,10 @@ class Waves {
       if (blow == blows.end() || blow->row != p.row) continue;
       const std::array<double, 2> u = speed(p);
       for (size_t k = 0; k < 2; ++k) {
+        if (p.held) {
+          work[Cause::kSupports] += 0.5 * blow->impulse[k] * u[k];
+          continue;
+        }
         work[k == 0 ? Cause::kContactClosing : Cause::kFriction] += 0.5 * blow->impulse[k] * u[k];
         // what does not move freely passes on the work of what drives it
         work[Cause::kSupports] -= 0.5 * blow->impulse[k] * p.given_along(k);
@@ -154,12 +162,6 @@ class Waves {
     for (size_t i = 0; i < n; ++i) root_[i] = sets.find(i);
     for (size_t i = 0; i < n; ++i)
       if (!blocks_.moves_freely(static_cast<int>(i))) body_[root_[i]].moves = false;
-    // what is held in both directions stands; what is held along one the forces of the step hold
-    for (const SupportedPoint& p : scene_.supported) {
-      const SupportInput& s = scene_.model.supports[static_cast<size_t>(p.support)];
-      if (p.active && s.x.kind != Motion::kFree && s.y.kind != Motion::kFree)
-        body_[root_[static_cast<size_t>(p.block)]].moves = false;
-    }
   }
 
   void place_bodies() {
@@ -220,9 +222,25 @@ class Waves {
         std::tie(p.rows.block_b, p.rows.arm_b, p.given[1]) = on_body(rows.block_b, rows.arm_b, rate);
         if (p.rows.block_a == p.rows.block_b) continue;
         // what acts, and the motion that is not that of the bodies
+        p.own = relative_velocity(rows, rate)[0] - speed(p)[0];
         p.reach = gap_of(state_, i, end) + work_.clock.dt * (relative_velocity(rows, drift)[0] - speed(p)[0]);
         places_.push_back(p);
       }
+    }
+  }
+
+  void make_held() {
+    const RowRange range = work_.rows.range(Family::kSupport);
+    for (size_t r = range.begin; r < range.end; ++r) {
+      Place p;
+      p.row = r, p.held = true, p.rows = work_.rows.points[r];
+      const int block = std::max(p.rows.block_a, p.rows.block_b);
+      if (block < 0 || !body_[root_[static_cast<size_t>(block)]].moves) continue;
+      for (auto [of, arm] :
+           {std::pair(&p.rows.block_a, &p.rows.arm_a), std::pair(&p.rows.block_b, &p.rows.arm_b)})
+        if (*of >= 0) std::tie(*of, *arm, std::ignore) = on_body(*of, *arm, rate_);
+      for (Row& row : p.rows.row) row = {};
+      places_.push_back(p);
     }
   }
 
@@ -245,11 +263,23 @@ class Waves {
     double fastest = fastest_;
     for (Place& p : places_) {
       const double u = speed(p)[0];
-      if (!(u < -slow) || !(-u > kLeastBlow * fastest_) || p.reach + work_.clock.dt * u > 0) continue;
+      if (p.held || !(std::max(u, u + p.own) < -slow) || !(-u > kLeastBlow * fastest_) ||
+          p.reach + work_.clock.dt * u > 0)
+        continue;
       out.push_back(&p), fastest = std::max(fastest, -u);
     }
     fastest_ = fastest;
     return out;
+  }
+
+  // What holds the bodies of a wave.
+  void add_held(std::vector<Place*>& meet) {
+    std::vector<char> met(body_.size(), 0);
+    for (const Place* p : meet)
+      for (const int body : {p->rows.block_a, p->rows.block_b})
+        if (body >= 0) met[static_cast<size_t>(body)] = 1;
+    for (Place& p : places_)
+      if (p.held && met[static_cast<size_t>(std::max(p.rows.block_a, p.rows.block_b))]) meet.push_back(&p);
   }
 
   // Eq. 4.7a, with a share of the restitution.
@@ -257,8 +287,9 @@ class Waves {
     RowSet set;
     for (const Place* p : meet) {
       PointRows rows = p->rows;
-      rows.row[0].bias = p->given_along(0) + share * p->restitution * speed(*p)[0];
-      rows.row[1].bias = p->given_along(1);
+      const std::array<double, 2> u = speed(*p);
+      rows.row[0].bias = p->held ? -u[0] : p->given_along(0) + share * p->restitution * u[0];
+      rows.row[1].bias = p->held ? -u[1] : p->given_along(1);
       set.add(rows, {0, 0}, {Family::kContact, static_cast<int>(p->row)});
     }
     std::vector<BlockRate> rate = rate_;
@@ -291,6 +322,7 @@ class Waves {
     const auto work_of = [&](const std::vector<Impulse>& p, const std::vector<BlockRate>& rate) {
       std::vector<double> work(body_.size(), 0);
       for (size_t i = 0; i < meet.size(); ++i) {
+        if (meet[i]->held) continue;  // what drives it may give
         const auto before = speed(*meet[i]), after = relative_velocity(meet[i]->rows, rate);
         for (size_t k = 0; k < 2; ++k)
           work[island[i]] += 0.5 * p[i][k] * (before[k] + after[k] + meet[i]->given_along(k));
@@ -344,7 +376,7 @@ class Waves {
     hold_back(meet, impulse);
     for (size_t i = 0; i < meet.size(); ++i) {
       Place& p = *meet[i];
-      p.approach = std::max(p.approach, -speed(p)[0]);
+      if (!p.held) p.approach = std::max(p.approach, -speed(p)[0]);
       for (size_t k = 0; k < 2; ++k) p.impulse[k] += impulse[i][k];
     }
     rate_ = rates_with(meet, impulse);
@@ -371,6 +403,7 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
   const size_t first = work.rows.range(Family::kContact).begin;
   const double slow = least_blow(scene, work);
   std::vector<size_t> closing;
+  if (!meets_hard(scene.layout, scene.laws)) return closing;
   for (size_t i = 0; i < state.patches.size(); ++i) {
     const Patch& c = state.patches[i];
     for (size_t end = 0; end < 2; ++end) {
@@ -395,6 +428,7 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
         pressed[k] += (std::abs(c.force[0][0]) + std::abs(c.force[1][0])) / blocks.mass[k];
       }
   std::erase_if(closing, [&](size_t r) {
+    if (restitution_of(scene, state.patches[(r - first) / 2]) >= 0) return false;
     const PointRows& p = work.rows.points[r];
     const double back =
         std::max(pressed[static_cast<size_t>(p.block_a)], pressed[static_cast<size_t>(p.block_b)]);
@@ -404,7 +438,6 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
 }
 
 void find_blows(const Scene& scene, StepWork& work, State& state) {
-  work.meeting.blows.clear(), work.meeting.failed = false;
   if (std::ranges::none_of(scene.laws, [](const JointLaw& law) { return law.restitution() >= 0; })) return;
   // bodies meet with the velocities of this instant: with those before the kick weight would take of each rebound, with
   // those after it it would give

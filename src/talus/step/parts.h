@@ -36,13 +36,10 @@ struct RowSums {
   RowSums& operator+=(const RowSums& o);
 };
 
-/// How deep row r is closed, and whether it bears.
-void tally_row(const BlockSet& blocks, const StepWork& work, const State& state, size_t r, RowSums& sums);
-
-/// The work of an impulse of row r (theory 8).
+/// The work that row r does as it is solved (theory 8).
 /// @param u  its relative velocity after the kick [m/s]
-void tally_impulse(const BlockSet& blocks, const StepWork& work, size_t r, const Impulse& impulse,
-                   const std::array<double, 2>& u, RowSums& sums);
+void tally_row(const BlockSet& blocks, const StepWork& work, const State& state, size_t r,
+               const std::array<double, 2>& u, RowSums& sums);
 
 /// What of that dashpots have taken is the work of damping.
 /// @param impulse  what they bear [N s]

@@ -128,11 +128,8 @@ RowSums settle_rows(const Scene& scene, const StepWork& work, State& state) {
       work.rows.size(), kChunkOfRows, [&](size_t begin, size_t end, RowSums& s) {
         for (size_t r = begin; r < end; ++r) {
           const std::array<double, 2> u = relative_velocity(work.rows.points[r], state.rate);
-          tally_row(blocks, work, state, r, s);
-          tally_impulse(blocks, work, r, work.rows.impulse[r], u, s);
+          tally_row(blocks, work, state, r, u, s);
           if (!scene.by_patches() || r < contacts.begin || r >= contacts.end) continue;
-          if (work.meeting.is_one())
-            tally_impulse(blocks, work, r, work.meeting.until[r - contacts.begin], u, s);
           tally_dashpots(work, r, u,
                          dashpot_impulse(blocks, scene.laws, work.rows, r, u, work.rate_before, state.rate,
                                          work.clock, state),
@@ -161,20 +158,21 @@ void remember(const Scene& scene, const StepWork& work, State& state) {
   remember_bolts(work.rows, work.clock, state);
 }
 
-// The sooner of two in the report, the worse in what is told of errors.
+// What both solutions of a step have to say: the worse in what is told of errors, and who failed.
 void add_report(const StepReport& first, StepReport& report) {
   report.solve.iterations += first.solve.iterations;
   if (!(report.error.worst >= first.error.worst)) report.error = first.error, report.worst = first.worst;
+  if (first.failed && !report.failed) report.method = first.method, report.attempts = first.attempts;
   report.failed = report.failed || first.failed, report.loose = report.loose || first.loose;
 }
 
 // Forces of the rows. Where hard contacts close that were apart they act from then on only, and what bore until then does not let
-// go of a step before it (theory 4.7).
+// go a step before it (theory 4.7).
 void solve_forces(const Scene& scene, const StepSettings& settings, StepWork& work, State& state,
                   StepReport& report) {
   RowSet& rows = work.rows;
   Meeting& meeting = work.meeting;
-  meeting.until.clear(), meeting.blows.clear(), meeting.failed = false;
+  meeting = {};
   std::vector<size_t> closing;
   if (settings.dynamic && scene.by_patches() && scene.model.contact.law == ContactLaw::kExact)
     closing = closing_rows(scene, work, state);
@@ -187,37 +185,41 @@ void solve_forces(const Scene& scene, const StepSettings& settings, StepWork& wo
   const std::vector<BlockRate> before_blows = state.rate;
   find_blows(scene, work, state);
   // of contacts that can only push the forces until then stay; all others are those of the whole step
-  const RowRange contacts = rows.range(Family::kContact);
   RowSet stay;
-  meeting.rate = work.rate_free;
-  std::vector<Impulse> until(contacts.size());
-  for (size_t r = contacts.begin; r < contacts.end; ++r) {
-    PointRows& p = rows.points[r];
-    if (p.is_soft() || p.lower != 0 || p.cohesion != 0) continue;
-    std::swap(until[r - contacts.begin], rows.impulse[r]);
-    if (until[r - contacts.begin][0] != 0) stay.add(p, until[r - contacts.begin], {Family::kContact, 0});
+  std::vector<size_t> of_row;
+  for (size_t r = rows.range(Family::kContact).begin; r < rows.range(Family::kContact).end; ++r) {
+    const PointRows& p = rows.points[r];
+    if (p.is_soft() || p.lower != 0 || p.cohesion != 0 || rows.impulse[r][0] == 0) continue;
+    stay.add(p, rows.impulse[r], {Family::kContact, 0}), of_row.push_back(r);
+    rows.impulse[r] = {0, 0};
   }
-  apply_impulses(work.mobility, stay, meeting.rate);
-  for (size_t i = 0; i < meeting.rate.size(); ++i)
-    meeting.rate[i] = meeting.rate[i] + (state.rate[i] - before_blows[i]);
-  meeting.until = std::move(until);
+  std::vector<BlockRate> rate = work.rate_free;
+  apply_impulses(work.mobility, stay, rate);
+  for (size_t i = 0; i < rate.size(); ++i) rate[i] = rate[i] + (state.rate[i] - before_blows[i]);
+  meeting.rate = std::move(rate);
+  // what they give by stays with them, as part of what they give by in all
+  const auto give_on = [&](double sign) {
+    for (size_t k = 0; k < of_row.size(); ++k)
+      for (Row& row : rows.points[of_row[k]].row)
+        row.bias +=
+            sign * row.compliance * stay.impulse[k][static_cast<size_t>(&row - rows.points[of_row[k]].row)];
+  };
+  give_on(1);
   solve_rows(scene, settings, work, state, report);
+  give_on(-1);
+  for (size_t k = 0; k < of_row.size(); ++k)
+    for (size_t i = 0; i < 2; ++i) rows.impulse[of_row[k]][i] += stay.impulse[k][i];
   add_report(first, report);
   report.loose = report.loose || (meeting.failed && !report.failed);
 }
 
-// What contacts carried in all, for results; what comes together is no guess for the forces of the step after.
-void remember_meeting(StepWork& work, State& state) {
-  const Meeting& meeting = work.meeting;
+// For results. The state does not keep blows: they are no guess for the forces of the step after.
+void remember_blows(StepWork& work, State& state) {
   const size_t first = work.rows.range(Family::kContact).begin;
-  for (size_t k = 0; k < meeting.until.size(); ++k)
-    for (size_t i = 0; i < 2; ++i) {
-      work.rows.impulse[first + k][i] += meeting.until[k][i];
-      state.patches[k / 2].force[k % 2][i] += meeting.until[k][i] / work.clock.dt_kick;
-    }
-  for (const Meeting::Blow& blow : meeting.blows) {
+  for (const Meeting::Blow& blow : work.meeting.blows) {
     for (size_t i = 0; i < 2; ++i) work.rows.impulse[blow.row][i] += blow.impulse[i];
-    state.patches[(blow.row - first) / 2].touched = true;
+    if (work.rows.owner[blow.row].family == Family::kContact)
+      state.patches[(blow.row - first) / 2].touched = true;
   }
 }
 
@@ -262,7 +264,7 @@ StepReport take_kick(const Scene& scene, const StepSettings& settings, double dt
   profile.go_on_with(Profile::kLedger);
   if (!work.meeting.blows.empty()) rows += tally_blows(scene, work, state);
   tally(scene, scheme, rows, work, state, report);
-  remember_meeting(work, state);
+  remember_blows(work, state);
   return report;
 }
 

@@ -62,21 +62,20 @@ struct StepReport {
   int broken_faces = 0;  // in the drift that follows
 };
 
-/// A step in which hard contacts close that were apart (theory 4.7): the forces until then, the blows of joints with a
-/// restitution, and the forces from then on, which RowSet::impulse has.
+/// A step in which hard contacts close that were apart (theory 4.7), and the blows of joints with a restitution.
 struct Meeting {
   struct Blow {
-    size_t row = 0;       // of contacts
+    size_t row = 0;       // of contacts, and of supports that hold the bodies
     Impulse impulse{};    // [N s]
     double approach = 0;  // the fastest at which its sides came together [m/s]
   };
-  std::vector<Impulse> until;  // of the rows of contacts that can only push [N s]; empty: none closes
-  std::vector<Blow> blows;     // by rows
+  std::vector<Blow> blows;  // by rows
   std::vector<BlockRate>
-      rate;             // [count] what the forces from then on begin with, as work.rate_free those until then
+      rate;  // [count] what the forces from then on begin with, as work.rate_free those until then; empty: none
+             // closes
   bool failed = false;  // blows that are not solved to the last digits
 
-  bool is_one() const { return !until.empty(); }
+  bool is_one() const { return !rate.empty(); }
 };
 
 /// Memory reused from step to step, and what the step found at this instant.

@@ -131,28 +131,19 @@ RowSums& RowSums::operator+=(const RowSums& o) {
 }
 
 // Theory 8.
-void tally_row(const BlockSet& blocks, const StepWork& step, const State& state, size_t r, RowSums& s) {
+void tally_row(const BlockSet& blocks, const StepWork& step, const State& state, size_t r,
+               const std::array<double, 2>& u, RowSums& s) {
   const PointRows& p = step.rows.points[r];
   const Impulse& impulse = step.rows.impulse[r];
   const RowOwner owner = step.rows.owner[r];
   const bool contact = owner.family == Family::kContact;
-  const bool bore = contact && step.meeting.is_one() && step.meeting.until[owner.at()][0] != 0;
-  if (impulse[0] != 0 || impulse[1] != 0 || bore)
-    s.closed += contact || (is_joint(owner.family) && p.is_soft());
   if (contact) {
     const double gap = step.gaps[owner.at()];
     if (!p.is_soft(0)) s.drift = std::max(s.drift, -gap);
     const double closed = closed_share(blocks, state, p.block_a, p.block_b, gap, p.normal);
     if (closed > s.closed_share) s.closed_share = closed, s.closed_row = static_cast<int>(r);
   }
-}
-
-// Theory 8.
-void tally_impulse(const BlockSet& blocks, const StepWork& step, size_t r, const Impulse& impulse,
-                   const std::array<double, 2>& u, RowSums& s) {
   if (impulse[0] == 0 && impulse[1] == 0) return;
-  const PointRows& p = step.rows.points[r];
-  const RowOwner owner = step.rows.owner[r];
   for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
     if (block >= 0 && blocks.kind[static_cast<size_t>(block)] == BlockKind::kDriven)
       s.on_driven.emplace_back(block, impulse_on(p, impulse, sign));
@@ -162,6 +153,7 @@ void tally_impulse(const BlockSet& blocks, const StepWork& step, size_t r, const
     s.work.before[cause[k]] += 0.5 * impulse[k] * u0[k];
     s.work.after[cause[k]] += 0.5 * impulse[k] * u[k];
   }
+  s.closed += contact || (is_joint(owner.family) && p.is_soft());
 }
 
 // Theory 8.

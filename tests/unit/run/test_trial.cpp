@@ -16,7 +16,7 @@ TEST_CASE("trial steps: a cost for every stage, one that rests at once too, and 
       kShakenBlock + "[[stage]]\nname = \"short\"\nkind = \"dynamic\"\nduration = \"1 us\"\n";
   Findings findings("model.toml", text);
   const PreparedRun run = prepare_run("model.toml", text, {}, findings);
-  const std::vector<StageCost> cost = time_stages(run, 0.02, 1);
+  const std::vector<StageCost> cost = time_stages(run, 0.02, 1, 5000);
   REQUIRE(cost.size() == 2);
   CHECK(cost[0].step > 0);
   CHECK(cost[0].low < cost[0].high);
@@ -62,7 +62,7 @@ duration = "1 s"
 )";
   Findings findings("model.toml", text);
   const PreparedRun run = prepare_run("model.toml", text, {}, findings);
-  const std::vector<StageCost> cost = time_stages(run, 5, 1);
+  const std::vector<StageCost> cost = time_stages(run, 5, 1, 5000);
   REQUIRE(cost.size() == 2);
   CHECK(cost[0].steps_to_rest > 1);
   CHECK(cost[0].steps_to_rest < 100);
@@ -72,7 +72,7 @@ duration = "1 s"
   // a few steps of damped motion are no rest
   std::string slow = text;
   slow.replace(slow.find("kind = \"static\""), 15, "kind = \"static\"\nintegration = \"dynamic\"");
-  const std::vector<StageCost> hasty = time_stages(prepare_run("model.toml", slow, {}, findings), 0, 1);
+  const std::vector<StageCost> hasty = time_stages(prepare_run("model.toml", slow, {}, findings), 0, 1, 5000);
   CHECK(hasty[0].steps_to_rest == 0);
   CHECK(hasty[0].low < hasty[0].high);
 }

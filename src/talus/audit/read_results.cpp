@@ -94,7 +94,8 @@ class Reader {
     if (!s.contains("energy [J]")) return;
     const auto& e = s["energy [J]"];
     const double largest = e.value("term_largest", 0.0);
-    const Given last{end_, e.value("contact_closing_work", 0.0), e.value("joint_work", 0.0),
+    const Given last{end_, e.value("contact_closing_work", 0.0),
+                     e.value("joint_work", 0.0) + e.value("damping_work", 0.0),
                      e.value("friction_work", 0.0)};
     const auto most = [&](double Given::*work) {
       Given out = last;
@@ -256,8 +257,9 @@ class Reader {
     };
     const auto &t = column("t [s]"), &failed = column("failed steps"),
                &closing = column("contact closing work [J]"), &joints = column("joint work [J]"),
-               &friction = column("friction work [J]");
-    for (size_t i = 0; i < table.rows(); ++i) given_.push_back({t[i], closing[i], joints[i], friction[i]});
+               &damping = column("damping work [J]"), &friction = column("friction work [J]");
+    for (size_t i = 0; i < table.rows(); ++i)
+      given_.push_back({t[i], closing[i], joints[i] + damping[i], friction[i]});
     const std::vector<double> none(table.rows(), 0), &loose = tells_loose_ ? column("loose steps") : none,
                                                      &error = column("contact error [m]");
     for (size_t i = 0; i < table.rows(); ++i) take_step(t[i], failed[i], loose[i], error[i]);
@@ -482,9 +484,10 @@ void add_joint_work(const Rules& rules, double work, double friction, double lar
        time,
        {},
        work / largest,
-       fmt::format("elastic joints have given {:.4g} J by t = {:.6g} s, {:.2g} % of the largest term of "
-                   "the ledger; they can only give back what they have taken",
-                   work, time, 100 * work / largest)});
+       fmt::format(
+           "elastic joints and damping have given {:.4g} J by t = {:.6g} s, {:.2g} % of the largest term of "
+           "the ledger; they can only give back what they have taken",
+           work, time, 100 * work / largest)});
 }
 
 void add_failed(int64_t failed, double time, const std::string& where, Report& report) {

@@ -71,9 +71,9 @@ void Auditor::at(const Instant& i, bool frame) {
   if (e.work[Cause::kContactClosing] > closing_)
     closing_ = e.work[Cause::kContactClosing], closing_friction_ = e.work[Cause::kFriction],
     closing_time_ = i.state.time;
-  if (e.work[Cause::kJoints] > joints_)
-    joints_ = e.work[Cause::kJoints], joints_friction_ = e.work[Cause::kFriction],
-    joints_time_ = i.state.time;
+  // of a blow dashpots and stiffness share the work to the first order in the step only: neither is judged alone
+  if (const double joints = e.work[Cause::kJoints] + e.work[Cause::kDamping]; joints > joints_)
+    joints_ = joints, joints_friction_ = e.work[Cause::kFriction], joints_time_ = i.state.time;
 
   const double interval = scene_.model.output.audit_interval;
   bool due = frame;

@@ -68,7 +68,8 @@ duration = "1 s"
   CHECK(cost[0].steps_to_rest < 100);
   CHECK(cost[0].low == cost[0].high);
   CHECK(cost[1].steps_to_rest == 0);
-  CHECK(cost[1].high == doctest::Approx(9 * cost[1].low));
+  CHECK(cost[1].ended);  // within the five seconds
+  CHECK(cost[1].low == cost[1].high);
   // a few steps of damped motion are no rest
   std::string slow = text;
   slow.replace(slow.find("kind = \"static\""), 15, "kind = \"static\"\nintegration = \"dynamic\"");

@@ -180,6 +180,17 @@ TEST_CASE("joint damping: accelerations far above those given are told with bloc
     }
     return jolt_text(*scene, r.run);
   };
+  // ten times: neither twenty nor five
+  const Scene still = [] {
+    Scene scene;
+    scene.model.gravity = {0, -9.81};
+    return scene;
+  }();
+  RunResult jolted;
+  jolted.jolt = 97;
+  CHECK(jolt_text(still, jolted) == "");
+  jolted.jolt = 99;
+  CHECK(jolt_text(still, jolted) != "");
   const std::string text = told(5e-3, true);
   CHECK_MESSAGE(text.find("accelerations: b (contact") == 0, text);
   CHECK_MESSAGE(

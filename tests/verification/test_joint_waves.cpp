@@ -137,6 +137,24 @@ std::pair<Complex, Complex> up_and_down(Complex v0, Complex v1, double j0, doubl
   return {(v0 * e(j1) - v1 * e(j0)) / d, (e(-j0) * v1 - e(-j1) * v0) / d};
 }
 
+// A static stage in which a pressure [Pa] comes to act on the top, and stays [m].
+std::string weight_stage(double pressure, double height) {
+  return fmt::format(R"toml(
+[history.weight]
+time = [0, 1]
+value = [{0}, {0}]
+[[load]]
+name = "weight"
+edge = [[0, {1:.17g}], [{2}, {1:.17g}]]
+pressure = "weight"
+[[stage]]
+name = "load"
+kind = "static"
+duration = 1
+)toml",
+                     pressure, height, kWide);
+}
+
 // Never opens, never slips; stiffness along both axes [Pa/m].
 std::string elastic(double stiffness) {
   return fmt::format(
@@ -216,20 +234,7 @@ TEST_CASE("A7e damped joints: what one of them keeps of a wave, and the loss per
         stiffness, time);
     int height = 0;
     for (const int n : c.parts) height += n;
-    c.more = fmt::format(R"toml(
-[history.weight]
-time = [0, 1]
-value = [1e6, 1e6]
-[[load]]
-name = "weight"
-edge = [[0, {0:.17g}], [{1}, {0:.17g}]]
-pressure = "weight"
-[[stage]]
-name = "load"
-kind = "static"
-duration = 1
-)toml",
-                         height * kH, kWide);
+    c.more = weight_stage(1e6, height * kH);
   };
   const auto kelvin = [](const Column& c, double time) { return Complex(1, c.omega() * time); };
   for (const double time : {2e-5, 1e-4, 2.5e-4})
@@ -333,20 +338,7 @@ void slips_under_a_wave(const std::vector<double>& betas) {
   Column c;
   c.shear = c.pressed = true, c.parts = {16, 16}, c.points = {12, 20};
   const double pressure = 1e6, stress = c.impedance() * kPeak;
-  c.more = fmt::format(R"toml(
-[history.weight]
-time = [0, 1]
-value = [{0}, {0}]
-[[load]]
-name = "weight"
-edge = [[0, {1:.17g}], [{2}, {1:.17g}]]
-pressure = "weight"
-[[stage]]
-name = "load"
-kind = "static"
-duration = 1
-)toml",
-                       pressure, 32 * kH, kWide);
+  c.more = weight_stage(pressure, 32 * kH);
   struct Run {
     std::vector<double> below, above;
     double lost = 0, closure = 0;

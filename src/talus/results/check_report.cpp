@@ -19,7 +19,7 @@ namespace {
 
 // Of taking all steps, by stages; writing and cutting are not in it.
 std::string time_text(const PreparedRun& run) {
-  constexpr double kTrial = 3;  // [s]
+  constexpr double kTrial = 3;  // [s] a check is over in five, reading and drawing included
   constexpr int kWhole = 5000;  // blocks up to which its steps are those of the run
   const std::vector<StageCost> cost = time_stages(run, kTrial, threads_for(run.scene.blocks.count), kWhole);
   double low = 0, high = 0;

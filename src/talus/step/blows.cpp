@@ -358,16 +358,10 @@ class Waves {
 
   std::vector<BlockRate> rates_with(const std::vector<Place*>& meet,
                                     const std::vector<Impulse>& impulse) const {
+    RowSet set;
+    for (size_t i = 0; i < meet.size(); ++i) set.add(meet[i]->rows, impulse[i]);
     std::vector<BlockRate> rate = rate_;
-    for (size_t i = 0; i < meet.size(); ++i) {
-      const PointRows& p = meet[i]->rows;
-      for (const auto& [body, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
-        if (body < 0) continue;
-        const BlockRate more =
-            accelerate(mobility_[static_cast<size_t>(body)], impulse_on(p, impulse[i], sign));
-        rate[static_cast<size_t>(body)].a += more.a, rate[static_cast<size_t>(body)].G += more.G;
-      }
-    }
+    apply_impulses(mobility_, set, rate);
     return rate;
   }
 

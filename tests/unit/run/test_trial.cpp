@@ -3,6 +3,7 @@
 #include "talus/run/trial.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "support/told.h"
 
@@ -10,6 +11,34 @@ namespace test_trial {
 
 using namespace talus;
 using namespace talus::test;
+
+// A dry wall of rigid blocks. @param joint  more keys of its joint
+static std::string wall_text(int courses, const std::string& joint) {
+  return fmt::format(R"(talus = 1
+[model]
+gravity = [0, -9.81]
+[material.rock]
+density = 2700
+[joint.face]
+friction_angle = "35 deg"
+{1}[contact]
+joint = "face"
+[[block]]
+name = "floor"
+polygon = [[-1, -1], [7, -1], [7, 0], [-1, 0]]
+material = "rock"
+kind = "fixed"
+[[grid]]
+name = "wall"
+min = [0, 0]
+max = [6, {0}]
+cells = [6, {0}]
+material = "rock"
+joint = "face"
+kind = "rigid"
+)",
+                     courses, joint);
+}
 
 TEST_CASE("trial steps: a cost for every stage, one that rests at once too, and the run as it was") {
   const std::string text =
@@ -27,31 +56,8 @@ TEST_CASE("trial steps: a cost for every stage, one that rests at once too, and 
 
 TEST_CASE(
     "trial steps: a static stage that comes to its rest is known, one that does not in the time has a range") {
-  const std::string text = R"(talus = 1
-[model]
-gravity = [0, -9.81]
-[material.rock]
-density = 2700
-[joint.face]
-friction_angle = "35 deg"
-normal_stiffness = "10 GPa/m"
-shear_stiffness = "5 GPa/m"
-[contact]
-joint = "face"
-[[block]]
-name = "floor"
-polygon = [[-1, -1], [7, -1], [7, 0], [-1, 0]]
-material = "rock"
-kind = "fixed"
-[[grid]]
-name = "wall"
-min = [0, 0]
-max = [6, 5]
-cells = [6, 5]
-material = "rock"
-joint = "face"
-kind = "rigid"
-[[stage]]
+  const std::string text =
+      wall_text(5, "normal_stiffness = \"10 GPa/m\"\nshear_stiffness = \"5 GPa/m\"\n") + R"([[stage]]
 name = "settle"
 kind = "static"
 duration = "10 s"
@@ -80,29 +86,7 @@ duration = "1 s"
 
 TEST_CASE("trial steps: a step that the solver does not get through ends soon, and is told") {
   // a hard wall asks for more sweeps than there may be at this tolerance
-  const std::string text = R"(talus = 1
-[model]
-gravity = [0, -9.81]
-[material.rock]
-density = 2700
-[joint.face]
-friction_angle = "35 deg"
-[contact]
-joint = "face"
-[[block]]
-name = "floor"
-polygon = [[-1, -1], [7, -1], [7, 0], [-1, 0]]
-material = "rock"
-kind = "fixed"
-[[grid]]
-name = "wall"
-min = [0, 0]
-max = [6, 30]
-cells = [6, 30]
-material = "rock"
-joint = "face"
-kind = "rigid"
-[solver]
+  const std::string text = wall_text(30, "") + R"([solver]
 method = "gauss_seidel"
 tolerance = 1e-14
 max_sweeps = 50

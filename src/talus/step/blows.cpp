@@ -406,7 +406,7 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
       const double gap = gap_of(state, i, end);
       const bool apart =
           gap > noticeable(blocks, static_cast<size_t>(c.block_a), static_cast<size_t>(c.block_b));
-      if (!apart && !(restitution_of(scene, c) >= 0)) continue;
+      if (!apart && (!(restitution_of(scene, c) >= 0) || c.force[end][0] != 0)) continue;
       if (relative_velocity(p, work.rate_before)[0] < -slow &&
           gap + work.clock.dt * relative_velocity(p, work.rate_free)[0] <= 0)
         closing.push_back(first + 2 * i + end);

@@ -6,8 +6,8 @@
 
 namespace talus {
 
-/// Rows of hard contacts that are apart, or whose joint has a restitution, and close within the step at more than what weight,
-/// or what presses their blocks, gives in one. @pre  the rows of the step are gathered
+/// Rows of hard contacts that are apart, or bear nothing and have a joint with a restitution, and close within the step at more
+/// than what weight, or what presses their blocks, gives in one. @pre  the rows of the step are gathered
 std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const State& state);
 
 /// Finds the blows, wave by wave: what comes together is parted, what that sends into others in the next one. Bodies are

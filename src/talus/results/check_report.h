@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Takes steps on a copy for about half a second, to tell what all of them will take.
+/// Takes steps on a copy for about three seconds, to tell what all of them will take.
 /// @param file, warnings  name of the model, and how many warnings it has
 std::string check_report(const std::string& file, int warnings, const PreparedRun& run, const Cut& cut);
 

@@ -90,8 +90,7 @@ void Progress::stage_is_followed(const Scene& scene, int stage, const StagePlan&
 void Progress::at(const Instant& instant) {
   next_.at(instant);
   worst_error_ = std::max(worst_error_, instant.report.error.worst);
-  if (instant.stage_start) stage_begin_ = instant.state.time;
-  ++stage_step_;
+  if (stage_step_++ == 0) pace_.begin(wall_now(), static_cast<double>(instant.steps_before));
   // the clock is not asked at every short step
   const StageInput& stage = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
   if (instant.last || (!stage.from_rest && stage_step_ % 16 != 0)) return;
@@ -103,7 +102,7 @@ void Progress::at(const Instant& instant) {
 
 void Progress::show(const Instant& instant, double now) {
   const double rate = static_cast<double>(stage_step_) / (now - stage_wall_);
-  const auto left = static_cast<double>(instant.plan.steps - instant.steps_before);
+  pace_.add(now, static_cast<double>(instant.steps_before));
   const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
   const double share =
       100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
@@ -113,8 +112,9 @@ void Progress::show(const Instant& instant, double now) {
                 (s.path > 0
                      ? fmt::format(", {} of {} balances", instant.state.rest.balances, instant.plan.balances)
                      : "")
-          : fmt::format("{:.0f} %, {}{} to go", share, s.kind == StageKind::kStatic ? "at most " : "",
-                        readable_seconds(left / rate));
+          : fmt::format(
+                "{:.0f} %, {}{} to go", share, s.kind == StageKind::kStatic ? "at most " : "",
+                readable_range(pace_.of(static_cast<double>(instant.plan.steps - instant.steps_before))));
   const std::string steps = s.from_rest ? "" : fmt::format(", {:.0f} steps/s", rate);
   const std::string line =
       fmt::format("  {}: t = {:.4g} s, {}{}{}, contact error {:.0e} m{}", s.name, instant.state.time, pace,

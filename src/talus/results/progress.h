@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "talus/results/pace.h"
 #include "talus/results/recorder.h"
 
 namespace talus {
@@ -39,7 +40,8 @@ class Progress : public Observer {
   Observer& next_;
   std::FILE* out_;
   bool terminal_;
-  double last_shown_ = 0, stage_wall_ = 0, stage_begin_ = 0, worst_error_ = 0;
+  double last_shown_ = 0, stage_wall_ = 0, worst_error_ = 0;
+  Pace pace_;
   int64_t stage_step_ = 0;
   bool line_open_ = false;
 };

@@ -156,6 +156,12 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
         0.0 - r.energy.work[Cause::kContactClosing]);
   }
+  if (r.ringing_steps > 0)
+    out += fmt::format(
+        "  ringing         in {} of {} steps blocks that deform knocked on each other on hard joints without restitution; "
+        "contact.alpha alone damps what they ring by then: how far they slip and rock hangs on the step, and far less so with "
+        "restitution = 0 there, or rigid blocks\n",
+        r.ringing_steps, r.steps);
   if (r.penalty > 0)
     out += fmt::format(
         "  penalty         normal springs of {:.3g} N/m; {} of {} steps cut, {} parts in all; deepest penetration {:.3g} m; "

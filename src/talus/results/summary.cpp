@@ -199,6 +199,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
             {"contact_solves", r.steps},
             {"failed_steps", r.failed_steps},
             {"loose_steps", r.loose_steps},
+            {"ringing_steps", r.ringing_steps},
             {"steps_cut", r.penalty > 0 ? 0 : r.cut_steps},
             {"second_solver_steps", r.second_solver_steps}};
   for (size_t k = 1; k < kSolverName.size(); ++k)

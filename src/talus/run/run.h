@@ -54,6 +54,7 @@ struct RunResult {
   // largest acceleration in dynamic stages of a block that a joint with stiffness pushes the most [m/s2], when [s], which and what
   double jolt = 0, jolt_time = 0;
   std::string jolt_row;
+  int64_t ringing_steps = 0;                         // in which blocks knocked on each other that ring
   Energy energy;                                     // at the end
   double largest_left_over = 0, largest_energy = 0;  // [J] over the run
   int broken_faces = 0;

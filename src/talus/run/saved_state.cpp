@@ -87,7 +87,7 @@ void exchange_standing(auto& x, auto& standing) {
     x(fmt::format("run.stages.left_out.{}", i), r.stages[i].left_out);
   }
   x("run.steps", r.steps), x("run.failed_steps", r.failed_steps);
-  x("run.loose_steps", r.loose_steps);
+  x("run.loose_steps", r.loose_steps), x("run.ringing_steps", r.ringing_steps);
   x("run.second_solver_steps", r.second_solver_steps), x("run.iterations", r.iterations);
   for (size_t k = 1; k < kSolverName.size(); ++k)
     x(fmt::format("run.{}_steps", kSolverName[k]), r.steps_by[k]);

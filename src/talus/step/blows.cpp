@@ -432,6 +432,21 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
   return closing;
 }
 
+bool rings(const Scene& scene, const StepWork& work, const State& state, const std::vector<size_t>& closing) {
+  std::vector<char> tied(static_cast<size_t>(scene.blocks.count), 0);
+  for (size_t f = 0; f < scene.bonds.faces.size(); ++f)
+    if (!state.face[f].broken)
+      for (const int i : {scene.bonds.faces[f].block_a, scene.bonds.faces[f].block_b})
+        tied[static_cast<size_t>(i)] = 1;
+  const size_t first = work.rows.range(Family::kContact).begin;
+  return std::ranges::any_of(closing, [&](size_t r) {
+    const Patch& c = state.patches[(r - first) / 2];
+    const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
+    const auto deforms = [&](size_t i) { return scene.blocks.kind[i] == BlockKind::kDeformable; };
+    return restitution_of(scene, c) < 0 && tied[a] == 0 && tied[b] == 0 && (deforms(a) || deforms(b));
+  });
+}
+
 void find_blows(const Scene& scene, StepWork& work, State& state) {
   if (std::ranges::none_of(scene.laws, [](const JointLaw& law) { return law.restitution() >= 0; })) return;
   // bodies meet with the velocities of this instant: with those before the kick weight would take of each rebound, with

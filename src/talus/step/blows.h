@@ -10,6 +10,10 @@ namespace talus {
 /// than what weight, or what presses their blocks, gives in one. @pre  the rows of the step are gathered
 std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const State& state);
 
+/// Whether blocks that deform and that nothing ties come together at one of these rows, and their joint has no restitution: what
+/// they ring by then is damped by alpha alone, the less the shorter the step (theory 7.1).
+bool rings(const Scene& scene, const StepWork& work, const State& state, const std::vector<size_t>& closing);
+
 /// Finds the blows, wave by wave: what comes together is parted, what that sends into others in the next one. Bodies are
 /// blocks and what is tied to them, and jump as rigid ones; `state.rate` gets the jumps.
 void find_blows(const Scene& scene, StepWork& work, State& state);

@@ -177,6 +177,7 @@ void solve_forces(const Scene& scene, const StepSettings& settings, StepWork& wo
   if (settings.dynamic && scene.by_patches() && scene.model.contact.law == ContactLaw::kExact)
     closing = closing_rows(scene, work, state);
   if (closing.empty()) return solve_rows(scene, settings, work, state, report);
+  report.rings = rings(scene, work, state, closing);
   for (const size_t r : closing) rows.points[r].upper = 0, rows.impulse[r] = {0, 0};
   solve_rows(scene, settings, work, state, report);
   for (const size_t r : closing) rows.points[r].upper = PointRows{}.upper;

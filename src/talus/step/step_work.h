@@ -53,6 +53,7 @@ struct StepReport {
   double drift = 0;         // deepest overlap of hard contacts before the step [m]
   double unbalanced = 0;    // largest unbalanced force of a block / mean force on blocks
   int worst_block = -1;     // whose unbalanced force is the largest
+  bool rings = false;       // blocks that deform knocked on each other, and nothing but alpha damps that
   double jolt = 0;          // largest acceleration of a block's centroid [m/s2]
   int jolted = -1;          // which
   double worst_force = 0;   // that force [N]

@@ -75,7 +75,7 @@ SectionSpec stage_section() {
             "blocks, in dynamic stages at most a tenth of the shortest period of the histories; where no block "
             "deforms the least of 0.005 sqrt(h/g) (0.02 in static stages), 0.1 h/v and 1/50 of the shortest period of the histories, h the "
             "least thickness of a block, v the fastest motion given, and of blocks that nothing holds the end of "
-            "their fall to the lowest place of the model. Of the last two at most 2 (with local damping 1) sqrt(m/k), "
+            "their fall to the lowest place of the model. Of the former at most 2 (with local damping 1), of the latter at most 1 sqrt(m/k), "
             "m the mass of a block, k half of the normal stiffness of the elastic joints around it, a tenth of the "
             "blocks left aside."},
        {.name = "integration",

@@ -54,8 +54,9 @@ double crossing_time(const BlockSet& b) {
   });
 }
 
-// Step without local damping, in inverse angular frequencies of a block on its joints: three to a swing.
-constexpr double kJointSteps = 2;
+// Step without local damping, in inverse angular frequencies of a block on its joints: three to a swing; six where blocks that
+// do not deform knock on them.
+constexpr double kJointSteps = 2, kRigidJointSteps = 1;
 
 // Steps of implicit elasticity in the shortest period of what shakes or pushes, from which on it loses little of that: the damping
 // ratio is alpha times pi over them, 0.6 % at the default (theory 4.9).
@@ -175,14 +176,18 @@ StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& 
           : ColumnStep{};
   double wanted =
       std::min(stage.implicit ? crossing_time(blocks) : stage.safety * bound.dt, stage.safety * column.dt);
-  const double by_joints = (stage.damping_local > 0 ? 1 : kJointSteps) * joint_time(scene, blocks);
+  const bool rigid = bound.block < 0;
+  const double by_joints = (stage.damping_local > 0 ? 1
+                            : rigid                 ? kRigidJointSteps
+                                                    : kJointSteps) *
+                           joint_time(scene, blocks);
   if (scene.model.formulation == Formulation::kPenalty)
     wanted = step_by_penalty(scene.model, blocks, stage, wanted);
   else if (stage.implicit)
     wanted = std::min({wanted, by_joints, period_of_histories(scene, stage) / kStepsPerPeriod});
   if (!std::isnan(stage.time_step)) {
     wanted = stage.time_step;
-  } else if (bound.block < 0) {
+  } else if (rigid) {
     wanted = std::min(rigid_step(staged, stage), stage.safety * column.dt);
     if (scene.model.formulation == Formulation::kContactForces) wanted = std::min(wanted, by_joints);
     if (std::isinf(wanted)) {

@@ -4,9 +4,9 @@
 half_steps.py TALUS OUT MODEL... [--runs N] [--perturb SHARE] [--jobs N] [--set KEY=VALUE]
 
 Peak and residual displacement of each monitor over the last stage (of the highest block, where a model has none), at the step
-that the model runs with, a half and a quarter of it. A value is the same when it is within 10 % or 0.1 mm. A model that is not
-the same is run again with gravity changed by 1e-9 of it: where that moves a value by more than 1 % or 0.01 mm the motion is
-chaotic, one run says little, and N runs (64) at the step and N at a quarter of it, gravity drawn within SHARE (1e-6) of its own,
+that the model runs with, a half and a quarter of it. A value is the same when it is within 10 % or 0.1 mm. Each is
+run again with gravity changed by 1e-9 of it: where that moves a value by more than 1 % or 0.01 mm the motion is
+chaotic and one run says little ("by chance"); of those that are not the same N runs (64) at the step and N at a quarter of it, gravity drawn within SHARE (1e-6) of its own,
 are of one kind where the medians are the same or the rank test of Mann and Whitney (two-sided, 5 %) does not tell them apart: by
 chance alone it does in one of twenty. Python with scipy.
 """
@@ -28,12 +28,17 @@ def gravity(model, share):
 
 
 def run(args, path, out, sets):
-    done = os.path.join(out, "summary.json")
-    if not os.path.exists(done):
+    done, asked = os.path.join(out, "summary.json"), os.path.join(out, "asked.json")
+    with open(path) as f: ask = [os.path.realpath(args.talus), os.path.getmtime(args.talus), f.read(), args.set + sets]
+    known = None
+    if os.path.exists(asked) and os.path.exists(done):
+        with open(asked) as f: known = json.load(f)
+    if known != ask:
         command = [args.talus, "run", path, "-o", out, "--force", "--threads", "1"]
         for s in args.set + sets: command += ["--set", s]
         done_run = subprocess.run(command, capture_output=True, text=True)
-        if not os.path.exists(done): raise Fault(f"{' '.join(command)}: {done_run.stderr.strip()}")
+        if not os.path.exists(done) or done_run.returncode == 2: raise Fault(f"{' '.join(command)}: {done_run.stderr.strip()}")
+        with open(asked, "w") as f: json.dump(ask, f)
     with open(done) as f: return json.load(f)
 
 
@@ -57,7 +62,7 @@ def with_monitor(args, path, out):
     if "[[monitor]]" in text: return path
     run(args, path, out, [f"stage.{tomllib.loads(text)['stage'][-1]['name']}.duration=1 ms"])
     with open(os.path.join(out, "blocks.csv")) as f: top = max(csv.DictReader(f), key=lambda b: float(b["y [m]"]))
-    path = os.path.join(os.path.dirname(path), "monitored.toml")
+    path = os.path.join(os.path.dirname(path), "monitored_" + os.path.basename(path))
     with open(path, "w") as f:
         f.write(text + f'\n[[monitor]]\nname = "top"\npoint = [{top["x [m]"]}, {top["y [m]"]}]\n')
     return path
@@ -68,7 +73,7 @@ def apart(a, b, share=1.0):
 
 
 def one(args, path):
-    name = "_".join(os.path.abspath(path).split("/")[-3:-1])
+    name = "_".join(os.path.abspath(path).removesuffix(".toml").split("/")[-3:])
     out = lambda tag: os.path.join(args.out, name, tag)
     os.makedirs(os.path.join(args.out, name), exist_ok=True)
     path = with_monitor(args, path, out("short"))
@@ -84,8 +89,8 @@ def one(args, path):
     show = lambda keys: "; ".join(f"{k} " + " ".join(f"{1e3 * v[k]:.4g}" for v in found) for k in keys) + " mm"
     word = "" if valid else "  NOT VALID"
     keys = sorted(set(apart(found[0], found[1]) + apart(found[0], found[2])))
-    if not keys: return f"{name:<34} the same    {show(found[0])}{word}"
     told = measures(out("told"), run(args, path, out("told"), [gravity(text, 1e-9)]))
+    if not keys: return f"{name:<34} the same{', by chance' if apart(found[0], told, CHANCE) else ''} {show(found[0])}{word}"
     if not apart(found[0], told, CHANCE): return f"{name:<34} NOT the same {show(keys)}{word}"
     chance = random.Random(name)
     many = {}

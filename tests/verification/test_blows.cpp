@@ -318,15 +318,23 @@ TEST_CASE("blows: steps in which blocks knock that ring are counted, and no othe
         "talus = 1\n[model]\ngravity = [0, -9.81]\n[material.m]\ndensity = 2000\nyoung = 1e10\npoisson = 0.2\n"
         "[joint.face]\nfriction_angle = \"30 deg\"\n{}\n[joint.glue]\nkind = \"bonded\"\n[contact]\njoint = "
         "\"face\"\n[[stage]]\nname = \"run\"\nkind = \"dynamic\"\nduration = 0.1\n",
-        joint);
+        joint == "ground" ? "" : joint);
     text += block_text("floor", box_polygon(-5, -1, 5, 0), "fixed") +
             block_text("a", box_polygon(0, 0.01, 1, 1.01), kind) +
             block_text("b", box_polygon(1, 0.01, 2, 1.01), kind);
+    if (joint == "ground") {
+      text += block_text("c", box_polygon(3, 0, 4, 0.5), kind) +
+              block_text("d", box_polygon(4, 0, 5, 0.5), kind) +
+              block_text("e", box_polygon(3.5, 0.51, 4.5, 1), kind) +
+              "[[contact_pair]]\nbetween = [\"c\", \"d\"]\njoint = \"glue\"\n";
+    }
     if (glued) text += "[[contact_pair]]\nbetween = [\"a\", \"b\"]\njoint = \"glue\"\n";
     return run_case(text).run.ringing_steps;
   };
   CHECK(ringing("deformable", "", false) > 0);
   CHECK(ringing("deformable", "", true) == 0);
+  // one alone on two that are tied
+  CHECK(ringing("deformable", "ground", true) > 0);
   CHECK(ringing("rigid", "", false) == 0);
   CHECK(ringing("deformable", "restitution = 0", false) == 0);
   CHECK(ringing("deformable", "normal_stiffness = 1e10\nshear_stiffness = 1e10", false) == 0);

@@ -20,8 +20,9 @@ namespace {
 
 // Of taking all steps, by stages; writing and cutting are not in it.
 std::string time_text(const PreparedRun& run) {
-  constexpr double kTrial = 3, kTold = 5;  // [s] what steps are taken for; a check that takes longer says why
-  constexpr int kWhole = 5000;             // blocks up to which its steps are those of the run
+  constexpr double kTrial = 3,
+                   kTold = 5;  // [s] what steps are taken for; a check whose trial takes longer says how long
+  constexpr int kWhole = 5000;  // blocks up to which its steps are those of the run
   const double begin = wall_now();
   const std::vector<StageCost> cost = time_stages(run, kTrial, threads_for(run.scene.blocks.count), kWhole);
   const double taken = wall_now() - begin;

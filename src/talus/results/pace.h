@@ -7,7 +7,7 @@
 namespace talus {
 
 /// Steps against wall time. Steps get dearer or cheaper as blocks come together and apart: the pace of all that is over and that
-/// of the latter half of its time bound what is to come.
+/// of the latter half of its time are told for what is to come; no bound of it.
 class Pace {
  public:
   struct Range {

@@ -106,15 +106,16 @@ void Progress::show(const Instant& instant, double now) {
   const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
   const double share =
       100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
+  const Pace::Range left = pace_.of(static_cast<double>(instant.plan.steps - instant.steps_before));
+  const std::string to_go =
+      s.kind == StageKind::kStatic ? "at most " + readable_seconds(left.high) : readable_range(left);
   const std::string pace =
       s.from_rest
           ? fmt::format("step {} of {:.4g} s", stage_step_, instant.work.clock.dt) +
                 (s.path > 0
                      ? fmt::format(", {} of {} balances", instant.state.rest.balances, instant.plan.balances)
                      : "")
-          : fmt::format(
-                "{:.0f} %, {}{} to go", share, s.kind == StageKind::kStatic ? "at most " : "",
-                readable_range(pace_.of(static_cast<double>(instant.plan.steps - instant.steps_before))));
+          : fmt::format("{:.0f} %, {} to go", share, to_go);
   const std::string steps = s.from_rest ? "" : fmt::format(", {:.0f} steps/s", rate);
   const std::string line =
       fmt::format("  {}: t = {:.4g} s, {}{}{}, contact error {:.0e} m{}", s.name, instant.state.time, pace,
@@ -158,9 +159,9 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   }
   if (r.ringing_steps > 0)
     out += fmt::format(
-        "  ringing         in {} of {} steps blocks that deform knocked on each other on hard joints without restitution; "
-        "contact.alpha alone damps what they ring by then: how far they slip and rock hangs on the step, and far less so with "
-        "restitution = 0 there, or rigid blocks\n",
+        "  ringing         in {} of {} steps blocks that deform knocked on others at hard contacts without restitution; only "
+        "contact.alpha damps what they ring by then. Where they knock for long, how far they slip and rock hangs on the step, and "
+        "far less with a joint of restitution = 0, or as rigid blocks\n",
         r.ringing_steps, r.steps);
   if (r.penalty > 0)
     out += fmt::format(

@@ -625,7 +625,7 @@ class StagedRun::Runner {
           fmt::format("step {} at t = {:.9g} s: {}", state.step, state.time, result_.closed_row));
     if (settings_.dynamic && shakes_ && r.jolt > result_.jolt) note_jolt(r, state);
     result_.loose_steps += r.loose;
-    result_.ringing_steps += r.rings;
+    result_.ringing_steps += r.rings && !(settings_.damping_stiffness > 0);
     if (!r.failed) return;
     ++result_.failed_steps;
     if (scene_.model.solver.stop_on_failure) {

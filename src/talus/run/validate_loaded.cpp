@@ -193,7 +193,8 @@ void judge_standing(const Standing& standing, const State& state, const Prepared
                  "its steps are not those of the model");
   judge_clock(scene.model.stages[stages.size() - 1], plan, now, state, standing.between);
   const RunResult& r = standing.result;
-  for (const int64_t count : {r.steps, r.failed_steps, r.loose_steps, r.second_solver_steps, r.iterations})
+  for (const int64_t count :
+       {r.steps, r.failed_steps, r.loose_steps, r.ringing_steps, r.second_solver_steps, r.iterations})
     promise_loaded(count >= 0 && count <= kMostCount, "it has counted less than nothing, or endlessly");
   for (const int count : {r.most_contacts, r.most_iterations, r.candidate_rebuilds})
     promise_loaded(count >= 0 && count <= kMostInt, "it has counted less than nothing, or endlessly");

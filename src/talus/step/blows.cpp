@@ -434,16 +434,20 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
 
 bool rings(const Scene& scene, const StepWork& work, const State& state, const std::vector<size_t>& closing) {
   std::vector<char> tied(static_cast<size_t>(scene.blocks.count), 0);
-  for (size_t f = 0; f < scene.bonds.faces.size(); ++f)
-    if (!state.face[f].broken)
-      for (const int i : {scene.bonds.faces[f].block_a, scene.bonds.faces[f].block_b})
-        tied[static_cast<size_t>(i)] = 1;
+  for (size_t f = 0; f < scene.bonds.faces.size(); ++f) {
+    const BondFace& face = scene.bonds.faces[f];
+    if (state.face[f].broken || scene.blocks.removed(face.block_a) || scene.blocks.removed(face.block_b))
+      continue;
+    tied[static_cast<size_t>(face.block_a)] = tied[static_cast<size_t>(face.block_b)] = 1;
+  }
   const size_t first = work.rows.range(Family::kContact).begin;
   return std::ranges::any_of(closing, [&](size_t r) {
     const Patch& c = state.patches[(r - first) / 2];
-    const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
-    const auto deforms = [&](size_t i) { return scene.blocks.kind[i] == BlockKind::kDeformable; };
-    return restitution_of(scene, c) < 0 && tied[a] == 0 && tied[b] == 0 && (deforms(a) || deforms(b));
+    const auto alone = [&](int i) {
+      const auto k = static_cast<size_t>(i);
+      return scene.blocks.kind[k] == BlockKind::kDeformable && tied[k] == 0;
+    };
+    return restitution_of(scene, c) < 0 && (alone(c.block_a) || alone(c.block_b));
   });
 }
 

@@ -10,8 +10,8 @@ namespace talus {
 /// than what weight, or what presses their blocks, gives in one. @pre  the rows of the step are gathered
 std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const State& state);
 
-/// Whether blocks that deform and that nothing ties come together at one of these rows, and their joint has no restitution: what
-/// they ring by then is damped by alpha alone, the less the shorter the step (theory 7.1).
+/// Whether a block that deforms, held by no intact face, comes upon another at one of these rows, and their joint has no
+/// restitution: what it rings by then is damped by alpha, and the less the shorter the step (theory 7.1).
 bool rings(const Scene& scene, const StepWork& work, const State& state, const std::vector<size_t>& closing);
 
 /// Finds the blows, wave by wave: what comes together is parted, what that sends into others in the next one. Bodies are

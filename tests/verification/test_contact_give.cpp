@@ -147,7 +147,7 @@ TEST_CASE("a tower of 100 rigid blocks stands at default settings") {
         });
     check_close("tower of 100: force at its foot [N]", foot, 100 * 0.5 * 2000 * kG, 1e-3, 1e-5);
     if (step.empty()) {
-      check_close("tower of 100: its top sinks in steps of its own by [m]", moved, 2.23e-4, 1e-2, 1e-2);
+      CHECK(moved == doctest::Approx(2.23e-4).epsilon(0.01));
     } else {
       check_close("tower of 100: its top sinks by [m]", moved, closed, 1e-2, 1e-4);
     }

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <tuple>
-#include <utility>
 
 namespace talus {
 
@@ -47,11 +45,10 @@ struct Place {
   PointRows rows;  // between bodies that move, by the number of their first blocks
   Vec2 given[2];   // velocities there of what does not move freely [m/s]
   double restitution = 0;
-  bool held = false;  // a support, which keeps the velocity that it has
-  double bears = 0;   // > 0: a contact that has pressed with so much until now, and may press with less [N s]
-  double own = 0;     // part of its velocity along the normal that is not that of the bodies [m/s]
-  double reach = 0;   // how far apart it were at the end of the step, but for the motion of the bodies [m]
-  Impulse impulse{};  // of the waves so far [N s]
+  bool held = false;    // a support, which keeps the velocity that it has
+  double own = 0;       // part of its velocity along the normal that is not that of the bodies [m/s]
+  double reach = 0;     // how far apart it were at the end of the step, but for the motion of the bodies [m]
+  Impulse impulse{};    // of the waves so far [N s]
   double approach = 0;  // the fastest of them [m/s]
 
   // Velocity along an axis that the bodies have nothing to do with.
@@ -87,7 +84,6 @@ class Waves {
     rate_ = rates_of_bodies(rate), rate_old_ = rate_;
     make_places(rate, drift);
     make_held();
-    make_bearing(rate);
   }
 
   void go() {
@@ -96,21 +92,14 @@ class Waves {
       std::vector<Place*> meet = coming(slow);
       if (meet.empty()) return;
       add_held(meet);
-      part_from(meet);
+      part(meet);
     }
   }
 
   std::vector<Meeting::Blow> blows() const {
     std::vector<Meeting::Blow> out;
-    std::map<size_t, Meeting::Blow> by_row;
-    for (const auto* places : {&places_, &bearing_})
-      for (const Place& p : *places) {
-        if (p.impulse[0] == 0 && p.impulse[1] == 0) continue;
-        Meeting::Blow& blow = by_row.try_emplace(p.row, Meeting::Blow{p.row, {}, 0}).first->second;
-        for (size_t k = 0; k < 2; ++k) blow.impulse[k] += p.impulse[k];
-        blow.approach = std::max(blow.approach, p.approach);
-      }
-    for (const auto& [row, blow] : by_row) out.push_back(blow);
+    for (const Place& p : places_)
+      if (p.impulse[0] != 0 || p.impulse[1] != 0) out.push_back({p.row, p.impulse, p.approach});
     return out;
   }
 
@@ -125,23 +114,20 @@ class Waves {
 
   // The work of half of what a place has got, as its blocks move so.
   void tally_half(const std::vector<Meeting::Blow>& blows, WorkDone& work) const {
-    std::vector<char> told(work_.rows.size(), 0);
-    for (const auto* places : {&places_, &bearing_})
-      for (const Place& p : *places) {
-        if (std::exchange(told[p.row], 1) != 0) continue;
-        const auto blow = std::ranges::lower_bound(blows, p.row, {}, &Meeting::Blow::row);
-        if (blow == blows.end() || blow->row != p.row) continue;
-        const std::array<double, 2> u = speed(p);
-        for (size_t k = 0; k < 2; ++k) {
-          if (p.held) {
-            work[Cause::kSupports] += 0.5 * blow->impulse[k] * u[k];
-            continue;
-          }
-          work[k == 0 ? Cause::kContactClosing : Cause::kFriction] += 0.5 * blow->impulse[k] * u[k];
-          // what does not move freely passes on the work of what drives it
-          work[Cause::kSupports] -= 0.5 * blow->impulse[k] * p.given_along(k);
+    for (const Place& p : places_) {
+      const auto blow = std::ranges::lower_bound(blows, p.row, {}, &Meeting::Blow::row);
+      if (blow == blows.end() || blow->row != p.row) continue;
+      const std::array<double, 2> u = speed(p);
+      for (size_t k = 0; k < 2; ++k) {
+        if (p.held) {
+          work[Cause::kSupports] += 0.5 * blow->impulse[k] * u[k];
+          continue;
         }
+        work[k == 0 ? Cause::kContactClosing : Cause::kFriction] += 0.5 * blow->impulse[k] * u[k];
+        // what does not move freely passes on the work of what drives it
+        work[Cause::kSupports] -= 0.5 * blow->impulse[k] * p.given_along(k);
       }
+    }
   }
 
   bool failed() const { return failed_; }
@@ -259,23 +245,6 @@ class Waves {
     }
   }
 
-  // Contacts whose forces until now can undo within the step what a blow does there: parted while these press on, they would give
-  // energy.
-  void make_bearing(const std::vector<BlockRate>& rate) {
-    const RowRange range = work_.rows.range(Family::kContact);
-    for (size_t r = range.begin; r < range.end; ++r) {
-      const PointRows& rows = work_.rows.points[r];
-      if (!only_pushes(rows) || !(work_.rows.impulse[r][0] > 0)) continue;
-      Place p;
-      p.row = r, p.bears = work_.rows.impulse[r][0];
-      p.rows.normal = rows.normal;
-      p.rows.friction = p.rows.cohesion = 0;
-      std::tie(p.rows.block_a, p.rows.arm_a, p.given[0]) = on_body(rows.block_a, rows.arm_a, rate);
-      std::tie(p.rows.block_b, p.rows.arm_b, p.given[1]) = on_body(rows.block_b, rows.arm_b, rate);
-      if (p.rows.block_a != p.rows.block_b) bearing_.push_back(p);
-    }
-  }
-
   // A point of a block as one of its body, if that moves; else -1 and the velocity there.
   std::tuple<int, Vec2, Vec2> on_body(int block, Vec2 arm, const std::vector<BlockRate>& rate) const {
     const auto k = static_cast<size_t>(block);
@@ -320,13 +289,8 @@ class Waves {
     for (const Place* p : meet) {
       PointRows rows = p->rows;
       const std::array<double, 2> u = speed(*p);
-      double target = -share * p->restitution * u[0];
-      if (p->held) target = u[0];
-      // it can only let go, and only what would part the faster
-      if (p->bears > 0)
-        target = std::max(u[0], 0.0), rows.lower = -(p->bears + p->impulse[0]), rows.upper = 0;
-      rows.row[0].bias = p->given_along(0) - target;
-      rows.row[1].bias = p->given_along(1) - (p->held ? u[1] : 0);
+      rows.row[0].bias = p->held ? -u[0] : p->given_along(0) + share * p->restitution * u[0];
+      rows.row[1].bias = p->held ? -u[1] : p->given_along(1);
       set.add(rows, {0, 0}, {Family::kContact, static_cast<int>(p->row)});
     }
     std::vector<BlockRate> rate = rate_;
@@ -402,42 +366,12 @@ class Waves {
     return rate;
   }
 
-  // With what bears at the bodies of a wave, where that can undo what the wave does to it.
-  void part_from(const std::vector<Place*>& meet) {
-    std::vector<char> met(body_.size(), 0);
-    std::vector<size_t> rows;
-    for (const Place* p : meet) {
-      rows.push_back(p->row);
-      for (const int body : {p->rows.block_a, p->rows.block_b})
-        if (body >= 0) met[static_cast<size_t>(body)] = 1;
-    }
-    std::ranges::sort(rows);
-    const auto is_met = [&](int body) { return body >= 0 && met[static_cast<size_t>(body)] != 0; };
-    std::vector<char> taken(bearing_.size());
-    for (size_t k = 0; k < bearing_.size(); ++k)
-      taken[k] = (is_met(bearing_[k].rows.block_a) || is_met(bearing_[k].rows.block_b)) &&
-                 !std::ranges::binary_search(rows, bearing_[k].row);
-    for (bool all_hold = false; !all_hold;) {
-      std::vector<Place*> with = meet;
-      for (size_t k = 0; k < bearing_.size(); ++k)
-        if (taken[k] != 0) with.push_back(&bearing_[k]);
-      std::vector<Impulse> impulse = solve(with, 1);
-      all_hold = true;
-      size_t at = meet.size();
-      for (size_t k = 0; k < bearing_.size(); ++k) {
-        if (taken[k] == 0) continue;
-        const double left = bearing_[k].bears + bearing_[k].impulse[0] + impulse[at++][0];
-        if (!(left > 0)) taken[k] = 0, all_hold = false;
-      }
-      if (all_hold) part(with, std::move(impulse));
-    }
-  }
-
-  void part(const std::vector<Place*>& meet, std::vector<Impulse> impulse) {
+  void part(const std::vector<Place*>& meet) {
+    std::vector<Impulse> impulse = solve(meet, 1);
     hold_back(meet, impulse);
     for (size_t i = 0; i < meet.size(); ++i) {
       Place& p = *meet[i];
-      if (!p.held && p.bears == 0) p.approach = std::max(p.approach, -speed(p)[0]);
+      if (!p.held) p.approach = std::max(p.approach, -speed(p)[0]);
       for (size_t k = 0; k < 2; ++k) p.impulse[k] += impulse[i][k];
     }
     rate_ = rates_with(meet, impulse);
@@ -452,7 +386,7 @@ class Waves {
   std::vector<Body> body_;
   std::vector<Mobility> mobility_;
   std::vector<BlockRate> rate_, rate_old_;
-  std::vector<Place> places_, bearing_;
+  std::vector<Place> places_;
   double fastest_ = 0;  // of what has met so far [m/s]
   bool failed_ = false;
 };

@@ -6,11 +6,6 @@
 
 namespace talus {
 
-/// Of a contact: hard, and nothing but pressure holds it.
-inline bool only_pushes(const PointRows& rows) {
-  return !rows.is_soft() && rows.lower == 0 && rows.cohesion == 0;
-}
-
 /// Rows of hard contacts that are apart, or bear nothing and have a joint with a restitution, and close within the step at more
 /// than what weight, or what presses their blocks, gives in one. @pre  the rows of the step are gathered
 std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const State& state);

@@ -190,7 +190,7 @@ void solve_forces(const Scene& scene, const StepSettings& settings, StepWork& wo
   std::vector<size_t> of_row;
   for (size_t r = rows.range(Family::kContact).begin; r < rows.range(Family::kContact).end; ++r) {
     const PointRows& p = rows.points[r];
-    if (!only_pushes(p) || rows.impulse[r][0] == 0) continue;
+    if (p.is_soft() || p.lower != 0 || p.cohesion != 0 || rows.impulse[r][0] == 0) continue;
     stay.add(p, rows.impulse[r], {Family::kContact, 0}), of_row.push_back(r);
     rows.impulse[r] = {0, 0};
   }

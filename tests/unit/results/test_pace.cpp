@@ -24,13 +24,14 @@ TEST_CASE("pace: steps that all take as long take as long") {
   CHECK(r.high == doctest::Approx(25));
 }
 
-TEST_CASE("pace: where steps have become four times as dear, what is to come lies within the range") {
+TEST_CASE(
+    "pace: where steps have become four times as dear, the range goes from the pace of all to that of now") {
   const Pace::Range r = paced(20, [](double t) { return t <= 10 ? 0.25 : 1.0; }).of(100);
   CHECK(r.high == doctest::Approx(100));
   CHECK(r.low == doctest::Approx(100 * 20 / 50.0));
 }
 
-TEST_CASE("pace: where steps have become cheaper it does so, too") {
+TEST_CASE("pace: where steps have become cheaper, from that of now to the pace of all") {
   const Pace::Range r = paced(20, [](double t) { return t <= 10 ? 1.0 : 0.25; }).of(100);
   CHECK(r.low == doctest::Approx(25));
   CHECK(r.high == doctest::Approx(100 * 20 / 50.0));
@@ -47,7 +48,7 @@ TEST_CASE("pace: nothing is said before a step is over, and the first word is of
   CHECK(pace.of(2).high == doctest::Approx(1));
 }
 
-TEST_CASE("pace: a range is written as one where its ends are apart by more than a tenth") {
+TEST_CASE("pace: ends within a tenth of each other are written as one") {
   CHECK(readable_range({10, 10.5}) == "10.5 s");
   CHECK(readable_range({12, 180}) == "12 s to 3 min 00 s");
 }

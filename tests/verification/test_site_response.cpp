@@ -165,18 +165,21 @@ TEST_CASE("A5 free-field sides with implicit elasticity: one equation for blocks
   for (const bool up : {false, true}) {
     const std::string motion = up ? "velocity_y = \"ricker\"\nmotion = \"outcrop\"\n" : kOutcropX;
     const std::string axis = up ? "y" : "x";
-    for (const double dt : {2e-3, 10e-3}) {
+    // damping of 0.5 ms is that of blocks and columns alike; the ray series knows none
+    for (const auto& [dt, damping] : {std::pair{2e-3, 0.0}, {10e-3, 0.0}, {2e-3, 5e-4}}) {
       ColumnTop top;
       const CaseResult r =
           run_case(kMaterials + grid_of(8, 10) + base_of(motion) + sides_of("free_field") + kMonitors,
                    {"stage.shake.elasticity=implicit", fmt::format("stage.shake.time_step={} s", dt),
-                    "contact.alpha=0"},
+                    "contact.alpha=0", fmt::format("new:stage.shake.damping_stiffness={} s", damping)},
                    std::ref(top));
       const auto &t = r.column("t [s]"), &v = r.column("middle.velocity_" + axis);
-      const std::string name = fmt::format("A5 implicit free field, {}, {:g} ms: ", axis, 1e3 * dt);
+      const std::string name = fmt::format("A5 implicit free field, {}, {:g} ms{}: ", axis, 1e3 * dt,
+                                           damping > 0 ? ", damped" : "");
       // alpha = 0 is of second order: w dt = 0.47 at 7.5 Hz and 10 ms, periods longer by (w dt)^2 / 12
-      check_below(name + "surface against the ray series", misfit(v, exact_curve(t, up ? kRatio : 1)),
-                  dt > 5e-3 ? 4e-2 : 2e-2, 1e-2);
+      if (damping == 0)
+        check_below(name + "surface against the ray series", misfit(v, exact_curve(t, up ? kRatio : 1)),
+                    dt > 5e-3 ? 4e-2 : 2e-2, 1e-2);
       check_below(name + "corner against middle", misfit(r.column("corner.velocity_" + axis), v), 1e-5, 1e-6);
       check_below(name + "block model against column",
                   misfit(r.column("middle.displacement_" + axis), up ? top.y : top.x), 1e-5, 1e-6);

@@ -22,7 +22,7 @@ inline void bound(const JointStrength& impulses, PointRows& p) {
 /// @param damping_time  of its dashpots [s]
 inline void make_compliant(double stiffness, double damping_time, bool in_face, const StepClock& clock,
                            double u_before, Row& row) {
-  const StepClock::JointWeights w = clock.joint_weights(damping_time);
+  const StepClock::ElasticWeights w = clock.elastic_weights(damping_time);
   const double one = w.position / (stiffness * clock.dt * clock.dt_kick);
   row.compliance = in_face ? 2 * one : one;
   row.bias = w.position * row.bias - w.old * u_before;
@@ -78,7 +78,7 @@ inline double elastic_slip(const RowSet& rows, size_t r, const StepClock& clock,
   const PointRows& p = rows.points[r];
   double rate = p.row[1].compliance * rows.impulse[r][1];
   if (p.partner >= 0) rate += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
-  return -rate * (p.is_soft(1) ? clock.dt / clock.joint_weights(damping_time).position : clock.dt);
+  return -rate * (p.is_soft(1) ? clock.dt / clock.elastic_weights(damping_time).position : clock.dt);
 }
 
 }  // namespace talus

@@ -203,7 +203,7 @@ std::array<double, 2> dashpot_impulse(const BlockSet& blocks, const std::vector<
       after_q = relative_velocity(q, after), looked = true;
     }
     const double scale =
-        clock.dashpot_time(time) * clock.joint_weights(time).position / (clock.dt * p.row[k].compliance);
+        clock.dashpot_time(time) * clock.elastic_weights(time).position / (clock.dt * p.row[k].compliance);
     const double one = clock.rate_then(before_p[k], u[k]), two = clock.rate_then(before_q[k], after_q[k]);
     out[k] = -scale * (is_free(second, k) ? 4.0 / 3 * (one + 0.5 * two) : one);
     // what opens bears nothing, but for some digits of a solver

@@ -56,6 +56,7 @@ class StageReader : private SectionReader {
     s.elasticity_auto = f.get<std::string>("elasticity") == "auto" && !f.given("safety") && !s.moment_clamp;
     s.damping_mass = f.get("damping_mass", 0.0);
     s.damping_stiffness = f.get("damping_stiffness", 0.0);
+    s.damping_auto = !f.given("damping_stiffness");
     s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? kStaticDamping : 0.0);
     s.unbalanced = f.get("unbalanced", s.unbalanced);
     s.strict_rest = f.get("strict_rest", false);

@@ -116,9 +116,10 @@ SectionSpec stage_section() {
         .default_text = "\"auto\"",
         .choices = {"auto", "explicit", "implicit"},
         .doc =
-            "`auto`: implicit where a deformable block can slide on a hard contact with friction, and in "
-            "stages where a few slivers would ask for a step below a seventh of the median block's (dynamic ones if what "
-            "shakes or pushes takes a hundred of the steps that implicit elasticity would have), "
+            "`auto`: implicit where a deformable block can slide on a hard contact with friction; in static "
+            "stages where a few slivers would ask for a step below a seventh of the median block's; in dynamic ones "
+            "with such slivers, or deformable blocks that can meet over joints with friction, where what "
+            "shakes or pushes takes a hundred of the steps that implicit elasticity would have; "
             "else explicit, and explicit with `safety` or `moment_clamp`. `explicit`: central differences, "
             "with a stable limit. `implicit`: each block's own elasticity is part of its mass matrix "
             "(theory 4.9), so that no block limits the time step; \"auto\" is then the time in which a wave "
@@ -140,11 +141,12 @@ SectionSpec stage_section() {
        {.name = "damping_stiffness",
         .dimension = D::kTime,
         .range = kNonNegative,
-        .default_text = "\"0 s\"",
         .doc = "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
                "rate, in blocks, not in joints. An oscillation of angular frequency w gets the damping "
-               "ratio damping_stiffness x w / 2. It shortens the stable time step (`talus check` says by "
-               "how much) unless `elasticity` is implicit."},
+               "ratio damping_stiffness x w / 2. With implicit `elasticity` what contact.alpha damps is a part of "
+               "it, and free-field columns have it, too; else it shortens the stable time step (`talus check` "
+               "says by how much). Default \"0.5 ms\" in dynamic stages with implicit elasticity in which "
+               "something shakes or pushes, none of it faster than 32 Hz (theory 4.9); else \"0 s\"."},
        {.name = "damping_local",
         .range = {.min = 0, .max = 1, .max_open = true},
         .doc = "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "

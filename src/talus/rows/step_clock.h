@@ -23,17 +23,17 @@ struct StepClock {
     const double r = (1 - alpha) / (1 + alpha);
     return r * r;
   }
-  /// What dashpots of this damping time add to what alpha damps, which is that of a damping time of alpha dt: joints are damped
-  /// by theirs whatever the step, as long as that is not longer [s]. None in steps from rest: they have no velocity.
+  /// What dashpots of this damping time add to what alpha damps, which is that of a damping time of alpha dt: joints and blocks
+  /// are damped by theirs whatever the step, as long as that is not longer [s]. None in steps from rest: they have no velocity.
   double dashpot_time(double damping_time) const {
     const double more = damping_time - alpha * dt;
     return from_rest || more < 0 ? 0 : more;
   }
-  /// The same two of a joint with dashpots of this damping time (eq. 4.1b).
-  struct JointWeights {
+  /// The same two of an elastic force with dashpots of this damping time beside it (eq. 4.1b).
+  struct ElasticWeights {
     double position, old;
   };
-  JointWeights joint_weights(double damping_time) const {
+  ElasticWeights elastic_weights(double damping_time) const {
     const double share = position_factor() * dashpot_time(damping_time) / (2 * dt),
                  all = 1 + (1 + alpha) * share;
     return {position_factor() / all, (old_share() - (1 - alpha) * share) / all};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "talus/base/rank.h"
@@ -61,6 +62,10 @@ constexpr double kJointSteps = 2, kRigidJointSteps = 1;
 // Steps of implicit elasticity in the shortest period of what shakes or pushes, from which on it loses little of that: the damping
 // ratio is alpha times pi over them, 0.6 % at the default (theory 4.9).
 constexpr double kSlow = 100;
+// Stiffness-proportional damping of blocks that are shaken with implicit elasticity where none is given [s], 1.6 % of critical at
+// 10 Hz; and the most of critical that it may take of what shakes them: faster histories are waves that are looked for
+// (theory 4.9).
+constexpr double kBlockDamping = 0.5e-3, kMostDamped = 0.05;
 
 // Share of the blocks whose swing on their joints a step need not resolve: slivers.
 constexpr double kUnresolved = 0.1;
@@ -243,13 +248,18 @@ StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& 
 }  // namespace
 
 void choose_elasticity(Scene& scene) {
-  if (scene.model.formulation != Formulation::kContactForces || !slivers_rule(scene.blocks)) return;
-  const double crossing = crossing_time(scene.blocks);
+  if (scene.model.formulation != Formulation::kContactForces) return;
+  const bool better = slivers_rule(scene.blocks) || deforming_blocks_meet(scene);
+  const double step = std::min(crossing_time(scene.blocks), kJointSteps * joint_time(scene, scene.blocks));
   for (StageInput& stage : scene.model.stages) {
-    if (!stage.elasticity_auto || stage.kind != StageKind::kDynamic) continue;
+    if (stage.kind != StageKind::kDynamic) continue;
     // what strikes without a history has waves as short as a block
     const double period = period_of_histories(scene, stage);
-    if (std::isfinite(period) && period >= kSlow * crossing) stage.implicit = true;
+    if (better && stage.elasticity_auto && std::isfinite(period) && period >= kSlow * step)
+      stage.implicit = true;
+    const double ratio = std::numbers::pi * kBlockDamping / period;
+    if (stage.implicit && stage.damping_auto && ratio > 0 && ratio <= kMostDamped)
+      stage.damping_stiffness = kBlockDamping;
   }
 }
 

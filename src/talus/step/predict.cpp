@@ -12,9 +12,10 @@ namespace {
 void kick_free_field(const Scene& scene, const StepSettings& settings, const std::vector<Vec2>& acceleration,
                      StepWork& work, State& state) {
   if (work.clock.dynamic) {
+    std::optional<StepClock::ElasticWeights> elastic;
+    if (settings.implicit) elastic = work.clock.elastic_weights(settings.damping_stiffness);
     kick_columns(scene.boundaries.free_field, scene.model.histories, work.clock, settings.damping_mass,
-                 scene.model.inertia == Inertia::kLumped, settings.implicit, acceleration, state,
-                 work.columns);
+                 scene.model.inertia == Inertia::kLumped, elastic, acceleration, state, work.columns);
   } else {
     work.columns = {state.column_rate, state.column_displacement};
   }
@@ -51,8 +52,7 @@ void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool rene
   const bool implicit = scheme.implicit(k);
   const double share = scheme.share();
   if (implicit)
-    work.mobility[k] = mobility_implicit(blocks, k, work.elastic[k].rotation, share,
-                                         scheme.tangent_time2() + scheme.damping_time2());
+    work.mobility[k] = mobility_implicit(blocks, k, work.elastic[k].rotation, share, scheme.tangent_time2());
   else if (renew)
     work.mobility[k] = mobility_of(blocks, k, share);
   BlockRate& v = state.rate[k];
@@ -67,10 +67,8 @@ void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool rene
   // M_eff (v+ - v-) = impulse - what the terms of v+ in M_eff and of v- in the step's laws differ by
   impulse += (-2 * scheme.damping()) * momentum(blocks, k, v);
   if (implicit)
-    impulse +=
-        BlockForce{{},
-                   (-(1 - work.clock.old_share()) * scheme.tangent_time2() - 2 * scheme.damping_time2()) *
-                       scheme.tangent_force(k, v.G)};
+    impulse += BlockForce{
+        {}, -(1 - scheme.elastic_weights().old) * scheme.tangent_time2() * scheme.tangent_force(k, v.G)};
   v = v + accelerate(work.mobility[k], impulse);
 }
 

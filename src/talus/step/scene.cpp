@@ -20,24 +20,22 @@ Scene::~Scene() = default;
 
 namespace {
 
-// Whether a deformable block may meet another over a joint with friction and without give. With explicit
-// elasticity it would ring for ever, its normal force swing, and its friction be lost while that is small
-// (theory 4.9).
-bool slides_hard(const Scene& scene) {
+// Whether a deformable block may meet another over a joint with friction; without give, if it has to be hard.
+bool may_meet(const Scene& scene, bool hard_only) {
   const Layout& layout = scene.layout;
   if (layout.blocks.size() < 2 || std::none_of(scene.blocks.kind.begin(), scene.blocks.kind.end(),
                                                [](BlockKind k) { return k == BlockKind::kDeformable; }))
     return false;
-  const auto hard = [&](int joint) {
+  const auto meets = [&](int joint) {
     if (joint < 0) return false;
     const JointLaw& law = scene.laws[static_cast<size_t>(joint)];
-    return !law.bonded() && !law.is_soft(0) && law.residual().friction > 0;
+    return !law.bonded() && !(hard_only && law.is_soft(0)) && law.residual().friction > 0;
   };
-  if (hard(layout.default_joint)) return true;
+  if (meets(layout.default_joint)) return true;
   for (const auto& [pair, joint] : layout.pair_joint)
-    if (hard(joint)) return true;
+    if (meets(joint)) return true;
   for (const BlockShape& b : layout.blocks)
-    if (std::any_of(b.edge_joint.begin(), b.edge_joint.end(), hard)) return true;
+    if (std::any_of(b.edge_joint.begin(), b.edge_joint.end(), meets)) return true;
   return false;
 }
 
@@ -56,6 +54,8 @@ bool ties_without_give(const Scene& scene) {
 constexpr double kRuled = 1.0 / 7, kFew = 0.25, kSmall = 0.25;
 
 }  // namespace
+
+bool deforming_blocks_meet(const Scene& scene) { return may_meet(scene, false); }
 
 // Where small blocks are many, as in a graded mesh, they are what waves travel through.
 bool slivers_rule(const BlockSet& blocks) {
@@ -85,8 +85,10 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
   for (StageInput& stage : scene.model.stages) {
-    if (stage.elasticity_auto)
-      stage.implicit = slides_hard(scene) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
+    if (stage
+            .elasticity_auto)  // else blocks on hard contacts ring for ever and lose their friction (theory 4.9)
+      stage.implicit =
+          may_meet(scene, true) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
     if (!stage.from_rest_auto || !scene.by_patches() || ties_without_give(scene)) continue;
     stage.go_from_rest_first();
   }

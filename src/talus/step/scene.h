@@ -44,6 +44,9 @@ Scene build_scene(Model model, Layout layout);
 /// Whether a few slivers would make explicit elasticity several times dearer, or worse (theory 4.9).
 bool slivers_rule(const BlockSet& blocks);
 
+/// Whether a deformable block may meet another over a joint with friction, elastic or hard.
+bool deforming_blocks_meet(const Scene& scene);
+
 /// State at the start of the run: reference shape, initial velocities, nothing broken.
 State start_state(const Scene& scene);
 

@@ -21,16 +21,19 @@ struct Scheme {
   double late_share() const { return 0.5 * clock.dt / clock.dt_kick; }
 
   bool implicit(size_t i) const { return settings.implicit && blocks.kind[i] == BlockKind::kDeformable; }
-  /// Stiffness-proportional damping is of the rates before the kick where elasticity is explicit, of their
-  /// mean where it is implicit.
+  /// Stiffness-proportional damping is of the rates before the kick where elasticity is explicit, one with it where it is
+  /// implicit.
   bool explicitly_damped(size_t i) const {
     return settings.damping_stiffness > 0 && !settings.implicit && blocks.kind[i] == BlockKind::kDeformable;
   }
 
-  /// Block-implicit elasticity (theory 4.9): the elastic force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha
-  /// family of 4.6; factor on K in the mass of the step [s2].
-  double tangent_time2() const { return clock.dt * clock.dt_kick / clock.position_factor(); }
-  double damping_time2() const { return 0.5 * settings.damping_stiffness * clock.dt_kick; }
+  /// Block-implicit elasticity with dashpots (theory 4.9): the force is -V [P + K (dt/k) (G+ - r^2 G-)], the alpha family of 4.6.
+  StepClock::ElasticWeights elastic_weights() const {
+    return clock.elastic_weights(settings.damping_stiffness);
+  }
+  /// Factor on K in the mass of the step [s2]; of all, and of the alpha family alone.
+  double tangent_time2() const { return clock.dt * clock.dt_kick / elastic_weights().position; }
+  double alpha_time2() const { return clock.dt * clock.dt_kick / clock.position_factor(); }
 
   /// V K : G, the elastic tangent in the frame turned with the block.
   Mat2 tangent_force(size_t i, const Mat2& G) const {  // theory 4.9
@@ -40,15 +43,17 @@ struct Scheme {
     return blocks.volume[i] *
            (r * Mat2{c.c11 * e.xx + c.c12 * e.yy, shear, shear, c.c12 * e.xx + c.c11 * e.yy});
   }
-  /// Impulse of stiffness-proportional damping (theory 4.5).
+  /// Impulse of stiffness-proportional damping (theory 4.5, 4.9). @param after  rates; with explicit elasticity those before
   BlockForce stiffness_damping(size_t i, const BlockRate& before, const BlockRate& after) const {
-    return {{}, (-damping_time2()) * tangent_force(i, before.G + after.G)};
+    const double time =
+        implicit(i) ? clock.dashpot_time(settings.damping_stiffness) : settings.damping_stiffness;
+    const double a = implicit(i) ? clock.alpha : 0;
+    return {{}, (-0.5 * time * clock.dt_kick) * tangent_force(i, (1 - a) * before.G + (1 + a) * after.G)};
   }
   /// Impulse that gives a block this change of its rates: the effective mass times it.
   BlockForce impulse_for(size_t i, const BlockRate& change) const {
     BlockForce impulse = (1 + damping()) * momentum(blocks, i, change);
-    if (implicit(i))
-      impulse += BlockForce{{}, (tangent_time2() + damping_time2()) * tangent_force(i, change.G)};
+    if (implicit(i)) impulse += BlockForce{{}, tangent_time2() * tangent_force(i, change.G)};
     return impulse;
   }
 };

@@ -85,7 +85,7 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
   BlockForce force = step.forces[i];
   if (scheme.implicit(i)) {
     const BlockForce more{
-        {}, (-scheme.tangent_time2()) * scheme.tangent_force(i, v1.G - step.clock.old_share() * v0.G)};
+        {}, (-scheme.alpha_time2()) * scheme.tangent_force(i, v1.G - step.clock.old_share() * v0.G)};
     add(s.work, Cause::kImplicit, work_of(more, v0, v1, late));
     // a step from rest ends in balance but for M v/dt; what stands at its begin is judged (theory 14.3)
     if (!step.clock.from_rest) force += (1 / kick) * more;

@@ -58,17 +58,19 @@ double& on_axis(Mat2& m, int axis) { return axis == 0 ? m.xx : m.yy; }
 Mat2 modulus(const Stiffness& c) { return {c[2][2], c[2][1], c[1][2], c[1][1]}; }
 
 // One column through a kick (eq. 4.4): (M (1 + b) + C dt/2 + s K) v+ = (M (1 - b) - C dt/2 + r^2 s K) v- + dt F,
-// the dashpots C at base and top, b from mass-proportional damping, s K of elasticity where it is implicit.
+// the dashpots C at base and top, b from mass-proportional damping, s K and r of elasticity where it is implicit.
 class ColumnKick {
  public:
   ColumnKick(const FreeField& field, const GroundColumn& column, const std::vector<History>& histories,
-             const StepClock& clock, double damping_mass, bool lumped, bool implicit)
+             const StepClock& clock, double damping_mass, bool lumped,
+             const std::optional<StepClock::ElasticWeights>& elastic)
       : field_(field),
         c_(column),
         histories_(histories),
         t_(clock),
         damping_(0.5 * damping_mass * clock.dt_kick),
-        stiff_time2_(implicit ? clock.dt * clock.dt_kick / clock.position_factor() : 0),
+        stiff_time2_(elastic ? clock.dt * clock.dt_kick / elastic->position : 0),
+        old_(elastic ? elastic->old : 0),
         mass_(mass_of(field, column, lumped)) {}
 
   // @param v      rates before
@@ -86,7 +88,7 @@ class ColumnKick {
     for (size_t k = 0; k + 1 < n; ++k) {
       const ColumnElement& element = field_.elements[static_cast<size_t>(c_.first_element) + k];
       const Mat2 stiff = stiff_time2_ / element.height * modulus(element.stiffness);
-      const Vec2 kept = t_.old_share() * (stiff * (v[k + 1] - v[k]));
+      const Vec2 kept = old_ * (stiff * (v[k + 1] - v[k]));
       e.above[k] = e.below[k] = (1 + damping_) * mass_.beside[k] * kIdentity - stiff;
       e.diagonal[k] += stiff, e.diagonal[k + 1] += stiff;
       e.right[k] -= kept, e.right[k + 1] += kept;
@@ -128,7 +130,7 @@ class ColumnKick {
   const GroundColumn& c_;
   const std::vector<History>& histories_;
   const StepClock& t_;
-  const double damping_, stiff_time2_;
+  const double damping_, stiff_time2_, old_;
   const ColumnMass mass_;
 };
 
@@ -161,8 +163,8 @@ ColumnStep stable_step(const FreeField& field, bool lumped) {
 
 // Eq. 4.4.
 void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
-                  double damping_mass, bool lumped, bool implicit, const std::vector<Vec2>& acceleration,
-                  State& state, ColumnMotion& motion) {
+                  double damping_mass, bool lumped, const std::optional<StepClock::ElasticWeights>& elastic,
+                  const std::vector<Vec2>& acceleration, State& state, ColumnMotion& motion) {
   TALUS_ASSERT(state.column_rate.size() == field.height.size());
   const std::vector<Vec2> before = state.column_rate;
   for (const GroundColumn& c : field.columns) {
@@ -178,7 +180,7 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
       force[e] += body + pull, force[e + 1] += body - pull;
     }
     const auto node = before.begin() + c.first_node;
-    const ColumnKick kick(field, c, histories, clock, damping_mass, lumped, implicit);
+    const ColumnKick kick(field, c, histories, clock, damping_mass, lumped, elastic);
     const std::vector<Vec2> after = kick.rates_after({node, node + static_cast<std::ptrdiff_t>(n)}, force);
     std::copy(after.begin(), after.end(), state.column_rate.begin() + c.first_node);
   }
@@ -188,9 +190,9 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
   for (size_t i = 0; i < before.size(); ++i) {
     // at the start: the velocity of the start
     motion.velocity[i] = starts ? before[i] : 0.5 * (before[i] + state.column_rate[i]);
-    if (implicit)
+    if (elastic)
       motion.displacement[i] +=
-          clock.dt / clock.position_factor() * (state.column_rate[i] - clock.old_share() * before[i]);
+          clock.dt / elastic->position * (state.column_rate[i] - elastic->old * before[i]);
   }
 }
 

@@ -4,6 +4,7 @@
 // after eq. 34 of the paper.
 
 #include <limits>
+#include <optional>
 
 #include "talus/blocks/state.h"
 #include "talus/cut/selection.h"
@@ -66,11 +67,12 @@ struct ColumnMotion {
 /// The kick of all columns: new rates in `state`, the motion of the step in `motion`.
 /// @pre  the histories run
 /// @param damping_mass  [1/s]
-/// @param implicit      elasticity of the ground is in the mass of the step, as that of blocks (theory 4.9)
+/// @param elastic       where elasticity of the ground is in the mass of the step, as that of blocks: how it is weighted
+///                      (theory 4.9); else nothing
 /// @param acceleration  body force per mass on each block [m/s2]
 void kick_columns(const FreeField& field, const std::vector<History>& histories, const StepClock& clock,
-                  double damping_mass, bool lumped, bool implicit, const std::vector<Vec2>& acceleration,
-                  State& state, ColumnMotion& motion);
+                  double damping_mass, bool lumped, const std::optional<StepClock::ElasticWeights>& elastic,
+                  const std::vector<Vec2>& acceleration, State& state, ColumnMotion& motion);
 
 /// Stress xx, yy, xy in an element [Pa]. @param column  that it belongs to
 std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,

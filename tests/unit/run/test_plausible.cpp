@@ -120,7 +120,8 @@ TEST_CASE("plausible mistakes are told at their line") {
        "\"pin2\"\npoint = [0.01, 0.01]\n",
        "30:1", "support.pin2: holds block \"stone\" over 0.0141 m of its 1 m"},
       // time
-      {"elasticity = \"implicit\"", "time_step = 0.01", "31:1", "stage.shake.time_step", true},
+      {"elasticity = \"implicit\"", "elasticity = \"explicit\"\ntime_step = 0.01", "32:1",
+       "stage.shake.time_step", true},
       {"duration = \"2 s\"\nelasticity", "duration = \"0.1 s\"\nelasticity", "14:10",
        "history.motion: lasts 2 s, and histories run for 0.1 s"},
       {"0.1*sin(2*_pi*2*t)", "0.1*cos(2*_pi*2*t)", "14:10", "history.motion: begins with 0.1"},

@@ -223,6 +223,51 @@ TEST_CASE(
   CHECK(!prepare_run("m.toml", strikes, {}, findings).scene.model.stages.at(0).implicit);
 }
 
+// Their joints: elastic, so that a step of implicit elasticity is 0.9 ms, or hard.
+const char *const
+    kElastic = "friction_angle = \"30 deg\"\nnormal_stiffness = \"10 GPa/m\"\nshear_stiffness = \"5 GPa/m\"",
+    *const kHard = "friction_angle = \"30 deg\"";
+
+StageInput shaken(const std::string& joint, double highest, const std::string& keys = {}) {
+  std::string text = row_of(3, joint) + keys;
+  const std::string main = "2.5", faster = fmt::format("{:.17g}", kMain * highest / ricker_highest());
+  const size_t line = text.find("expression");
+  for (size_t at = text.find(main, line); at < text.find("duration", line);
+       at = text.find(main, at + faster.size()))
+    text.replace(at, main.size(), faster);
+  Findings findings("m.toml", text);
+  return prepare_run("m.toml", text, {}, findings).scene.model.stages.at(0);
+}
+
+TEST_CASE(
+    "resolution: blocks that meet and are shaken slowly deform implicitly and are damped, others are not") {
+  for (const char* joint : {kElastic, kHard}) {
+    CAPTURE(joint);
+    const StageInput stage = shaken(joint, 5);
+    CHECK(stage.implicit);
+    CHECK(stage.damping_stiffness == 0.5e-3);
+    // 5 % of critical is 31.8 Hz
+    CHECK(shaken(joint, 29, "elasticity = \"implicit\"\n").damping_stiffness == 0.5e-3);
+    CHECK(shaken(joint, 35, "elasticity = \"implicit\"\n").damping_stiffness == 0);
+    CHECK(shaken(joint, 5, "damping_stiffness = \"0 s\"\n").damping_stiffness == 0);
+    CHECK(shaken(joint, 5, "damping_stiffness = \"1 ms\"\n").damping_stiffness == 1e-3);
+    CHECK(shaken(joint, 5, "elasticity = \"explicit\"\n").damping_stiffness == 0);
+  }
+  // a hundred steps of 0.9 ms in the shortest period
+  CHECK(shaken(kElastic, 10).implicit);
+  CHECK(!shaken(kElastic, 13).implicit);
+  const StageInput tied = shaken("kind = \"bonded\"", 5);
+  CHECK(!tied.implicit);
+  CHECK(tied.damping_stiffness == 0);
+  // what falls without a history
+  std::string text = row_of(3, kHard);
+  text.erase(text.find("x = { velocity"), 26);
+  Findings findings("m.toml", text);
+  const StageInput falls = prepare_run("m.toml", text, {}, findings).scene.model.stages.at(0);
+  CHECK(falls.implicit);
+  CHECK(falls.damping_stiffness == 0);
+}
+
 TEST_CASE("resolution: every way to shake or push is seen, once per history; rigid blocks carry no waves") {
   std::string text = row_of(3);
   const size_t formula = text.find("expression"), line_end = text.find('\n', formula);

@@ -245,7 +245,7 @@ TEST_CASE("the kick of a column solves (M + s K) v+ = (M + r^2 s K) v- + dt F wi
   const Eigen::Matrix<double, 6, 1> after = A.partialPivLu().solve(b);
 
   ColumnMotion motion;
-  kick_columns(field, {}, clock, 0, false, true, {gravity}, s, motion);
+  kick_columns(field, {}, clock, 0, false, clock.elastic_weights(0), {gravity}, s, motion);
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<size_t>(i);
     CHECK(s.column_rate[n].x == approx(after(2 * i)).epsilon(1e-10).scale(1));

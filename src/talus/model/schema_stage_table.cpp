@@ -141,12 +141,13 @@ SectionSpec stage_section() {
        {.name = "damping_stiffness",
         .dimension = D::kTime,
         .range = kNonNegative,
-        .doc = "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
-               "rate, in blocks, not in joints. An oscillation of angular frequency w gets the damping "
-               "ratio damping_stiffness x w / 2. With implicit `elasticity` what contact.alpha damps is a part of "
-               "it, and free-field columns have it, too; else it shortens the stable time step (`talus check` "
-               "says by how much). Default \"0.5 ms\" in dynamic stages with implicit elasticity in which "
-               "something shakes or pushes, none of it faster than 32 Hz (theory 4.9); else \"0 s\"."},
+        .doc =
+            "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
+            "rate, in blocks, not in joints. An oscillation of angular frequency w gets the damping "
+            "ratio damping_stiffness x w / 2. With implicit `elasticity` what contact.alpha damps is a part of "
+            "it, and free-field columns have it, too; else it shortens the stable time step (`talus check` "
+            "says by how much). Default \"0.5 ms\" in dynamic stages with implicit elasticity in which "
+            "something shakes or pushes, none of it faster than 32 Hz (theory 4.9); else \"0 s\"."},
        {.name = "damping_local",
         .range = {.min = 0, .max = 1, .max_open = true},
         .doc = "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "

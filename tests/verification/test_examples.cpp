@@ -369,16 +369,38 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
     base = std::max(base, std::abs(b[i]));
     crest = std::max(crest, std::abs(c[i] - b[i]));
   }
-  // no formula: what the README quotes. Steps of 0.3 and 0.15 ms put the crest at -0.42 and -0.43 m; builds that differed by
-  // roundings scattered by as much before joints had dashpots: crest and slip are asked for within that
+  // no formula: what the README quotes. Steps of 0.3 and 0.15 ms put the crest at -0.343 and -0.337 m, the slip left at 0.309 and
+  // 0.319 m (theory 4.9)
   check_close("shaken_slope largest velocity of the base [m/s]", base, 0.347, 1e-2, 2e-3);
-  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.448, 5e-2, 1e-2);
+  check_close("shaken_slope largest velocity of the crest to the base [m/s]", crest, 0.429, 2e-2, 1e-2);
   check_close("shaken_slope crest to base at the end [m]",
-              (crest_end - crest_start - base_end + base_start).x, -0.34, 2.7e-1, 1e-2);
+              (crest_end - crest_start - base_end + base_start).x, -0.344, 4e-2, 1e-2);
   check_close("shaken_slope ground behind to base at the end [m]",
-              (behind_end - behind_start - base_end + base_start).x, -0.0762, 1e-1, 6e-2);
-  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.414, 2.7e-1, 1e-2);
+              (behind_end - behind_start - base_end + base_start).x, -0.075, 4e-2, 1e-2);
+  check_close("shaken_slope largest slip between neighbours [m]", slip, 0.437, 5e-2, 1e-2);
   check_below("shaken_slope energy left over / largest term", r.run.closure(), 1e-2, 1e-5);
+}
+
+TEST_CASE("shaken slope: half the step is the same answer") {
+  const std::string file = source_file("examples/shaken_slope/shaken_slope.toml"),
+                    text = read_text_file(file);
+  std::vector<double> crest;
+  for (const char* step : {"1 ms", "0.5 ms"}) {
+    const CaseResult r =
+        run_case(text, {"stage.shake.duration=7 s", fmt::format("new:stage.shake.time_step={}", step)},
+                 nullptr, nullptr, file);
+    const double begin = r.run.stages.at(1).begin;
+    const std::vector<double>& t = r.column("t [s]");
+    const auto at = static_cast<size_t>(std::lower_bound(t.begin(), t.end(), begin - 1e-9) - t.begin());
+    const auto way = [&](const char* axis) {
+      const std::vector<double>& u = r.column(std::string("crest.displacement_") + axis);
+      return u.back() - u.at(at);
+    };
+    crest.push_back(std::hypot(way("x"), way("y")));
+  }
+  // 0.23 m in 7 s of shaking, sliding and rocking. Where only alpha damps the blocks half the step makes it 15 to 20 % more
+  // (theory 4.9)
+  check_close("shaken slope, crest at half the step / crest", crest[1] / crest[0], 1, 0.05, 0.01);
 }
 
 TEST_SUITE_END();

@@ -141,6 +141,7 @@ SectionSpec stage_section() {
        {.name = "damping_stiffness",
         .dimension = D::kTime,
         .range = kNonNegative,
+        .usual = {.min = 1e-6, .max = 0.1},
         .doc =
             "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
             "rate, in blocks, not in joints. An oscillation of angular frequency w gets the damping "

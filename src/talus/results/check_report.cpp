@@ -73,7 +73,8 @@ std::string check_report(const std::string& file, int warnings, const PreparedRu
                        ? fmt::format("; {:.4g} s without damping_stiffness", plan.dt_undamped)
                        : "");
     text += fmt::format("  stage      \"{}\": {}{} steps of {:.4g} s ({})\n", stage.name,
-                        stage.kind == StageKind::kStatic ? "at most " : "", plan.steps, plan.dt, bound);
+                        stage.kind == StageKind::kStatic ? "at most " : "", plan.steps, plan.dt,
+                        bound + damping_text(stage));
     if (plan.clamped > 0)
       text += fmt::format("             moment clamp: {} blocks, up to {:.3g} times\n", plan.clamped,
                           plan.largest_clamp);

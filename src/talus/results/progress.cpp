@@ -48,7 +48,10 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
   finish();
   const StageInput& s = scene.model.stages[static_cast<size_t>(stage)];
   const bool at_rest = s.kind == StageKind::kStatic;
-  const char* how = s.from_rest ? ", steps from rest" : s.implicit ? ", implicit elasticity" : "";
+  const std::string how = (s.from_rest  ? ", steps from rest"
+                           : s.implicit ? ", implicit elasticity"
+                                        : "") +
+                          damping_text(s);
   const std::string steps = s.from_rest
                                 ? fmt::format("at most {:g} s, the first step {:.4g} s", s.duration, plan.dt)
                                 : fmt::format("{:g} s in {}{} steps of {:.4g} s", s.duration,

@@ -263,6 +263,12 @@ void choose_elasticity(Scene& scene) {
   }
 }
 
+std::string damping_text(const StageInput& stage) {
+  return stage.damping_stiffness > 0
+             ? fmt::format(", blocks damped by {:.3g} ms", 1e3 * stage.damping_stiffness)
+             : "";
+}
+
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::vector<StagePlan> plans;
   std::optional<Scene> changed;

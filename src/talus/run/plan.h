@@ -36,6 +36,9 @@ struct StagePlan {
 /// shakes or pushes is slow beside that of the others (theory 4.9).
 void choose_elasticity(Scene& scene);
 
+/// What is told of stiffness-proportional damping behind a stage; nothing without.
+std::string damping_text(const StageInput& stage);
+
 /// Plans every stage of the scene. A step above the stable limit, or none where none can be derived, is a
 /// finding.
 std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings);

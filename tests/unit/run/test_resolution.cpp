@@ -246,6 +246,7 @@ TEST_CASE(
     const StageInput stage = shaken(joint, 5);
     CHECK(stage.implicit);
     CHECK(stage.damping_stiffness == 0.5e-3);
+    CHECK(damping_text(stage) == ", blocks damped by 0.5 ms");
     // 5 % of critical is 31.8 Hz
     CHECK(shaken(joint, 29, "elasticity = \"implicit\"\n").damping_stiffness == 0.5e-3);
     CHECK(shaken(joint, 35, "elasticity = \"implicit\"\n").damping_stiffness == 0);
@@ -266,6 +267,7 @@ TEST_CASE(
   const StageInput falls = prepare_run("m.toml", text, {}, findings).scene.model.stages.at(0);
   CHECK(falls.implicit);
   CHECK(falls.damping_stiffness == 0);
+  CHECK(damping_text(falls).empty());
 }
 
 TEST_CASE("resolution: every way to shake or push is seen, once per history; rigid blocks carry no waves") {

@@ -225,9 +225,8 @@ struct StageInput {
   bool elasticity_auto = false;  // implicit where theory 4.9 asks for it (set by build_scene)
   double damping_mass = 0;       // [1/s]
   double damping_stiffness = 0;  // [s]
-  bool damping_auto =
-      false;  // kBlockDamping of dynamic stages with implicit elasticity (set by choose_elasticity)
-  double damping_local = 0;  // [-]
+  bool damping_auto = false;     // left to the model (choose_elasticity)
+  double damping_local = 0;      // [-]
   double unbalanced = 1e-5;
   std::vector<std::string> excavate;  // names of groups and blocks taken out at the start
   // time since the start [s] and share of the tractions of excavated rock that is gone by then; not falling

@@ -85,8 +85,8 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
   scene.boundaries = build_boundaries(scene.model, scene.layout, scene.blocks, findings);
   check_bolts(scene.model, scene.layout, scene.blocks, findings);
   for (StageInput& stage : scene.model.stages) {
-    if (stage
-            .elasticity_auto)  // else blocks on hard contacts ring for ever and lose their friction (theory 4.9)
+    // explicit elasticity lets blocks on hard contacts ring for ever and lose their friction (theory 4.9)
+    if (stage.elasticity_auto)
       stage.implicit =
           may_meet(scene, true) || (stage.kind == StageKind::kStatic && slivers_rule(scene.blocks));
     if (!stage.from_rest_auto || !scene.by_patches() || ties_without_give(scene)) continue;

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Does a shaken model move as far at half and at a quarter of its step, and if not, is that chance?
 
-half_steps.py TALUS OUT MODEL... [--runs N] [--perturb SHARE] [--jobs N] [--set KEY=VALUE]
+half_steps.py TALUS OUT MODEL... [--runs N] [--perturb SHARE] [--rest SECONDS] [--jobs N] [--set KEY=VALUE]
 
-Peak and residual displacement of each monitor over the last stage (of the highest block, where a model has none), at the step
-that the model runs with, a half and a quarter of it. A value is the same when it is within 10 % or 0.1 mm. Each is
+Peak and residual displacement of each monitor over the last stage, made longer by SECONDS (5) so that what rocks comes to rest
+before it is called residual (of the highest block, where a model has none), at the step that the model runs with, a half and a quarter of it. A value is the same when it is within 10 % or 0.1 mm. Each is
 run again with gravity changed by 1e-9 of it: where that moves a value by more than 1 % or 0.01 mm the motion is
 chaotic and one run says little ("by chance"); of those that are not the same N runs (64) at the step and N at a quarter of it, gravity drawn within SHARE (1e-3, less than
 is known of a model: rocking that has just begun is no chaos at 1e-9 and goes elsewhere at 1e-4) of its own, are of one kind where the medians are the same or the rank test of Mann and Whitney (two-sided, 5 %) does not tell them apart: by
@@ -15,6 +15,7 @@ import argparse, concurrent.futures, csv, json, math, os, random, re, statistics
 from scipy.stats import mannwhitneyu
 
 ALONG, UP = ".displacement_x [m]", ".displacement_y [m]"
+UNIT = {"s": 1.0, "ms": 1e-3}
 SAME, FLOOR, CHANCE = 0.10, 1e-4, 0.1     # chance: share of both that tells chaos
 
 
@@ -79,9 +80,13 @@ def one(args, path):
     path = with_monitor(args, path, out("short"))
     with open(path) as f: text = f.read()
     stage = tomllib.loads(text)["stage"][-1]
+    given = stage["duration"]
+    seconds = float(given) if not isinstance(given, str) else float(given.split()[0]) * UNIT[given.split()[1]]
+    longer = [f"stage.{stage['name']}.duration={seconds + args.rest!r} s"]
     found, valid, step = [], True, 0.0
     for part in (1, 2, 4):
-        s = run(args, path, out(f"part{part}"), [f"new:stage.{stage['name']}.time_step={step / part!r} s"] if part > 1 else [])
+        cut = [f"new:stage.{stage['name']}.time_step={step / part!r} s"] if part > 1 else []
+        s = run(args, path, out(f"part{part}"), longer + cut)
         if s["status"] != "finished": return f"{name:<34} not finished at a step cut by {part}"
         if part == 1: step = s["stages"][-1]["dt [s]"]
         valid = valid and s["valid"]
@@ -89,7 +94,7 @@ def one(args, path):
     show = lambda keys: "; ".join(f"{k} " + " ".join(f"{1e3 * v[k]:.4g}" for v in found) for k in keys) + " mm"
     word = "" if valid else "  NOT VALID"
     keys = sorted(set(apart(found[0], found[1]) + apart(found[0], found[2])))
-    told = measures(out("told"), run(args, path, out("told"), [gravity(text, 1e-9)]))
+    told = measures(out("told"), run(args, path, out("told"), longer + [gravity(text, 1e-9)]))
     if not keys: return f"{name:<34} the same{', by chance' if apart(found[0], told, CHANCE) else ''} {show(found[0])}{word}"
     kind = "chaotic" if apart(found[0], told, CHANCE) else f"NOT the same {show(keys)}"
     chance = random.Random(name)
@@ -97,7 +102,7 @@ def one(args, path):
     for part in (1, 4):
         many[part] = []
         for i in range(args.runs):
-            sets = [gravity(text, args.perturb * (2 * chance.random() - 1)),
+            sets = longer + [gravity(text, args.perturb * (2 * chance.random() - 1)),
                     f"new:stage.{stage['name']}.time_step={step / part!r} s"]
             folder = out(f"many{part}_{i}")
             s = run(args, path, folder, sets)
@@ -116,6 +121,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("talus"), parser.add_argument("out"), parser.add_argument("models", nargs="+")
     parser.add_argument("--runs", type=int, default=64), parser.add_argument("--perturb", type=float, default=1e-3)
+    parser.add_argument("--rest", type=float, default=5.0)
     parser.add_argument("--jobs", type=int, default=2), parser.add_argument("--set", action="append", default=[])
     args = parser.parse_args()
     os.makedirs(args.out, exist_ok=True)

@@ -15,7 +15,7 @@ import argparse, concurrent.futures, csv, json, math, os, random, re, statistics
 from scipy.stats import mannwhitneyu
 
 ALONG, UP = ".displacement_x [m]", ".displacement_y [m]"
-UNIT = {"s": 1.0, "ms": 1e-3}
+UNIT = {"": 1.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0}
 SAME, FLOOR, CHANCE = 0.10, 1e-4, 0.1     # chance: share of both that tells chaos
 
 
@@ -80,8 +80,9 @@ def one(args, path):
     path = with_monitor(args, path, out("short"))
     with open(path) as f: text = f.read()
     stage = tomllib.loads(text)["stage"][-1]
-    given = stage["duration"]
-    seconds = float(given) if not isinstance(given, str) else float(given.split()[0]) * UNIT[given.split()[1]]
+    given = re.fullmatch(r"([0-9.eE+-]+) *([a-z]*)", str(stage["duration"]))
+    if not given or given[2] not in UNIT: raise Fault(f"{path}: duration {stage['duration']!r} of the last stage is no number of s, ms, us or min")
+    seconds = float(given[1]) * UNIT[given[2]]
     longer = [f"stage.{stage['name']}.duration={seconds + args.rest!r} s"]
     found, valid, step = [], True, 0.0
     for part in (1, 2, 4):

@@ -32,8 +32,9 @@ struct StagePlan {
   bool operator==(const StagePlan&) const = default;
 };
 
-/// Dynamic stages that leave it to the model: elasticity becomes implicit where a few slivers would set the step, and all that
-/// shakes or pushes is slow beside that of the others (theory 4.9).
+/// Dynamic stages that leave it to the model: elasticity becomes implicit where a few slivers would set the step or deforming
+/// blocks may meet, and all that shakes or pushes takes many such steps; blocks that are shaken so are damped, unless by more
+/// of what shakes them than it may take (theory 4.9).
 void choose_elasticity(Scene& scene);
 
 /// What is told of stiffness-proportional damping behind a stage; nothing without.

@@ -88,7 +88,7 @@ int verb_of_line(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 2 wrong command line, 3 wrong model, 4 file or disk, 5 numerical failure, 6 no balance: a mechanism, 7 no memory "
-      "or threads, 8 not valid by its audit, 128 + N ended by signal N (130: Ctrl-C).\nHelp on a verb: talus VERB "
+      "or threads, 8 not valid by its audit, 9 two results differ, 10 some runs of a study did not end, 128 + N ended by signal N (130: Ctrl-C).\nHelp on a verb: talus VERB "
       "--help");
 
   ModelArguments model;

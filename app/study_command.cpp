@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 namespace {
 
 volatile std::sig_atomic_t asked_to_stop = 0;
+const std::string kProgram = fmt::format("talus {}", kVersion);
 
 // Ctrl-C and kill: runs on the way are given up, and made anew when the study is started again.
 void stop_on_signals() {
@@ -108,9 +109,13 @@ study::StudyFolder::Sharing sharing_of(const study::Study& s, const std::vector<
 }
 
 // Every value of every key in the first run, read and not cut: what is wrong with one is told before anything runs.
-void check_values(const study::Study& s, const std::vector<study::PlannedRun>& plan,
-                  const std::string& text) {
+// The files that they read.
+std::vector<std::string> check_values(const study::Study& s, const std::vector<study::PlannedRun>& plan,
+                                      const std::string& text) {
   constexpr size_t kMost = 300;  // of an axis
+  std::vector<std::string> files;
+  for (const study::Axis& axis : s.axes)
+    for (const fs::path& path : axis.paths) files.push_back(path.string());
   for (size_t a = 0; a < s.axes.size(); ++a) {
     const size_t at = s.set.size() + a;
     std::set<std::string> seen{plan[0].overrides[at]};
@@ -119,10 +124,12 @@ void check_values(const study::Study& s, const std::vector<study::PlannedRun>& p
       std::vector<std::string> overrides = plan[0].overrides;
       overrides[at] = run.overrides[at];
       Findings findings(s.model.string(), text);
-      read_model(s.model.string(), text, overrides, findings);
+      const Model model = read_model(s.model.string(), text, overrides, findings);
       findings.throw_if_errors();
+      files.insert(files.end(), model.files.begin(), model.files.end());
     }
   }
+  return files;
 }
 
 void show_progress(const study::Progress& p, bool terminal, bool quiet) {
@@ -131,9 +138,10 @@ void show_progress(const study::Progress& p, bool terminal, bool quiet) {
   if (quiet || (p.done < p.all && now - last < (terminal ? 0.2 : 10))) return;
   last = now;
   const std::string to_go = p.to_go > 0 ? fmt::format(", {} to go", readable_seconds(p.to_go)) : "";
-  fmt::print("{}  {} of {} done, {} running, {} failed{}{}", terminal ? "\r\x1b[K" : "", p.done, p.all,
-             p.running, p.failed, to_go, terminal ? "" : "\n");
-  if (terminal && p.done == p.all) fmt::print("\n");
+  const std::string not_done = p.not_done > 0 ? fmt::format(", {} not done", p.not_done) : "";
+  fmt::print("{}  {} of {} done, {} running, {} without result{}{}{}", terminal ? "\r\x1b[K" : "", p.done,
+             p.all, p.running, p.without, not_done, to_go, terminal ? "" : "\n");
+  if (terminal && p.running == 0) fmt::print("\n");
   std::fflush(stdout);
 }
 
@@ -141,22 +149,32 @@ int run_here(const study::StudyFolder& folder, const study::Study& s, const std:
              int jobs, bool quiet) {
   folder.clean();
   stop_on_signals();
-  study::Runner runner(folder, {own_path(), jobs, s.keep_all, s.report});
+  study::Runner runner(folder, {own_path(), kProgram, jobs, s.keep_all, s.report});
   const bool terminal = isatty(fileno(stdout)) != 0;
-  runner.run(
+  const study::Progress end = runner.run(
       numbers, [&](const study::Progress& p) { show_progress(p, terminal, quiet); },
       [] { return asked_to_stop != 0; });
-  return asked_to_stop != 0 ? kExitSignal + asked_to_stop : kExitOk;
+  if (asked_to_stop != 0) return kExitSignal + asked_to_stop;
+  if (end.not_done == 0) return kExitOk;
+  tell("talus: {} runs are not done, and made again by the same command; {}\n", end.not_done, end.cause);
+  return kExitUnfinished;
 }
 
-int gather(const study::StudyFolder& folder, const study::Study& s,
-           const std::vector<study::PlannedRun>& plan, bool quiet) {
-  const study::Gathered found = study::gather(s, plan, folder);
+// The runs of a study that was begun, in the order of their numbers.
+std::vector<study::PlannedRun> planned(const study::Study& s, const study::StudyFolder& folder) {
+  std::vector<study::PlannedRun> plan = study::plan_runs(s);
+  folder.number(s, plan);
+  std::sort(plan.begin(), plan.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  return plan;
+}
+
+int gather(const study::StudyFolder& folder, const study::Study& s, bool quiet) {
+  const study::Gathered found = study::gather(s, planned(s, folder), folder);
   study::write_results(s, found, folder);
   if (!quiet)
     show("{}written to {}: results.csv, study.html, figures/\n", study::gathered_text(s, found),
          folder.path().string());
-  return kExitOk;
+  return found.not_done > 0 ? kExitUnfinished : kExitOk;
 }
 
 // What a program prints; "" when it cannot be run.
@@ -209,7 +227,7 @@ int begin_study(const StudyArguments& args) {
         kExitUsage,
         "study needs STUDY.toml and -o FOLDER; talus study task and talus study gather need the folder");
   const study::Study s = read(args.file, read_text_file(args.file));
-  const std::vector<study::PlannedRun> plan = study::plan_runs(s);
+  std::vector<study::PlannedRun> plan = study::plan_runs(s);
   // the first run as it will be: what is wrong with the model, or with names in formulas, is told before anything runs
   const std::string text = read_text_file(s.model), model_file = s.model.string();
   Findings of_model(model_file, text);
@@ -224,28 +242,25 @@ int begin_study(const StudyArguments& args) {
                         of_study);
   of_study.throw_if_errors();
 
-  check_values(s, plan, text);
+  std::vector<std::string> files = check_values(s, plan, text);
   if (args.dry) {
     show("{} runs of {}, {} blocks each; the first:\n", plan.size(), model_file, first.scene.blocks.count);
     for (const std::string& item : plan[0].overrides) show("  --set {}\n", item);
     return kExitOk;
   }
-  // the hash of the first model is of its files, too
-  std::string inputs = text_hash(text) + first.scene.model.hash;
-  for (const study::Axis& axis : s.axes)
-    for (const fs::path& path : axis.paths) inputs += text_hash(read_text_file(path));
+  files.push_back(model_file);
+  files.insert(files.end(), first.scene.model.files.begin(), first.scene.model.files.end());
   study::StudyFolder folder(args.folder);
-  folder.begin(s, plan, sharing_of(s, plan, first.scene.model), fmt::format("talus {}", kVersion),
-               text_hash(inputs));
+  folder.begin(s, plan, sharing_of(s, plan, first.scene.model), kProgram, files);
   if (args.plan) {
     show("{}: {} runs are planned; talus study task {} K makes one\n", args.folder, plan.size(), args.folder);
     return kExitOk;
   }
   if (args.on == "slurm") return submit_to_slurm(folder, args);
   std::vector<int> numbers;
-  for (const study::PlannedRun& run : plan) numbers.push_back(run.number);
+  for (int k = 0; k < folder.planned(); ++k) numbers.push_back(k);
   const int code = run_here(folder, s, numbers, args.jobs > 0 ? args.jobs : processors(), args.quiet);
-  if (code == kExitOk) return gather(folder, s, plan, args.quiet);
+  if (code == kExitOk || code == kExitUnfinished) return gather(folder, s, args.quiet);
   tell("talus: stopped; the same command goes on with what is missing\n");
   return code;
 }
@@ -284,9 +299,9 @@ void add_study_arguments(CLI::App& verb, StudyArguments& args) {
 int study_command(const StudyArguments& args) {
   if (!*args.task && !*args.gather) return begin_study(args);
   const study::StudyFolder folder(args.folder);
-  folder.check();
+  folder.check(kProgram);
   const study::Study s = read(folder);
-  if (*args.gather) return gather(folder, s, study::plan_runs(s), args.quiet);
+  if (*args.gather) return gather(folder, s, args.quiet);
   std::vector<int> numbers;
   for (int k = args.first; k < args.first + args.count && k < folder.planned(); ++k) numbers.push_back(k);
   if (numbers.empty())

@@ -11,16 +11,17 @@ namespace talus {
 /// Exit codes of the `talus` command.
 enum ExitCode : int {
   kExitOk = 0,
-  kExitInternal = 1,   // our own mistake
-  kExitUsage = 2,      // wrong command line
-  kExitInput = 3,      // the model file
-  kExitFile = 4,       // a file or disk
-  kExitNumerical = 5,  // no convergence, non-finite numbers, an inverted block
-  kExitMechanism = 6,  // a static stage finds no balance: something slides
-  kExitResources = 7,  // no memory, or no threads
-  kExitNotValid = 8,   // the run ended, and the audit says that its results are not valid
-  kExitDiffers = 9,    // two results are further apart than they may be (talus compare)
-  kExitSignal = 128    // and the number of the signal that ended it; results up to then are valid
+  kExitInternal = 1,     // our own mistake
+  kExitUsage = 2,        // wrong command line
+  kExitInput = 3,        // the model file
+  kExitFile = 4,         // a file or disk
+  kExitNumerical = 5,    // no convergence, non-finite numbers, an inverted block
+  kExitMechanism = 6,    // a static stage finds no balance: something slides
+  kExitResources = 7,    // no memory, or no threads
+  kExitNotValid = 8,     // the run ended, and the audit says that its results are not valid
+  kExitDiffers = 9,      // two results are further apart than they may be (talus compare)
+  kExitUnfinished = 10,  // some runs of a study did not end; the same command makes them again
+  kExitSignal = 128      // and the number of the signal that ended it; results up to then are valid
 };
 
 class Error : public std::runtime_error {

@@ -1,28 +1,47 @@
 #include "talus/base/spawn.h"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 #include "talus/base/error.h"
 
-extern char** environ;
-
 namespace talus {
 
-pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& log) {
+pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& log, Life life) {
   std::vector<char*> argv;
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  posix_spawn_file_actions_adddup2(&actions, 1, 2);
-  pid_t process = -1;
-  const int error = posix_spawnp(&process, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
-    throw FileError(words[0] + ": cannot be started: " + std::generic_category().message(error));
+  const int in = open("/dev/null", O_RDONLY | O_CLOEXEC),
+            out = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), error = errno;
+  int told[2] = {-1, -1};  // an error number, of a copy that does not become the program
+  const auto fail = [&](int cause) {
+    for (const int file : {in, out, told[0], told[1]})
+      if (file >= 0) close(file);
+    throw FileError(words[0] + ": cannot be started: " + std::generic_category().message(cause));
+  };
+  if (in < 0 || out < 0) fail(error);
+  if (pipe2(told, O_CLOEXEC) != 0) fail(errno);
+  const pid_t parent = getpid(), process = fork();
+  if (process < 0) fail(errno);
+  if (process == 0) {  // what may be called between fork and exec, and no more
+    if (life == Life::kOfParent && (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)) _exit(1);
+    if (dup2(in, 0) >= 0 && dup2(out, 1) >= 0 && dup2(out, 2) >= 0) execvp(argv[0], argv.data());
+    const int cause = errno;
+    _exit(write(told[1], &cause, sizeof cause) > 0 ? 1 : 2);
+  }
+  close(told[1]);
+  told[1] = -1;
+  int cause = 0;
+  if (read(told[0], &cause, sizeof cause) == sizeof cause) {
+    (void)waitpid(process, nullptr, 0);
+    fail(cause);
+  }
+  for (const int file : {in, out, told[0]}) close(file);
   return process;
 }
 

@@ -9,8 +9,12 @@
 
 namespace talus {
 
+/// Whether a program is killed when this process ends in any way, or outlives it.
+enum class Life { kOwn, kOfParent };
+
 /// Starts a program: by its path, or by its name where PATH finds it. What it says, also of errors, goes into `log`.
 /// Throws FileError when it cannot be started.
-pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& log);
+/// @param life  kOfParent: of the thread that calls, which has to stay
+pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& log, Life life = Life::kOwn);
 
 }  // namespace talus

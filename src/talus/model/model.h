@@ -350,10 +350,10 @@ struct Model {
   ~Model();
 
   std::string file, title, hash;
-  std::string shapes_hash;   // of the content of mesh files alone, "" without any
-  std::string folder;        // that relative paths of the file count from
-  bool reads_files = false;  // histories, meshes or blocks of other files
-  std::string text;          // the file as read, byte for byte, with the overrides as closing comments
+  std::string shapes_hash;         // of the content of mesh files alone, "" without any
+  std::string folder;              // that relative paths of the file count from
+  std::vector<std::string> files;  // that it reads: paths of histories, meshes, blocks
+  std::string text;                // the file as read, byte for byte, with the overrides as closing comments
   // every block and grid has its polygon: the layout can be checked in spite of errors
   bool shapes_readable = true;
   double thickness = 1;

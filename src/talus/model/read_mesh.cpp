@@ -48,6 +48,7 @@ class MeshReader : private SectionReader {
 
   bool read_file(const Fields& f, Mesh& mesh) {
     const auto path = std::filesystem::path(model_.folder) / f.get<std::string>("file");
+    model_.files.push_back(path.string());
     try {
       const std::string text = read_text_file(path);
       files_ += text;

@@ -49,7 +49,8 @@ class ModelReader : private SectionReader {
     files_ += shapes;
     if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_cut_sections(source_, block_names_, model_, findings_);
-    model_.reads_files = !files_.empty() || !model_.cut.blocks_file.empty();
+    if (!model_.cut.blocks_file.empty())
+      model_.files.push_back((std::filesystem::path(model_.folder) / model_.cut.blocks_file).string());
     read_contact();
     read_stage_sections(source_, model_, findings_);
     read_action_sections(source_, model_, findings_);
@@ -241,6 +242,7 @@ class ModelReader : private SectionReader {
       } else if (formula) {
         sample_expression(f, h);
       } else if (file) {
+        model_.files.push_back((std::filesystem::path(model_.folder) / f.get<std::string>("file")).string());
         files_ += read_history_file(f, model_.folder, h, findings_);
       } else {
         h.time = f.get<std::vector<double>>("time");

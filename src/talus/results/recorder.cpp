@@ -84,7 +84,7 @@ std::string running_text(const Scene& scene) {
 
 // The model such that it runs again where the results lie: its paths count from where they did.
 std::string model_to_keep(const Model& model, const std::filesystem::path& folder) {
-  return model.reads_files ? with_folder(model.text, model.folder, folder) : model.text;
+  return !model.files.empty() ? with_folder(model.text, model.folder, folder) : model.text;
 }
 
 // First of all files: whatever happens then, the folder says what it is.

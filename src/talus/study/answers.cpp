@@ -133,11 +133,57 @@ std::vector<double> evaluate_answers(const Study& study, Numbers& numbers, std::
   return out;
 }
 
-bool is_damaged(const DamageState& state, const Numbers& numbers, std::string& trouble) {
+int is_damaged(const DamageState& state, const Numbers& numbers, std::string& trouble) {
   std::string why;
   const double value = evaluate(state.when, numbers, why);
   if (!why.empty()) trouble = fmt::format("failure \"{}\": {}", state.name, why);
-  return !std::isnan(value) && value != 0;
+  return std::isnan(value) ? -1 : value != 0;
+}
+
+namespace {
+
+// "slip_largest [m]" has m.
+std::string unit_in(const std::string& title) {
+  const size_t at = title.find(" [");
+  return at == std::string::npos || title.back() != ']' ? "" : title.substr(at + 2, title.size() - at - 3);
+}
+
+// The unit of the key of a summary that this name stands for: its parts in turn, as numbers_of() names them.
+std::string unit_of(const json& j, const std::string& name) {
+  for (const auto& [key, value] : j.items()) {
+    const std::string own = as_name(key);
+    if (name != own && name.rfind(own + ".", 0) != 0) continue;
+    if (const std::string unit = unit_in(key); !unit.empty())
+      return name.find("time_of_") == std::string::npos ? unit : "s";
+    if (name != own && value.is_object())
+      if (const std::string unit = unit_of(value, name.substr(own.size() + 1)); !unit.empty()) return unit;
+  }
+  return "";
+}
+
+}  // namespace
+
+void add_units(const Study& study, const json& summary, std::vector<std::string>& units) {
+  for (size_t k = 0; k < units.size(); ++k) {
+    const auto names = names_in_formula(study.answers[k].formula);
+    if (!units[k].empty() || names.size() != 1 || *names.begin() != trimmed(study.answers[k].formula))
+      continue;
+    const std::string name = *names.begin();
+    for (size_t before = 0; before < k; ++before)
+      if (study.answers[before].name == name) units[k] = units[before];
+    if (units[k].empty()) units[k] = unit_of(summary, name);
+    // monitors: of a stage that is named, or of any
+    const auto monitors = summary.find("monitors");
+    if (!units[k].empty() || monitors == summary.end() || !monitors->is_object()) continue;
+    for (const auto& [monitor, all] : monitors->items()) {
+      if (units[k].empty()) units[k] = unit_of(json{{monitor, all}}, name);
+      if (!all.contains("stages")) continue;
+      for (const auto& [stage, columns] : all["stages"].items())
+        for (const std::string& begin : {std::string(), as_name(stage) + "."})
+          if (units[k].empty() && name.rfind(begin, 0) == 0)
+            units[k] = unit_of(json{{monitor, columns}}, name.substr(begin.size()));
+    }
+  }
 }
 
 namespace {

@@ -28,8 +28,12 @@ Numbers possible_numbers(const std::vector<std::string>& columns, const std::vec
 /// @param trouble  of the last one that could not be evaluated
 std::vector<double> evaluate_answers(const Study& study, Numbers& numbers, std::string& trouble);
 
-/// Whether the run is in a state of damage. NaN answers: not. @param trouble  as above
-bool is_damaged(const DamageState& state, const Numbers& numbers, std::string& trouble);
+/// Units of answers that are one number alone, from a summary that has it; those that are known stay.
+void add_units(const Study& study, const nlohmann::json& summary, std::vector<std::string>& units);
+
+/// Whether the run is in a state of damage: 1, 0, or -1 where what it names is not finite or not there.
+/// @param trouble  as above
+int is_damaged(const DamageState& state, const Numbers& numbers, std::string& trouble);
 
 /// Findings for answers and states of damage that name what there is not. @param numbers  that are possible
 void check_formulas(const Study& study, Numbers numbers, Findings& findings);

@@ -71,43 +71,58 @@ class Figures {
     names_.push_back(file_name_of(name));
   }
 
-  // Probability of each state over the intensity: curve, band, and the share at each level.
+  // Probability of each state over the intensity: curve, band, and the share at each level; where runs are not valid, the
+  // curves with these as damaged and as sound beside that without them.
   void fragility() {
-    if (found_.fragility.empty()) return;
+    if (found_.states.empty()) return;
     plot::Figure figure;
     figure.title = "Fragility: probability of damage, with bands of 90 %";
     figure.x_label = study_.axes[over_].title(), figure.y_label = "probability";
     figure.y_min = -0.02, figure.y_max = 1.02, figure.x_min = 0;  // marks at 0 and 1 are seen whole
     double most = 0;
-    for (const auto& points : found_.points)
-      for (const FragilityPoint& p : points) most = std::max(most, p.intensity);
+    for (const StateCurves& c : found_.states)
+      for (const FragilityPoint& p : c.points[static_cast<size_t>(NotValidAs::kSound)])
+        most = std::max(most, p.intensity);
     if (most == 0) return;
     most *= 1.1;
     figure.x_max = most;
-    for (size_t s = 0; s < found_.fragility.size(); ++s) {
-      const Fragility& f = found_.fragility[s];
-      const int color = static_cast<int>(s);
-      std::vector<double> x, y, low, high, px, py;
-      for (int i = 1; i <= 200 && f.found(); ++i) {
+    for (size_t s = 0; s < found_.states.size(); ++s)
+      for (const NotValidAs as : {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut})
+        if (found_.states[s].not_valid > 0 || as == NotValidAs::kLeftOut) state_curve(figure, s, as, most);
+    keep(figure, "fragility");
+  }
+
+  void state_curve(plot::Figure& figure, size_t s, NotValidAs as, double most) const {
+    const StateCurves& c = found_.states[s];
+    const Fragility& f = c.of(as);
+    const bool beside = c.not_valid > 0;
+    const int color = static_cast<int>(s);
+    const std::string name =
+        study_.states[s].name + (!beside ? ""
+                                 : as == NotValidAs::kLeftOut
+                                     ? fmt::format(", {} not valid left out", c.not_valid)
+                                     : fmt::format(", not valid as {}", name_of(as)));
+    if (f.found()) {
+      std::vector<double> x, y, low, high;
+      for (int i = 1; i <= 200; ++i) {
         x.push_back(most * i / 200);
         y.push_back(f.probability(x.back()));
         low.push_back(f.band(x.back(), -kBand)), high.push_back(f.band(x.back(), kBand));
       }
-      for (const FragilityPoint& p : found_.points[s])
-        px.push_back(p.intensity), py.push_back(static_cast<double>(p.damaged) / p.runs);
-      if (f.found()) {
+      if (!beside) {  // three bands over each other show nothing
         figure.curves.push_back({"", x, low, color, plot::Style::kThin, false});
         figure.curves.push_back({"", x, high, color, plot::Style::kThin, false});
-        figure.curves.push_back(
-            {fmt::format("{}: median {:.3g}, beta {:.2f}", study_.states[s].name, f.median, f.beta), x, y,
-             color, plot::Style::kSolid, true});
       }
-      plot::Curve marks =
-          crosses(f.found() ? "" : study_.states[s].name + ": no curve", px, py, most, 1, color);
-      marks.in_legend = !f.found();
-      figure.curves.push_back(std::move(marks));
+      figure.curves.push_back(
+          {fmt::format("{}: median {:.3g}, beta {:.2f}", name, f.median, f.beta), x, y, color,
+           as == NotValidAs::kLeftOut && beside ? plot::Style::kDashed : plot::Style::kSolid, true});
     }
-    keep(figure, "fragility");
+    std::vector<double> px, py;
+    for (const FragilityPoint& p : c.points[static_cast<size_t>(as)])
+      px.push_back(p.intensity), py.push_back(static_cast<double>(p.damaged) / p.runs);
+    plot::Curve marks = crosses(f.found() ? "" : name + ": no curve", px, py, most, 1, color);
+    marks.in_legend = !f.found();
+    figure.curves.push_back(std::move(marks));
   }
 
   // Incremental curves: the answer of each set of other keys as the intensity grows, and the median.
@@ -115,7 +130,8 @@ class Figures {
     std::map<std::string, std::vector<std::pair<double, double>>> lines;
     std::map<double, std::vector<double>> levels;
     for (const ResultRow& row : found_.rows) {
-      if (!row.counts || !std::isfinite(row.answers[k]) || !std::isfinite(row.values[over_].number)) continue;
+      if (!row.counts() || !std::isfinite(row.answers[k]) || !std::isfinite(row.values[over_].number))
+        continue;
       std::string others;
       for (size_t a = 0; a < row.values.size(); ++a)
         if (a != over_) others += row.values[a].shown + "|";
@@ -125,7 +141,7 @@ class Figures {
     if (levels.size() < 2) return;
     plot::Figure figure;
     figure.title = fmt::format("{} as the intensity grows: each run, and the median", study_.answers[k].name);
-    figure.x_label = study_.answers[k].name, figure.y_label = study_.axes[over_].title();
+    figure.x_label = found_.title(study_, k), figure.y_label = study_.axes[over_].title();
     for (auto& [others, points] : lines) {
       std::sort(points.begin(), points.end(),
                 [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -175,7 +191,7 @@ class Figures {
       std::vector<double> x, y;
       std::map<double, std::vector<double>> levels;
       for (const ResultRow& row : found_.rows) {
-        if (!row.counts || !std::isfinite(row.answers[k]) || row.values[other].shown != by.values[v].shown)
+        if (!row.counts() || !std::isfinite(row.answers[k]) || row.values[other].shown != by.values[v].shown)
           continue;
         x.push_back(numbers ? row.values[a].number : place.at(row.values[a].shown)),
             y.push_back(row.answers[k]);
@@ -210,7 +226,7 @@ class Figures {
     for (const AxisValue& v : axis.values)
       if (place[v.shown] == 0) place[v.shown] = ++next;
     for (const ResultRow& row : found_.rows) {
-      if (!row.counts || !std::isfinite(row.answers[k])) continue;
+      if (!row.counts() || !std::isfinite(row.answers[k])) continue;
       x.push_back(numbers ? row.values[a].number : place[row.values[a].shown]), y.push_back(row.answers[k]);
       levels[x.back()].push_back(y.back());
     }
@@ -218,7 +234,7 @@ class Figures {
     plot::Figure figure;
     figure.title = fmt::format("{} over {}", study_.answers[k].name, axis.name);
     figure.x_label = axis.title();
-    figure.y_label = study_.answers[k].name;
+    figure.y_label = found_.title(study_, k);
     const Span sx = span_of(x), sy = span_of(y);
     figure.x_min = sx.least - 0.05 * sx.width(), figure.x_max = sx.most + 0.05 * sx.width();
     if (!numbers) {
@@ -287,32 +303,79 @@ std::vector<std::string> write_figures(const Study& study, const Gathered& found
   return Figures(study, found, folder).write();
 }
 
+namespace {
+
+std::string fragility_part(const Study& study, const Gathered& found) {
+  if (found.states.empty()) return "";
+  std::string out = fmt::format("<h2>Fragility over {}</h2>\n", in_markup(study.over));
+  bool not_valid = false;
+  for (size_t s = 0; s < found.states.size(); ++s) {
+    const DamageState& state = study.states[s];
+    not_valid = not_valid || found.states[s].not_valid > 0;
+    out +=
+        fmt::format("<p><b>{}</b> (<code>{}</code>): {}.</p>\n", in_markup(state.name), in_markup(state.when),
+                    in_markup(found.states[s].headline(state.invalid_counts ? NotValidAs::kDamaged
+                                                                            : NotValidAs::kLeftOut)));
+  }
+  if (not_valid)
+    out +=
+        "<p>Runs that are not valid know nothing of damage, and strong motions are the ones that fail: leaving them out alone is biased. The truth lies between the curve that counts them as damaged and the one that counts them as sound.</p>\n";
+  out +=
+      "<div class=\"scroll\"><table><tr><th class=\"text\">state</th><th class=\"text\">not valid as</th><th>median</th><th>beta</th><th>runs</th><th>damaged</th><th>not valid</th><th>not finite</th></tr>\n";
+  for (size_t s = 0; s < found.states.size(); ++s)
+    for (const NotValidAs as : {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut}) {
+      const StateCurves& c = found.states[s];
+      if (c.not_valid == 0 && as != NotValidAs::kLeftOut) continue;
+      const Fragility& f = c.of(as);
+      int runs = 0, damaged = 0;
+      for (const FragilityPoint& p : c.points[static_cast<size_t>(as)]) runs += p.runs, damaged += p.damaged;
+      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\">{}</td>",
+                         in_markup(study.states[s].name), c.not_valid > 0 ? name_of(as) : "");
+      out += f.found() ? fmt::format("<td>{:.4g}</td><td>{:.3f}</td>", f.median, f.beta)
+                       : fmt::format("<td colspan=\"2\" class=\"text\">{}</td>", in_markup(f.trouble));
+      out += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", runs, damaged, c.not_valid,
+                         c.not_finite);
+    }
+  return out + "</table></div>\n";
+}
+
+// What makes runs not valid, by kind: those that ended so are looked at first.
+std::string findings_part(const Gathered& found) {
+  std::map<std::string, std::vector<std::pair<const ResultRow*, const RunFinding*>>> kinds;
+  for (const ResultRow& row : found.rows)
+    for (const RunFinding& f : row.findings) kinds[f.kind].emplace_back(&row, &f);
+  if (kinds.empty()) return "";
+  std::string out =
+      "<h2>Runs that are not valid, by finding</h2>\n<div class=\"scroll\"><table><tr><th class=\"text\">finding</th><th>run</th><th class=\"text\">where</th><th>when [s]</th><th>times</th><th class=\"text\">what</th></tr>\n";
+  for (const auto& [kind, list] : kinds) {
+    std::string name = kind;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    for (const auto& [row, f] : list)
+      out += fmt::format(
+          "<tr class=\"bad\"><td class=\"text\">{}</td><td><a href=\"runs/{:06}/\">{}</a></td><td class=\"text\">{}</td><td>{:.4g}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
+          in_markup(name), row->number, row->number, in_markup(f->where), f->time, f->count,
+          in_markup(f->text));
+  }
+  return out + "</table></div>\n";
+}
+
+}  // namespace
+
 std::string study_page(const Study& study, const Gathered& found, const std::vector<std::string>& figures) {
   const std::string title = study.title.empty() ? "Study of " + study.model.filename().string() : study.title;
   std::string out = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
-      "content=\"width=device-width\"><style>{7}{1}</style></head><body>\n<h1>{0}</h1>\n"
-      "<p>{2} runs of <code>{3}</code>: {4} finished, {5} failed, {6} not valid, {7} missing.</p>\n",
-      in_markup(title), kStyle, found.rows.size(), in_markup(study.model.filename().string()), found.finished,
-      found.failed, found.not_valid, found.missing, kPageStyle);
-  for (const std::string& trouble : found.troubles) out += "<p><b>" + in_markup(trouble) + "</b></p>\n";
-  if (!found.fragility.empty()) {
+      "content=\"width=device-width\"><style>{1}{2}</style></head><body>\n<h1>{0}</h1>\n"
+      "<p>{3}, of <code>{4}</code>.</p>\n",
+      in_markup(title), kPageStyle, kStyle, in_markup(found.counts()),
+      in_markup(study.model.filename().string()));
+  if (found.not_done > 0)
     out += fmt::format(
-        "<h2>Fragility over {}</h2>\n<table><tr><th class=\"text\">state</th><th class=\"text\">when</th><th>median</th><th>beta</th><th>runs</th><th>damaged</th></tr>\n",
-        in_markup(study.over));
-    for (size_t s = 0; s < found.fragility.size(); ++s) {
-      const Fragility& f = found.fragility[s];
-      int runs = 0, damaged = 0;
-      for (const FragilityPoint& p : found.points[s]) runs += p.runs, damaged += p.damaged;
-      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\"><code>{}</code></td>",
-                         in_markup(study.states[s].name), in_markup(study.states[s].when));
-      out += f.found() ? fmt::format("<td>{:.4g}</td><td>{:.3f}</td>", f.median, f.beta)
-                       : fmt::format("<td colspan=\"2\" class=\"text\">{}</td>", in_markup(f.trouble));
-      out += fmt::format("<td>{}</td><td>{}</td></tr>\n", runs, damaged);
-    }
-    out += "</table>\n";
-  }
-  if (!study.states.empty() && found.fragility.empty())
+        "<p><b>{} runs are not done, and count nowhere: the command that began the study makes them.</b></p>\n",
+        found.not_done);
+  for (const std::string& trouble : found.troubles) out += "<p><b>" + in_markup(trouble) + "</b></p>\n";
+  out += fragility_part(study, found) + findings_part(found);
+  if (!study.states.empty() && found.states.empty())
     out +=
         "<p>There is no fragility curve: it needs a key with numbers, scaled by a measure or named by <code>[fragility] over</code>.</p>\n";
   if (const std::vector<Sensitivity> list = sensitivities(study, found); !list.empty()) {
@@ -335,31 +398,32 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
   for (const Axis& a : study.axes) out += "<th>" + in_markup(a.title()) + "</th>";
   out += "<th class=\"text\">status</th>";
   for (const DamageState& s : study.states) out += "<th>" + in_markup(s.name) + "</th>";
-  for (const NamedFormula& a : study.answers) out += "<th>" + in_markup(a.name) + "</th>";
+  for (size_t k = 0; k < study.answers.size(); ++k)
+    out += "<th>" + in_markup(found.title(study, k)) + "</th>";
   out += "<th>time [s]</th></tr></thead><tbody>\n";
   for (const ResultRow& row : found.rows) {
     const std::string link = fmt::format("runs/{:06}/{}", row.number,
                                          row.has_report   ? "report.html"
                                          : study.keep_all ? ""
                                                           : "summary.json");
-    out += row.counts ? "<tr>" : "<tr class=\"bad\">";
-    out += row.status == "missing" ? fmt::format("<td>{}</td>", row.number)
-                                   : fmt::format("<td><a href=\"{}\">{}</a></td>", link, row.number);
+    out += row.counts() ? "<tr>" : "<tr class=\"bad\">";
+    out += !row.begun ? fmt::format("<td>{}</td>", row.number)
+                      : fmt::format("<td><a href=\"{}\">{}</a></td>", link, row.number);
     for (const AxisValue& v : row.values) out += "<td>" + in_markup(v.shown) + "</td>";
-    out += fmt::format("<td class=\"text\" title=\"{}\">{}</td>", in_markup(row.record.message), row.status);
+    out += fmt::format("<td class=\"text\" title=\"{}\">{}</td>", in_markup(row.record.message),
+                       name_of(row.outcome));
     for (const int damaged : row.damaged)
       out += damaged < 0 ? "<td></td>" : fmt::format("<td>{}</td>", damaged);
     for (const double answer : row.answers)
       out += std::isnan(answer) ? "<td></td>" : fmt::format("<td>{:.5g}</td>", answer);
-    out += row.status == "missing" ? "<td></td></tr>\n"
-                                   : fmt::format("<td>{:.2f}</td></tr>\n", row.record.wall_seconds);
+    out += !row.begun ? "<td></td></tr>\n" : fmt::format("<td>{:.2f}</td></tr>\n", row.record.wall_seconds);
   }
   return out + fmt::format("</tbody></table></div>\n<script>{}</script>\n</body></html>\n", kScript);
 }
 
 void write_results(const Study& study, const Gathered& found, const StudyFolder& folder) {
   write_file(folder.path() / "results.csv", results_csv(study, found));
-  if (!found.fragility.empty()) write_file(folder.path() / "fragility.csv", fragility_csv(study, found));
+  if (!found.states.empty()) write_file(folder.path() / "fragility.csv", fragility_csv(study, found));
   std::string table = "answer,key,rank_correlation\n";
   for (const Sensitivity& s : sensitivities(study, found))
     table += fmt::format("{},{},{:.6f}\n", s.answer, table_cell(s.axis), s.correlation);

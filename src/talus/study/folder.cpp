@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "talus/base/error.h"
@@ -21,127 +24,268 @@ using nlohmann::ordered_json;
 
 namespace {
 
-ordered_json json_of(const fs::path& file) {
-  try {
-    return ordered_json::parse(read_text_file(file));
-  } catch (const nlohmann::json::exception& e) {
-    throw FileError(fmt::format("{}: cannot be read: {}", file.string(), e.what()));
-  }
+constexpr std::array<const char*, 5> kOutcomeName{"finished", "mechanism", "not valid", "refused",
+                                                  "not done"};
+constexpr int kFormat = 2;  // of study.json
+
+std::string json_text(const ordered_json& j, int indent) {
+  return j.dump(indent, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string plan_text(const std::vector<PlannedRun>& plan, const StudyFolder::Sharing& sharing) {
+// Of a file that is torn, or empty: none.
+std::optional<ordered_json> json_of(const fs::path& file) {
+  if (!is_there(file)) return std::nullopt;
+  ordered_json j = ordered_json::parse(read_text_file(file), nullptr, false);
+  return j.is_object() ? std::optional(std::move(j)) : std::nullopt;
+}
+
+std::string absolute_text(const fs::path& path) { return fs::absolute(path).lexically_normal().string(); }
+
+// A line a run, and one with the digest of all: what is torn is known as such.
+std::string plan_text(const std::vector<StudyFolder::Task>& tasks) {
   std::string out;
-  for (const PlannedRun& run : plan) {
-    ordered_json j = {{"run", run.number}, {"set", run.overrides}};
-    const auto k = static_cast<size_t>(run.number);
-    if (k < sharing.group.size() && !sharing.group[k].empty())
-      j["group"] = sharing.group[k], j["group_set"] = sharing.group_overrides[k];
-    out += j.dump() + "\n";
+  for (size_t k = 0; k < tasks.size(); ++k) {
+    ordered_json j = {{"run", k}, {"set", tasks[k].overrides}};
+    if (!tasks[k].group.empty()) j["group"] = tasks[k].group, j["group_set"] = tasks[k].group_overrides;
+    out += json_text(j, -1);
   }
+  const ordered_json end = {{"runs", tasks.size()}, {"digest", text_hash(out)}};
+  return out + json_text(end, -1);
+}
+
+std::optional<std::vector<StudyFolder::Task>> plan_of(const fs::path& file) {
+  if (!is_there(file)) return std::nullopt;
+  const std::string text = read_text_file(file);
+  std::vector<StudyFolder::Task> tasks;
+  try {
+    const size_t last = text.size() < 2 ? std::string::npos : text.rfind('\n', text.size() - 2);
+    if (last == std::string::npos || text.back() != '\n') return std::nullopt;
+    const std::string lines = text.substr(0, last + 1);
+    if (ordered_json::parse(text.substr(last + 1)).at("digest") != text_hash(lines)) return std::nullopt;
+    std::istringstream in(lines);
+    for (std::string line; std::getline(in, line);) {
+      const ordered_json j = ordered_json::parse(line);
+      StudyFolder::Task& task = tasks.emplace_back();
+      task.overrides = j.at("set").get<std::vector<std::string>>();
+      if (j.contains("group"))
+        task.group = j["group"], task.group_overrides = j["group_set"].get<std::vector<std::string>>();
+    }
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+  return tasks;
+}
+
+std::string key_values(const std::vector<std::string>& overrides) {
+  std::string out;
+  for (const std::string& item : overrides) out += (out.empty() ? "" : ", ") + item;
   return out;
+}
+
+// What a folder holds before its study.json is written: a study that was being begun.
+bool is_only_begun(const fs::path& folder) {
+  std::error_code ec;
+  for (const auto& entry : fs::directory_iterator(folder, ec)) {
+    const std::string name = entry.path().filename().string();
+    const bool empty =
+        name == "work" || name == "runs" || name == "parents" ? fs::is_empty(entry.path(), ec) : false;
+    if (!empty && name != "study.toml" && name != "plan.jsonl" && name != "study.json" &&
+        !is_unfinished_file(entry.path()))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace
 
-void StudyFolder::begin(const Study& study, const std::vector<PlannedRun>& plan, const Sharing& sharing,
-                        const std::string& program, const std::string& inputs) {
-  const std::string text = plan_text(plan, sharing);
-  ordered_json now = {{"talus_study", 1},
-                      {"program", program},
-                      {"study_file", fs::absolute(study.file).lexically_normal().string()},
-                      {"model", fs::absolute(study.model).lexically_normal().string()},
-                      {"inputs_hash", inputs},
-                      {"runs", plan.size()},
-                      {"plan_hash", text_hash(text)},
-                      {"until", sharing.until}};
-  std::error_code ec;
-  if (fs::exists(path_ / "study.json", ec)) {
-    const ordered_json before = json_of(path_ / "study.json");
-    for (const auto& [key, what] :
-         {std::pair("plan_hash", "the study file plans other runs than those"),
-          std::pair("inputs_hash",
-                    "the model file, or a file that it or the study names, is not what it was for the runs")})
-      if (before.value(key, "") != now[key])
-        throw InputError(fmt::format(
-            "{}: error: {} that this folder was begun with. Take another folder, or change it back "
-            "(answers, failure and fragility may change)\n",
-            path_.string(), what));
-    write_file(study_file(), study.text);  // answers may have changed
-    return;
+const char* name_of(Outcome outcome) { return kOutcomeName[static_cast<size_t>(outcome)]; }
+
+Outcome outcome_of(int exit_code) {
+  switch (exit_code) {
+    case kExitOk:
+      return Outcome::kFinished;
+    case kExitMechanism:
+      return Outcome::kMechanism;
+    case kExitNotValid:
+    case kExitNumerical:
+      return Outcome::kNotValid;
+    case kExitUsage:
+    case kExitInput:
+      return Outcome::kRefused;
+    default:  // kExitFile, kExitResources, kExitInternal, signals
+      return Outcome::kNotDone;
   }
-  if (fs::exists(path_, ec) && !fs::is_empty(path_, ec))
+}
+
+void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const Sharing& sharing,
+                        const std::string& program, const std::vector<std::string>& files) {
+  std::error_code ec;
+  forget();
+  std::vector<Task> known;
+  Description now{program, absolute_text(study.file), absolute_text(study.model), sharing.until, {}};
+  if (is_there(path_ / "study.json") && !is_only_begun(path_)) {
+    const Description before = description();
+    check_files(before, program);
+    now.study_file = before.study_file, now.files = before.files;
+    if (now.until.empty()) now.until = before.until;
+    known = plan_of(path_ / "plan.jsonl").value_or(std::vector<Task>());
+  } else if (fs::exists(path_, ec) && !is_only_begun(path_)) {
     throw FileError(fmt::format("{}: is not empty, and holds no study. Take another folder", path_.string()));
+  }
+  for (const std::string& file : files) {
+    const std::string path = absolute_text(file);
+    if (!now.files.count(path)) now.files[path] = text_hash(read_text_file(path));
+  }
+  std::map<std::vector<std::string>, size_t> number;
+  for (const Task& task : known) number.emplace(task.overrides, number.size());
+  const size_t before = known.size();
+  std::vector<bool> planned(before);
+  for (size_t k = 0; k < plan.size(); ++k) {
+    const auto [at, added] = number.emplace(plan[k].overrides, number.size());
+    if (added) {
+      Task& task = known.emplace_back();
+      task.overrides = plan[k].overrides;
+      if (k < sharing.group.size() && !sharing.group[k].empty())
+        task.group = sharing.group[k], task.group_overrides = sharing.group_overrides[k];
+    } else if (at->second < before) {
+      planned[at->second] = true;
+    }
+    plan[k].number = static_cast<int>(at->second);
+  }
+  if (const auto gone = std::find(planned.begin(), planned.end(), false); gone != planned.end()) {
+    const bool squares = study.latin_hypercube && std::any_of(study.axes.begin(), study.axes.end(),
+                                                              [](const Axis& a) { return a.sampled; });
+    throw InputError(fmt::format(
+        "{}: error: run {} of this folder ({}) is no run of the study file any more: runs can be added, and none "
+        "taken away. {}\n",
+        path_.string(), gone - planned.begin(),
+        key_values(known[static_cast<size_t>(gone - planned.begin())].overrides),
+        squares ? "Another number of samples of a Latin hypercube is another hypercube, with other samples: "
+                  "method = \"random\" can be extended"
+                : "Put its values back, or take another folder (answers, failure and fragility may change)"));
+  }
   for (const char* name : {"", "work", "runs", "parents"}) {
     fs::create_directories(path_ / name, ec);
     if (ec) fail_file(path_ / name, "made", ec.value());
   }
-  write_file(study_file(), study.text);
-  write_file(path_ / "plan.jsonl", text);
-  write_file(path_ / "study.json", now.dump(2) + "\n", Reach::kDisk);  // last: the folder is one of a study
+  write_file(study_file(), study.text);  // answers may have changed
+  if (known.size() > before) write_file(path_ / "plan.jsonl", plan_text(known), Reach::kDisk);
+  ordered_json j = {{"talus_study", kFormat}, {"program", now.program}, {"study_file", now.study_file},
+                    {"model", now.model},     {"until", now.until},     {"files", ordered_json(now.files)}};
+  // last: the folder is one of a study
+  write_file(path_ / "study.json", json_text(j, 2), Reach::kDisk);
+  forget();
 }
 
-void StudyFolder::check() const {
+void StudyFolder::check(const std::string& program) const {
   if (!is_there(path_ / "study.json"))
     throw FileError(
         fmt::format("{}: holds no study: study.json is missing. talus study STUDY.toml -o DIR begins one",
                     path_.string()));
+  check_files(description(), program);
 }
 
-StudyFolder::Description StudyFolder::description() const {
+void StudyFolder::check_files(const Description& d, const std::string& program) const {
+  const auto refuse = [this](const std::string& what) {
+    throw InputError(fmt::format(
+        "{}: error: {}. Runs of two models are no study: take another folder, or change it back\n",
+        path_.string(), what));
+  };
+  if (d.program != program) refuse(fmt::format("was begun by {}, and this is {}", d.program, program));
+  for (const auto& [file, digest] : d.files) {
+    struct stat there {};
+    if (stat(file.c_str(), &there) != 0) refuse(fmt::format("{} is gone, which the runs read", file));
+    const Stamp stamp{there.st_size, static_cast<int64_t>(there.st_ino), there.st_mtim.tv_sec,
+                      there.st_mtim.tv_nsec};
+    if (const auto at = looked_at_.find(file); at != looked_at_.end() && at->second == stamp) continue;
+    looked_at_[file] = stamp, ++writings_;
+    if (text_hash(read_text_file(file)) != digest)
+      refuse(fmt::format("{} is not what it was for the runs that this folder was begun with", file));
+  }
+}
+
+void StudyFolder::number(const Study&, std::vector<PlannedRun>& plan) const {
+  std::map<std::vector<std::string>, int> numbers;
+  for (const Task& task : tasks()) numbers.emplace(task.overrides, static_cast<int>(numbers.size()));
+  for (PlannedRun& run : plan) {
+    const auto at = numbers.find(run.overrides);
+    if (at == numbers.end())
+      throw InputError(fmt::format(
+          "{}: error: plans a run that the folder does not hold ({}): talus study {} -o {} adds it\n",
+          study_file().string(), key_values(run.overrides), study_origin(), path_.string()));
+    run.number = at->second;
+  }
+  if (plan.size() < numbers.size())
+    throw InputError(
+        fmt::format("{}: error: plans {} runs, and the folder holds {}: put back what was taken away\n",
+                    study_file().string(), plan.size(), numbers.size()));
+}
+
+const StudyFolder::Description& StudyFolder::description() const {
+  if (description_) return *description_;
   const fs::path file = path_ / "study.json";
-  const ordered_json j = json_of(file);
+  const auto j = json_of(file);
+  if (!j)
+    throw FileError(fmt::format("{}: is empty or torn: take another folder, results of this one are in runs/",
+                                file.string()));
   try {
-    return {j.at("study_file").get<std::string>(), j.at("model").get<std::string>(),
-            j.at("until").get<std::string>(), j.at("runs").get<int>()};
+    if (j->at("talus_study") != kFormat)
+      throw FileError(fmt::format("{}: was begun by another version of talus ({}): take another folder",
+                                  file.string(), j->value("program", "")));
+    description_ = {j->at("program").get<std::string>(), j->at("study_file").get<std::string>(),
+                    j->at("model").get<std::string>(), j->at("until").get<std::string>(),
+                    j->at("files").get<std::map<std::string, std::string>>()};
   } catch (const nlohmann::json::exception& e) {
     throw FileError(fmt::format("{}: is not what talus study wrote: {}", file.string(), e.what()));
   }
+  return *description_;
 }
 
-const std::string& StudyFolder::line(int number) const {
-  if (lines_.empty()) {
-    std::istringstream in(read_text_file(path_ / "plan.jsonl"));
-    for (std::string one; std::getline(in, one);) lines_.push_back(one);
-  }
-  if (number < 0 || static_cast<size_t>(number) >= lines_.size())
-    throw FileError(fmt::format("{}: there is no run {}; runs are 0 to {}", path_.string(), number,
-                                static_cast<int>(lines_.size()) - 1));
-  return lines_[static_cast<size_t>(number)];
+const std::vector<StudyFolder::Task>& StudyFolder::tasks() const {
+  if (!tasks_) tasks_ = plan_of(path_ / "plan.jsonl");
+  if (!tasks_)
+    throw FileError(fmt::format("{}: is missing or torn: talus study {} -o {} --plan writes it anew",
+                                (path_ / "plan.jsonl").string(), study_origin(), path_.string()));
+  return *tasks_;
 }
 
 StudyFolder::Task StudyFolder::task(int number) const {
-  Task task;
-  try {
-    const auto j = ordered_json::parse(line(number));
-    task.overrides = j.at("set").get<std::vector<std::string>>();
-    if (j.contains("group"))
-      task.group = j["group"], task.group_overrides = j["group_set"].get<std::vector<std::string>>();
-  } catch (const nlohmann::json::exception& e) {
+  if (number < 0 || number >= planned())
     throw FileError(
-        fmt::format("{}: run {} cannot be read: {}", (path_ / "plan.jsonl").string(), number, e.what()));
-  }
-  return task;
+        fmt::format("{}: there is no run {}; runs are 0 to {}", path_.string(), number, planned() - 1));
+  return tasks()[static_cast<size_t>(number)];
 }
 
 fs::path StudyFolder::run_folder(int number) const { return path_ / "runs" / fmt::format("{:06}", number); }
 
 std::optional<RunRecord> StudyFolder::record_of(int number) const {
-  const fs::path file = run_folder(number) / "run.json";
-  std::error_code ec;
-  if (!fs::exists(file, ec)) return std::nullopt;
-  const ordered_json j = json_of(file);
+  const auto j = json_of(run_folder(number) / "run.json");
+  if (!j) return std::nullopt;
+  RunRecord record;
   try {
-    return RunRecord{j.at("run").get<int>(),  j.at("status").get<std::string>(),
-                     j.value("exit_code", 0), j.value("wall_time [s]", 0.0),
-                     j.value("host", ""),     j.value("message", "")};
-  } catch (const nlohmann::json::exception& e) {
-    throw FileError(fmt::format("{}: is not what talus study wrote: {}", file.string(), e.what()));
+    if (j->at("set") != task(number).overrides) return std::nullopt;
+    const std::string outcome = j->at("outcome");
+    const auto at = std::find(kOutcomeName.begin(), kOutcomeName.end(), outcome);
+    if (at == kOutcomeName.end()) return std::nullopt;
+    record = {j->at("run").get<int>(),          static_cast<Outcome>(at - kOutcomeName.begin()),
+              j->at("exit_code").get<int>(),    j->at("wall_time [s]").get<double>(),
+              j->at("host").get<std::string>(), j->at("message").get<std::string>()};
+    if (record.outcome == Outcome::kRefused || record.outcome == Outcome::kNotDone) return record;
+    // it has results, and they say the same
+    const auto summary = json_of(run_folder(number) / "summary.json");
+    if (!summary) return std::nullopt;
+    const bool ended = record.exit_code == kExitOk || record.exit_code == kExitNotValid;
+    if (summary->at("status") != (ended ? "finished" : "failed")) return std::nullopt;
+    if (summary->value("valid", ordered_json()) == false) record.outcome = Outcome::kNotValid;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
   }
+  return record;
 }
 
 bool StudyFolder::is_done(int number) const {
   const auto record = record_of(number);
-  return record && record->status != "killed";
+  return record && record->outcome != Outcome::kNotDone;
 }
 
 fs::path StudyFolder::begun(const std::string& name) const {
@@ -156,24 +300,26 @@ fs::path StudyFolder::attempt(const std::string& what) const {
 void StudyFolder::finish(int number, const fs::path& attempt, const RunRecord& record) const {
   std::error_code ec;
   fs::create_directories(attempt, ec);
-  const ordered_json j = {{"run", record.number},          {"status", record.status},
-                          {"exit_code", record.exit_code}, {"wall_time [s]", record.wall_seconds},
-                          {"host", record.host},           {"message", record.message}};
-  write_file(attempt / "run.json", j.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  const ordered_json j = {{"run", record.number},
+                          {"set", task(number).overrides},
+                          {"outcome", name_of(record.outcome)},
+                          {"exit_code", record.exit_code},
+                          {"wall_time [s]", record.wall_seconds},
+                          {"host", record.host},
+                          {"message", record.message}};
+  write_file(attempt / "run.json", json_text(j, 2), Reach::kDisk);
   const fs::path place = run_folder(number);
   fs::rename(attempt, place, ec);
-  if (!ec) return;
-  if (const auto there = record_of(number); there && there->status == "killed") {
-    const fs::path aside = this->attempt("killed");
+  if (ec && !is_done(number)) {  // what is there is not done, or torn
+    const fs::path aside = this->attempt("aside");
     fs::rename(place, aside, ec);
     fs::rename(attempt, place, ec);
-    if (!ec) {
-      fs::remove_all(aside, ec);
-      return;
-    }
+    std::error_code ignored;
+    if (!ec) fs::remove_all(aside, ignored);
   }
-  if (!record_of(number)) fail_file(place, "written", ec.value());
+  if (ec && !is_done(number)) fail_file(place, "written", ec.value());
   fs::remove_all(attempt, ec);  // another one was first
+  sync_folder(path_ / "runs");
 }
 
 void StudyFolder::clean() const {

@@ -107,7 +107,7 @@ std::vector<SectionSpec> sections() {
          .default_text = "\"left out\"",
          .choices = {"left out", "failed"},
          .doc =
-             "Runs that ended by failure of numbers, or are not valid by their audit: count as neither, and are listed; or count as failed."}}},
+             "What a run counts as in results.csv that is not valid (by its audit, or ended by failure of numbers): as neither, or as failed. Curves are drawn for both, and with it as sound."}}},
       {"fragility",
        SectionShape::kTable,
        "Probability of the states of damage, and answers, over one key that varies.",
@@ -470,15 +470,24 @@ class StudyReader {
     }
     for (const auto& [key, value] : *t) {
       const std::string name(key.str()), path = "answers." + name;
-      const auto formula = value.value_exact<std::string>();
+      const toml::table* with_unit = value.as_table();
+      const bool known = !with_unit || (with_unit->size() == 2 && with_unit->contains("unit"));
+      const auto formula = with_unit && known ? (*with_unit)["formula"].value_exact<std::string>()
+                                              : value.value_exact<std::string>();
       if (!formula)
-        findings_.error(where_of(key.source()), path, "is no formula in quotes",
-                        "write drift = \"top.displacement_x.largest / 3\"");
+        findings_.error(
+            where_of(key.source()), path, "is no formula in quotes",
+            "write drift = \"top.displacement_x.largest / 3\", or { formula = \"...\", unit = \"m\" }");
+      const std::string unit = with_unit ? (*with_unit)["unit"].value_or(std::string()) : "";
+      const auto one = parse_any_quantity("1 " + unit);
+      if (with_unit && (!one || one->value != 1))
+        findings_.error(where_of(key.source()), path + ".unit", fmt::format("\"{}\" is no unit of SI", unit),
+                        "formulas count in SI, and so do answers: m, m/s, N, Pa, rad");
       if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
           std::string::npos)
         findings_.error(where_of(key.source()), path, "is no name of an answer",
                         "letters a to z, digits and _");
-      if (formula) study_.answers.push_back({name, *formula, where_of(value.source())});
+      if (formula) study_.answers.push_back({name, *formula, unit, where_of(value.source())});
     }
     // in the order of the file
     std::stable_sort(

@@ -45,13 +45,6 @@ std::string not_valid_because(const fs::path& attempt) {
   return "";
 }
 
-std::string status_of(int exit_code) {
-  if (exit_code == kExitOk || exit_code == kExitNotValid) return "finished";
-  if (exit_code == kExitInput || exit_code == kExitUsage) return "refused";
-  if (exit_code > kExitSignal) return "killed";
-  return "failed";
-}
-
 // The answers of a run, without the rest of its results.
 void keep_answers(const fs::path& attempt) {
   std::error_code ec;
@@ -87,8 +80,9 @@ void Runner::start(Job job) {
   if (!settings_.keep_all) words.insert(words.end(), {"--set", "output.pictures=false"});
   if (parent) words.insert(words.end(), {"--until", folder_.until()});
   if (job.branch) words.insert(words.end(), {"--from", state_of(job.group)});
-  job.begun = wall_now();
-  const pid_t process = spawn(words, job.attempt.string() + ".log");
+  folder_.check(settings_.version);
+  job.begun = wall_now(), job.writings = folder_.writings();
+  const pid_t process = spawn(words, job.attempt.string() + ".log", Life::kOfParent);
   running_[process] = std::move(job);
 }
 
@@ -102,14 +96,17 @@ void Runner::ended(Job job, int status, bool stopped) {
     return;
   }
   if (job.number < 0) {
-    if (code == kExitOk || code == kExitNotValid)
+    if (folder_.check(settings_.version);
+        (code == kExitOk || code == kExitNotValid) && folder_.writings() == job.writings)
       fs::rename(job.attempt, folder_.parent_folder(job.group), ec);
     fs::remove_all(job.attempt, ec);
     fs::remove(log, ec);
     group_state_[job.group] = state_of(job.group).empty() ? 2 : 1;
     return;
   }
-  if (job.branch && code == kExitInput) {  // what differs is more than a branch may have: as a run of its own
+  if (job.branch &&
+      (code == kExitInput || code == kExitFile)) {  // more differs than a branch may have, or the state
+                                                    // cannot be read: as a run of its own
     fs::remove_all(job.attempt, ec);
     fs::remove(log, ec);
     job.branch = false;
@@ -117,33 +114,82 @@ void Runner::ended(Job job, int status, bool stopped) {
     waiting_.push_front(std::move(job));
     return;
   }
-  RunRecord record{job.number, status_of(code), code, wall_now() - job.begun, this_host(), said(log)};
+  RunRecord record{job.number, outcome_of(code), code, wall_now() - job.begun, this_host(), said(log)};
   if (code == kExitOk) record.message.clear();  // warnings stand in its summary
   if (code == kExitNotValid && record.message.empty()) record.message = not_valid_because(job.attempt);
-  fs::create_directories(job.attempt, ec);
-  if (settings_.report && record.status == "finished") {
-    const pid_t process = spawn({settings_.program, "report", job.attempt.string()}, log);
-    int ignored = 0;
-    while (waitpid(process, &ignored, 0) < 0 && errno == EINTR) continue;
-  }
-  if (!settings_.keep_all) keep_answers(job.attempt);
-  if (settings_.keep_all && !record.message.empty()) fs::rename(log, job.attempt / kLog, ec);
-  fs::remove(log, ec);
-  folder_.finish(job.number, job.attempt, record);
-  ++progress_.done;
-  progress_.failed += record.status != "finished";
+  if (folder_.check(settings_.version); folder_.writings() != job.writings)
+    record.outcome = Outcome::kNotDone, record.message = "a file that it reads was written while it ran";
+  keep(job, std::move(record));
 }
 
-void Runner::run(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
-                 const std::function<bool()>& stop) {
+// A run that cannot be kept is not done, and the study goes on.
+void Runner::keep(const Job& job, RunRecord record) {
+  std::error_code ec;
+  const fs::path log = job.attempt.string() + ".log";
+  try {
+    fs::create_directories(job.attempt, ec);
+    if (settings_.report && record.outcome != Outcome::kRefused && record.outcome != Outcome::kNotDone)
+      make_report(job);
+    if (!settings_.keep_all) keep_answers(job.attempt);
+    if (settings_.keep_all && !record.message.empty()) fs::rename(log, job.attempt / kLog, ec);
+    folder_.finish(job.number, job.attempt, record);
+    // as the folder sees it: a summary that is not whole is none
+    const auto kept = folder_.record_of(job.number);
+    record.outcome = kept ? kept->outcome : Outcome::kNotDone;
+    if (!kept) record.message = "what it wrote is not whole";
+  } catch (const FileError& e) {
+    record.outcome = Outcome::kNotDone, record.message = e.what();
+    fs::remove_all(job.attempt, ec);
+  }
+  fs::remove(log, ec);
+  if (record.outcome == Outcome::kNotDone) {
+    ++progress_.not_done;
+    progress_.cause =
+        fmt::format("run {}: {}", job.number,
+                    record.message.empty() ? fmt::format("exit code {}", record.exit_code) : record.message);
+  } else {
+    ++progress_.done;
+    progress_.without += record.outcome == Outcome::kRefused || record.outcome == Outcome::kNotValid;
+  }
+}
+
+void Runner::make_report(const Job& job) {
+  const pid_t process =
+      spawn({settings_.program, "report", job.attempt.string()}, "/dev/null", Life::kOfParent);
+  int ignored = 0;
+  while (waitpid(process, &ignored, 0) < 0 && errno == EINTR) continue;
+}
+
+// Ends what runs, and leaves nothing of it.
+void Runner::give_up() {
+  for (const auto& [process, job] : running_) kill(process, SIGKILL);
+  for (auto& [process, job] : running_) {
+    int status = 0;
+    while (waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
+    ended(std::move(job), status, true);
+  }
+  running_.clear();
+}
+
+Progress Runner::run(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
+                     const std::function<bool()>& stop) {
+  try {
+    return run_all(numbers, told, stop);
+  } catch (...) {
+    give_up();
+    throw;
+  }
+}
+
+Progress Runner::run_all(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
+                         const std::function<bool()>& stop) {
   progress_ = {};
   progress_.all = static_cast<int>(numbers.size());
   std::deque<Job> parents;
   for (const int number : numbers) {
-    if (folder_.is_done(number)) {
+    if (const auto record = folder_.record_of(number); record && record->outcome != Outcome::kNotDone) {
       ++progress_.done;
-      const auto record = folder_.record_of(number);
-      progress_.failed += record && record->status != "finished";
+      progress_.without += record->outcome == Outcome::kRefused || record->outcome == Outcome::kNotValid;
       continue;
     }
     Job job;
@@ -197,11 +243,12 @@ void Runner::run(const std::vector<int>& numbers, const std::function<void(const
     Job job = std::move(at->second);
     running_.erase(at);
     ended(std::move(job), status, stopped);
-    const int ours = progress_.done - before;
-    if (ours > 0) progress_.to_go = (wall_now() - begun) / ours * (progress_.all - progress_.done);
+    const int ours = progress_.done + progress_.not_done - before;
+    if (ours > 0) progress_.to_go = (wall_now() - begun) / ours * (progress_.all - before - ours);
   }
   progress_.running = 0;
   told(progress_);
+  return progress_;
 }
 
 }  // namespace talus::study

@@ -15,14 +15,18 @@ namespace talus::study {
 
 struct RunnerSettings {
   std::string program;  // path of talus
+  std::string version;  // what it calls itself
   int jobs = 1;
   bool keep_all = true, report = false;
 };
 
 /// What the runner tells while it goes on.
 struct Progress {
-  int done = 0, running = 0, failed = 0, all = 0;  // failed: ended without result
-  double to_go = 0;                                // [s], 0: not known yet
+  int done = 0, running = 0, all = 0;
+  int without = 0;    // of those done: without a result, since refused or not valid
+  int not_done = 0;   // ended otherwise: the same command makes them again
+  double to_go = 0;   // [s], 0: not known yet
+  std::string cause;  // of the last one that is not done
 };
 
 class Runner {
@@ -30,11 +34,13 @@ class Runner {
   Runner(const StudyFolder& folder, RunnerSettings settings)
       : folder_(folder), settings_(std::move(settings)) {}
 
-  /// Runs those of `numbers` that are not done.
+  /// Runs those of `numbers` that are not done, each with the files that the folder was begun with: throws InputError, as
+  /// StudyFolder::check(), when one is another by now.
   /// @param told  after every run that has ended
   /// @param stop  asked between runs; true: what runs is ended and given up
-  void run(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
-           const std::function<bool()>& stop);
+  /// @return how it ended
+  Progress run(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
+               const std::function<bool()>& stop);
 
  private:
   struct Job {
@@ -44,9 +50,15 @@ class Runner {
     StudyFolder::Task task;
     std::filesystem::path attempt;
     double begun = 0;
+    int64_t writings = 0;  // of files that it reads, when it was started
   };
+  Progress run_all(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
+                   const std::function<bool()>& stop);
+  void give_up();
   void start(Job job);
   void ended(Job job, int status, bool stopped);
+  void keep(const Job& job, RunRecord record);
+  void make_report(const Job& job);
   std::string state_of(const std::string& group) const;
 
   const StudyFolder& folder_;

@@ -48,6 +48,7 @@ struct Axis {
 
 struct NamedFormula {
   std::string name, formula;
+  std::string unit;  // of SI; "": that of the number where the formula is one alone
   Where where;
 };
 

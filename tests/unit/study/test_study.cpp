@@ -3,6 +3,7 @@
 #include "talus/study/study.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "talus/base/text_file.h"
 #include "talus/output/folder_lock.h"
 #include "talus/study/answers.h"
+#include "talus/study/figures.h"
 #include "talus/study/folder.h"
 #include "talus/study/fragility.h"
 #include "talus/study/gather.h"
@@ -275,8 +277,8 @@ TEST_CASE("study: formulas name what runs answer") {
   CHECK(answers[0] == 0.2);
   CHECK(answers[1] == 0.4);
   CHECK(std::isnan(answers[2]));
-  CHECK(is_damaged(s.states[0], n, trouble));
-  CHECK(!is_damaged(s.states[1], n, trouble));
+  CHECK(is_damaged(s.states[0], n, trouble) == 1);
+  CHECK(is_damaged(s.states[1], n, trouble) == 0);
   CHECK(trouble.empty());
   // before anything runs: what there can be is known by columns and stages
   const Numbers possible = possible_numbers({"top left.displacement_x [m]"}, {"rest", "big shake"});
@@ -295,82 +297,217 @@ TEST_CASE("study: formulas name what runs answer") {
 TEST_CASE("study: the folder takes a run whole or not at all, and the first of two") {
   const Folder scratch;
   std::ofstream(scratch / "m.toml") << "talus = 1\n";
-  const Study s = read(kHead + "[[vary]]\nkey = \"a\"\nvalues = [1, 2]\n", (scratch / "study.toml").string());
-  const std::vector<PlannedRun> plan = plan_runs(s);
+  const std::string model = (scratch / "m.toml").string();
+  const auto study_of = [&](const std::string& values, const std::string& more = "") {
+    return read(kHead + "[[vary]]\nkey = \"a\"\n" + values + "\n" + more, (scratch / "study.toml").string());
+  };
+  const auto begin = [&](StudyFolder& folder, const Study& s, const std::string& program = "talus test") {
+    std::vector<PlannedRun> plan = plan_runs(s);
+    folder.begin(s, plan, {}, program, {model});
+    return plan;
+  };
+  const Study s = study_of("values = [1, 2]");
   StudyFolder folder(scratch / "out");
-  folder.begin(s, plan, {}, "talus test", "files");
+  begin(folder, s);
   CHECK(folder.planned() == 2);
   CHECK(folder.task(1).overrides == std::vector<std::string>{"a=2"});
   CHECK_THROWS_AS(folder.task(2), FileError);
-  const auto finish = [&](int number, const std::string& status, const std::string& mark) {
+  const std::string whole = R"({"status": "finished", "valid": true})";
+  const auto finish = [&](int number, Outcome outcome, const std::string& mark, const std::string& summary) {
     const auto attempt = folder.attempt("000000");
     std::filesystem::create_directories(attempt);
     std::ofstream(attempt / "mark") << mark;
-    folder.finish(number, attempt, {number, status, 0, 1.0, "here", ""});
+    if (!summary.empty()) std::ofstream(attempt / "summary.json") << summary;
+    folder.finish(number, attempt,
+                  {number, outcome, outcome == Outcome::kFinished ? 0 : 137, 1.0, "here", ""});
     CHECK(!std::filesystem::exists(attempt));
   };
   CHECK(!folder.is_done(0));
-  finish(0, "killed", "first");
+  finish(0, Outcome::kNotDone, "killed", "");
   CHECK(!folder.is_done(0));  // it is made again
-  finish(0, "finished", "second");
+  finish(0, Outcome::kFinished, "torn", whole.substr(0, 20));
+  CHECK(!folder.is_done(0));  // and again: its summary is not whole
+  finish(0, Outcome::kFinished, "other", R"({"status": "running"})");
+  CHECK(!folder.is_done(0));
+  finish(0, Outcome::kFinished, "second", whole);
   CHECK(folder.is_done(0));
-  finish(0, "finished", "third");  // another process, which comes too late
+  finish(0, Outcome::kFinished, "third", whole);  // another process, which comes too late
   CHECK(read_text_file(folder.run_folder(0) / "mark") == "second");
+  // a record that is torn, or of other keys, is none
+  const std::string record = read_text_file(folder.run_folder(0) / "run.json");
+  const auto with_record = [&](const std::string& text) {
+    std::ofstream(folder.run_folder(0) / "run.json") << text;
+    return folder.is_done(0);
+  };
+  CHECK(!with_record(""));
+  CHECK(!with_record(record.substr(0, record.size() / 2)));
+  std::string other_keys = record;
+  CHECK(!with_record(other_keys.replace(other_keys.find("a=1"), 3, "a=7")));
+  CHECK(with_record(record));
   // what a process that has ended has left is cleared away; what lives stays
   std::filesystem::create_directories(folder.path() / "work" / ("000001." + this_host() + ".99999999.0"));
   std::filesystem::create_directories(folder.path() / "work" / "000001.elsewhere.1.0");
   folder.clean();
   CHECK(!std::filesystem::exists(folder.path() / "work" / ("000001." + this_host() + ".99999999.0")));
   CHECK(std::filesystem::exists(folder.path() / "work" / "000001.elsewhere.1.0"));
-  // the same study goes on; another one is refused, and a folder of other things
-  StudyFolder(scratch / "out").begin(s, plan, {}, "talus test", "files");
-  const Study other =
-      read(kHead + "[[vary]]\nkey = \"a\"\nvalues = [1, 3]\n", (scratch / "study.toml").string());
-  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(other, plan_runs(other), {}, "talus test", "files"),
-                  InputError);
-  CHECK_THROWS_AS(StudyFolder(scratch / "out").begin(s, plan, {}, "talus test", "other files"), InputError);
-  CHECK_THROWS_AS(StudyFolder(scratch.path()).begin(s, plan, {}, "talus test", "files"), FileError);
+  // the same study goes on, and one of more values: a run keeps its number wherever its value stands
+  StudyFolder again(scratch / "out");
+  begin(again, s);
+  const std::vector<PlannedRun> more = begin(again, study_of("values = [3, 1, 2]"));
+  CHECK(more[0].number == 2);
+  CHECK(more[1].number == 0);
+  CHECK(again.planned() == 3);
+  CHECK(again.is_done(0));
+  CHECK_THROWS_AS(begin(again, s), InputError);  // run 2 would be gone
+  CHECK_THROWS_AS(begin(again, study_of("values = [3, 1, 2]"), "talus other"), InputError);
+  CHECK_NOTHROW(again.check("talus test"));
+  // a plan that is torn is written anew by the study file, and its runs are known by their keys
+  const std::string plan = read_text_file(again.path() / "plan.jsonl");
+  std::ofstream(again.path() / "plan.jsonl") << plan.substr(0, plan.size() - 5);
+  CHECK_THROWS_AS(StudyFolder(scratch / "out").planned(), FileError);
+  begin(again, study_of("values = [3, 1, 2]"));
+  CHECK(!again.is_done(0));  // whose keys are those of a = 3 now
+  std::ofstream(again.path() / "plan.jsonl") << plan;
+  CHECK(StudyFolder(scratch / "out").is_done(0));
+  // another model
+  std::ofstream(scratch / "m.toml") << "talus = 1 # another\n";
+  CHECK_THROWS_AS(StudyFolder(scratch / "out").check("talus test"), InputError);
+  CHECK_THROWS_AS(begin(again, study_of("values = [3, 1, 2]")), InputError);
+  StudyFolder elsewhere(scratch.path());
+  CHECK_THROWS_AS(begin(elsewhere, s), FileError);
 }
 
-TEST_CASE(
-    "study: runs that failed or are not valid count as neither, or as damaged where that is asked for") {
+TEST_CASE("study: random samples can be more, those of a Latin hypercube are others") {
+  const Folder scratch;
+  std::ofstream(scratch / "m.toml") << "talus = 1\n";
+  for (const bool random : {true, false}) {
+    StudyFolder folder(scratch / (random ? "random" : "squares"));
+    const auto begin = [&](int runs) {
+      const Study s =
+          read(kHead + fmt::format("[[vary]]\nkey = \"a\"\ndistribution = {{ mean = 1, normal = 0.1 }}\n"
+                                   "[sampling]\nruns = {}\nmethod = \"{}\"\n",
+                                   runs, random ? "random" : "latin_hypercube"),
+               (scratch / "study.toml").string());
+      std::vector<PlannedRun> plan = plan_runs(s);
+      folder.begin(s, plan, {}, "talus test", {(scratch / "m.toml").string()});
+      std::filesystem::create_directories(folder.path() / "runs" / "begun");
+    };
+    begin(4);
+    const auto first = folder.task(3).overrides;
+    if (random) {
+      begin(6);
+      CHECK(folder.planned() == 6);
+      CHECK(folder.task(3).overrides == first);
+    } else {
+      try {
+        begin(6);
+        FAIL("another hypercube was taken");
+      } catch (const InputError& e) {
+        CHECK(std::string(e.what()).find("Latin hypercube") != std::string::npos);
+      }
+    }
+  }
+}
+
+TEST_CASE("study: exit codes, and what a run is that ends with them") {
+  CHECK(outcome_of(kExitOk) == Outcome::kFinished);
+  CHECK(outcome_of(kExitMechanism) == Outcome::kMechanism);
+  for (const int code : {kExitNotValid, kExitNumerical}) CHECK(outcome_of(code) == Outcome::kNotValid);
+  for (const int code : {kExitInput, kExitUsage}) CHECK(outcome_of(code) == Outcome::kRefused);
+  for (const int code : {1, 4, 7, 10, 128 + 9, 128 + 15, 255}) CHECK(outcome_of(code) == Outcome::kNotDone);
+}
+
+TEST_CASE("study: what runs that are not valid count as, and which findings they have") {
   const Folder scratch;
   std::ofstream(scratch / "m.toml") << "talus = 1\n";
   const auto study_with = [&](const std::string& invalid) {
     return read(
         kHead +
-            "[[vary]]\nkey = \"a\"\nvalues = [1, 2, 3, 4]\n[answers]\nslip = \"joints.slip_largest\"\n[failure]\nwhen = \"slip > 0.1\"\n" +
-            invalid,
+            "[[vary]]\nkey = \"a\"\nvalues = [1, 2, 3, 4, 5, 6]\n[answers]\nslip = \"joints.slip_largest\"\n[failure]\nwhen = \"slip > 0.1\"\n" +
+            invalid + "[fragility]\nover = \"a\"\n",
         (scratch / "study.toml").string());
   };
   const Study s = study_with("");
-  const std::vector<PlannedRun> plan = plan_runs(s);
+  std::vector<PlannedRun> plan = plan_runs(s);
   StudyFolder folder(scratch / "out");
-  folder.begin(s, plan, {}, "talus test", "files");
-  const auto finish = [&](int number, const std::string& status, const std::string& summary) {
+  folder.begin(s, plan, {}, "talus test", {(scratch / "m.toml").string()});
+  const auto finish = [&](int number, int code, const std::string& summary) {
     const auto attempt = folder.attempt("x");
     std::filesystem::create_directories(attempt);
     if (!summary.empty()) std::ofstream(attempt / "summary.json") << summary;
-    folder.finish(number, attempt, {number, status, 0, 1.0, "here", "line one\nline \"two\""});
+    folder.finish(number, attempt, {number, outcome_of(code), code, 1.0, "=here", "line one\nline \"two\""});
   };
-  finish(0, "finished", R"({"status": "finished", "valid": true, "joints": {"slip_largest [m]": 0.2}})");
-  finish(1, "finished", R"({"status": "finished", "valid": false, "joints": {"slip_largest [m]": 0.2}})");
-  finish(2, "failed", R"({"status": "failed"})");
+  finish(0, 0, R"({"status": "finished", "valid": true, "joints": {"slip_largest [m]": 0.2}})");
+  finish(1, 8,
+         R"({"status": "finished", "valid": false, "joints": {"slip_largest [m]": 0.05}, "audit": {"defects":
+      [{"kind": "force_vanished", "valid": false, "count": 3, "worst [s]": 1.5, "blocks": ["a", "b"], "x [m]": 1, "y [m]": 2,
+        "text": "4 kN, 0.1 of the load"}, {"kind": "loose_steps", "valid": true, "count": 1}]}})");
+  finish(2, 5, R"({"status": "failed", "failure": "step 7 was not solved"})");
+  finish(
+      3, 6,
+      R"({"status": "failed", "valid": true, "failure": "a mechanism", "joints": {"slip_largest [m]": 0.01}})");
+  finish(4, 137, "");
   const Gathered found = gather(s, plan, folder);
-  CHECK(found.finished == 1);
-  CHECK(found.not_valid == 1);
-  CHECK(found.failed == 1);
-  CHECK(found.missing == 1);
+  CHECK(found.counts() == "6 runs: 1 finished, 1 mechanism, 2 not valid, 2 not done");
   CHECK(results_csv(s, found) ==
-        "run,a,status,damaged: failure,slip,wall_time [s],host,message\n"
-        "0,1,finished,1,0.2,1.000,here,line one line 'two'\n"
-        "1,2,not valid,,0.2,1.000,here,line one line 'two'\n"
-        "2,3,failed,,,1.000,here,line one line 'two'\n"
-        "3,4,missing,,,,,\n");
+        "run,a,status,damaged: failure,slip [m],wall_time [s],host,message\n"
+        "0,1,finished,1,0.2,1.000,'=here,line one line 'two'\n"
+        "1,2,not valid,,0.05,1.000,'=here,line one line 'two'\n"
+        "2,3,not valid,,,1.000,'=here,line one line 'two'\n"
+        "3,4,mechanism,1,0.01,1.000,'=here,line one line 'two'\n"
+        "4,5,not done,,,1.000,'=here,line one line 'two'\n"
+        "5,6,not done,,,,,\n");
+  REQUIRE(found.rows[1].findings.size() == 1);
+  CHECK(found.rows[1].findings[0].kind == "force_vanished");
+  CHECK(found.rows[1].findings[0].where == "a and b at (1, 2) m");
+  CHECK(found.rows[2].findings[0].text == "step 7 was not solved");
+  CHECK(found.states[0].not_valid == 2);
   const Gathered strict = gather(study_with("invalid = \"failed\"\n"), plan, folder);
   CHECK(strict.rows[1].damaged[0] == 1);
   CHECK(strict.rows[2].damaged[0] == 1);
-  CHECK(strict.rows[3].damaged[0] == -1);
+  CHECK(strict.rows[4].damaged[0] == -1);
+  const std::string page = study_page(s, found, {});
+  CHECK(page.find("force vanished") != std::string::npos);
+  CHECK(page.find("2 of 4 runs are not valid: no single curve") != std::string::npos);
+}
+
+TEST_CASE(
+    "study: the curve with what is not valid as damaged is that of runs that are damaged, and as sound of sound ones") {
+  const Folder scratch;
+  std::ofstream(scratch / "m.toml") << "talus = 1\n";
+  // ten levels, ten runs each; of level k the first k are damaged, and at the four upper ones two are not valid
+  const Study s = read(
+      kHead +
+          "[[vary]]\nkey = \"level\"\nvalues = [1, 2, 3, 4, 5, 6, 7, 8, 9]\n[[vary]]\nkey = \"k\"\nrange = { from = 1, to = 10, count = 10 }\n"
+          "[answers]\nslip = \"joints.slip_largest\"\n[failure]\nwhen = \"slip > 0.1\"\n[fragility]\nover = \"level\"\n",
+      (scratch / "study.toml").string());
+  std::vector<PlannedRun> plan = plan_runs(s);
+  const auto curves = [&](const std::string& name, int not_valid_as) {
+    StudyFolder folder(scratch / name);
+    folder.begin(s, plan, {}, "talus test", {(scratch / "m.toml").string()});
+    for (const PlannedRun& run : plan) {
+      const double level = run.values[0].number, k = run.values[1].number;
+      const bool hidden = level >= 6 && k >= 9;
+      int code = 0;
+      double slip = k <= level ? 0.2 : 0;
+      if (hidden && not_valid_as < 0) code = 8;
+      if (hidden && not_valid_as >= 0) slip = not_valid_as;
+      const auto attempt = folder.attempt("x");
+      std::filesystem::create_directories(attempt);
+      std::ofstream(attempt / "summary.json") << fmt::format(
+          R"({{"status": "finished", "valid": {}, "joints": {{"slip_largest [m]": {}}}}})", code == 0, slip);
+      folder.finish(run.number, attempt, {run.number, outcome_of(code), code, 1.0, "here", ""});
+    }
+    return gather(s, plan, folder).states[0];
+  };
+  const StateCurves open = curves("open", -1), damaged = curves("damaged", 1), sound = curves("sound", 0);
+  CHECK(open.not_valid == 8);
+  CHECK(open.has_single());  // 8 of 90
+  CHECK(open.of(NotValidAs::kDamaged).median == damaged.of(NotValidAs::kLeftOut).median);
+  CHECK(open.of(NotValidAs::kSound).median == sound.of(NotValidAs::kLeftOut).median);
+  CHECK(open.of(NotValidAs::kDamaged).median < open.of(NotValidAs::kLeftOut).median);
+  CHECK(open.of(NotValidAs::kLeftOut).median < open.of(NotValidAs::kSound).median);
+  CHECK(open.headline(NotValidAs::kLeftOut).find("median between ") == 0);
 }
 
 TEST_CASE("docs/many_runs.md holds the tables of the program") {

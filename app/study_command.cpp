@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <set>
 
+#include "talus/base/name.h"
 #include "talus/base/parallel.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
@@ -194,6 +195,19 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
+// A path in a line of #SBATCH: in quotes, and no pattern. Throws FileError where Slurm cannot carry it.
+std::string for_sbatch(const std::string& path) {
+  std::string out = "\"";
+  for (const char c : path) {
+    if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' || c == 127)
+      throw FileError(fmt::format(
+          "{}: a script for Slurm cannot name it: quotes, backslashes and control characters. Take another folder",
+          shown_name(path)));
+    out += c == '%' ? std::string("%%") : std::string(1, c);
+  }
+  return out + '"';
+}
+
 int submit_to_slurm(const study::StudyFolder& folder, const StudyArguments& args) {
   constexpr int kDefaultArray = 1001;  // of Slurm
   int most = kDefaultArray;
@@ -206,8 +220,9 @@ int submit_to_slurm(const study::StudyFolder& folder, const StudyArguments& args
   const fs::path root = fs::absolute(folder.path()).lexically_normal();
   std::string script = "#!/bin/sh\n# runs of a study, " +
                        fmt::format("{} to an element; those that are done are passed over\n", pack);
-  script += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n#SBATCH --output={}\n", used - 1,
-                        folder.begun("slurm-%A_%a.txt").string());
+  std::string output = for_sbatch(folder.begun("slurm-").string());
+  output.insert(output.size() - 1, "%A_%a.txt");
+  script += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n#SBATCH --output={}\n", used - 1, output);
   script += fmt::format("exec {} study task {} $((SLURM_ARRAY_TASK_ID * {})) --count {}\n",
                         quoted(own_path()), quoted(root.string()), pack, pack);
   write_file(root / "slurm.sh", script);

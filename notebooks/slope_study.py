@@ -42,7 +42,7 @@ found.table
 
 # %%
 table = found.table
-phi, crest = table["phi [deg]"], table["crest"]
+phi, crest = table["phi [deg]"], table["crest [m]"]
 for angle, way in zip(phi, crest):
     print(f"{angle:.0f} deg: the crest comes to {100 * way:.2f} cm")
 assert len(phi) == 4 and all(status == "finished" for status in table["status"])

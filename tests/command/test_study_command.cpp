@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <set>
+#include <sstream>
 
 #include "support/command.h"
 #include "support/results.h"
@@ -188,6 +190,77 @@ TEST_CASE("command study: single tasks and gather, as batch systems call them, b
   has(content(folder / "bin/options"), "--partition=long");
   CHECK(shell(folder, "$talus study gather slurm").code == 0);
   CHECK(numbers_of(folder, "slurm") == numbers_of(folder, "whole"));
+}
+
+TEST_CASE("command study: more values in the same folder, and what was there keeps its bits") {
+  const Folder folder;
+  write(folder, "model.toml", kModel), write(folder, "study.toml", kStudy);
+  CHECK(shell(folder, "$talus study study.toml -q -o out").code == 0);
+  const std::string before = numbers_of(folder, "out"),
+                    bits = content(folder / "out/runs/000004/histories.csv");
+  const auto when = std::filesystem::last_write_time(folder / "out/runs/000004/run.json");
+  const auto with = [&](const std::string& pushes) {
+    std::string text = kStudy;
+    return text.replace(text.find("[2, 4, 8]"), 9, pushes);
+  };
+  // one value more in the midst, and a second angle
+  std::string more = with("[2, 4, 5, 8]");
+  more.replace(more.find("\"20 deg\","), 9, "\"20 deg\", \"15 deg\",");
+  write(folder, "more.toml", more);
+  const Outcome o = shell(folder, "$talus study more.toml -o out");
+  INFO(o.text);
+  CHECK(o.code == 0);
+  has(o.text, "16 runs: 16 finished");
+  CHECK(numbers_of(folder, "out").substr(0, before.size()) == before);
+  CHECK(content(folder / "out/runs/000004/histories.csv") == bits);
+  CHECK(std::filesystem::last_write_time(folder / "out/runs/000004/run.json") == when);
+  // rows are those of a study that had them from the start
+  CHECK(shell(folder, "$talus study more.toml -q -o fresh").code == 0);
+  const auto rows = [&](const std::string& name) {
+    std::set<std::string> out;
+    std::istringstream in(numbers_of(folder, name));
+    for (std::string row; std::getline(in, row);) out.insert(row.substr(row.find(',')));
+    return out;
+  };
+  CHECK(rows("out").size() == 16);
+  CHECK(rows("out") == rows("fresh"));
+  const Outcome fewer = shell(folder, "$talus study study.toml -o out");
+  CHECK(fewer.code == 3);
+  has(fewer.text, "is no run of the study file any more");
+  // gathered by a study file of more runs than the folder has
+  write(folder, "out/study.toml", with("[2, 4, 5, 8, 9]"));
+  const Outcome unknown = shell(folder, "$talus study gather out");
+  CHECK(unknown.code == 3);
+  has(unknown.text, "plans a run that the folder does not hold");
+}
+
+TEST_CASE("command study: answers have units, and what a script of Slurm cannot name is refused") {
+  const Folder folder;
+  std::string study = kStudy;
+  study.replace(study.find("[[vary]]"), 0,
+                "share = { formula = \"way / 2\", unit = \"m\" }\nplain = \"2 * way\"\n");
+  write(folder, "model.toml", kModel), write(folder, "study.toml", study);
+  CHECK(shell(folder, "$talus study study.toml -q -o out").code == 0);
+  const TextTable table = read_text_table(folder / "out/results.csv");
+  CHECK(table.find("way [m]") > 0);
+  CHECK(table.find("share [m]") > 0);
+  CHECK(table.find("plain") > 0);
+  study.replace(study.find("unit = \"m\""), 10, "unit = \"mm\"");
+  write(folder, "wrong.toml", study);
+  const Outcome wrong = shell(folder, "$talus study wrong.toml -o no");
+  CHECK(wrong.code == 3);
+  has(wrong.text, "\"mm\" is no unit of SI");
+  std::filesystem::create_directories(folder / "bin");
+  write(folder, "bin/sbatch",
+        "#!/bin/sh\ncp \"$(eval echo \\${$#})\" \"$(dirname \"$0\")/script\"\necho 7\n");
+  std::filesystem::permissions(folder / "bin/sbatch", std::filesystem::perms::owner_all);
+  write(folder, "study.toml", kStudy);
+  CHECK(shell(folder, "PATH=$PWD/bin:$PATH $talus study study.toml -o 'a b%c' --on slurm").code == 0);
+  has(content(folder / "bin/script"), "#SBATCH --output=\"");
+  has(content(folder / "bin/script"), "/a b%%c/work/slurm-%A_%a.txt\"\n");
+  const Outcome name = shell(folder, "PATH=$PWD/bin:$PATH $talus study study.toml -o 'a\"b' --on slurm");
+  CHECK(name.code == 4);
+  has(name.text, "cannot name it");
 }
 
 TEST_CASE("command study: wrong input is told before anything is run or written") {

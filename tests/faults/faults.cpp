@@ -1,11 +1,14 @@
 // Preloaded into the program by tests/command/test_faults.cpp: lets the n-th call of one kind fail, as a full disk, a
 // lost network drive or a machine without memory would. TALUS_FAULT is KIND:N; what was done is told in the file
-// TALUS_FAULT_TOLD. Of the kind "moved" the n-th rename finds the folder out/ moved away.
+// TALUS_FAULT_TOLD. With TALUS_FAULT_COUNT, a file of eight bytes, all processes count together, and of kind "every" each n-th
+// write fails, as on a disk that is full now and then. Of the kind "moved" the n-th rename finds the folder out/ moved away.
 
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -22,11 +25,18 @@ struct Fault {
   char kind[16] = "";
   long n = 0;
   const char* told = nullptr;
+  std::atomic<long>* shared = nullptr;  // count of all processes
 
   Fault() {
     const char* text = std::getenv("TALUS_FAULT");
     if (text) std::sscanf(text, "%15[a-z]:%ld", kind, &n);
     told = std::getenv("TALUS_FAULT_TOLD");
+    if (const char* count = std::getenv("TALUS_FAULT_COUNT")) {
+      const auto file = static_cast<int>(syscall(SYS_openat, AT_FDCWD, count, O_RDWR));
+      void* place = mmap(nullptr, sizeof(long), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+      if (place != MAP_FAILED) shared = static_cast<std::atomic<long>*>(place);
+      syscall(SYS_close, file);
+    }
   }
 };
 
@@ -38,7 +48,10 @@ const Fault& fault() {
 // Whether this call of the kind is the one that fails.
 bool fails(const char* kind, std::atomic<long>& count) {
   const Fault& f = fault();
-  if (std::strcmp(f.kind, kind) != 0 || ++count != f.n) return false;
+  const bool every = std::strcmp(f.kind, "every") == 0 && std::strcmp(kind, "write") == 0;
+  if (std::strcmp(f.kind, kind) != 0 && !every) return false;
+  const long number = f.shared ? ++*f.shared : ++count;
+  if (every ? number % f.n != 0 : number != f.n) return false;
   if (f.told) {
     const auto file =
         static_cast<int>(syscall(SYS_openat, AT_FDCWD, f.told, O_WRONLY | O_CREAT | O_TRUNC, 0666));
@@ -67,6 +80,10 @@ int no(int error) {
 extern "C" {
 
 ssize_t write(int file, const void* bytes, size_t size) {
+  if (file > 2 && fails("kill", writes)) {  // a process that is killed there
+    if (size > 1) syscall(SYS_write, file, bytes, size / 2);
+    syscall(SYS_kill, getpid(), SIGKILL);
+  }
   if (file > 2 && fails("write", writes)) {
     // half of it arrives, as on a disk that fills; then nothing
     if (size > 1) return syscall(SYS_write, file, bytes, size / 2), no(ENOSPC);

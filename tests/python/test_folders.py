@@ -141,12 +141,12 @@ class Studies(unittest.TestCase):
             study = talus.Study(sections)
             self.assertIn("2 runs", study.dry_run())
             found = study.run(pathlib.Path(folder, "study"), jobs=2)
-            for angle, way in zip((10, 15), found.table["way"]):
+            for angle, way in zip((10, 15), found.table["way [m]"]):
                 exact = 0.5 * 9.81 * (0.5 - numpy.tan(numpy.radians(angle)) * numpy.cos(numpy.radians(30))) * 0.6 ** 2
                 self.assertAlmostEqual(way, exact, delta=1e-5 * exact)
             self.assertEqual(found.run(1).summary["status"], "finished")
             self.assertIn("finished", found._repr_html_())
-            self.assertEqual(study.run(pathlib.Path(folder, "study")).table["way"][0], found.table["way"][0])
+            self.assertEqual(study.run(pathlib.Path(folder, "study")).table["way [m]"][0], found.table["way [m]"][0])
             os.environ["TALUS_PROGRAM"] = "/no/such/program"
             try:
                 with self.assertRaises(talus.FileError):

@@ -3,17 +3,19 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace talus::app {
 
 struct CompareArguments {
   std::string a, b;
-  double rtol = -1, atol = -1;  // < 0: not given
+  std::vector<std::string> rtol, atol;  // NUMBER or QUANTITY=NUMBER
+  bool other_model = false;
 };
 
 void add_compare_arguments(CLI::App& verb, CompareArguments& args);
-/// Prints the table. Returns kExitOk, or kExitDiffers where a tolerance was given and something is beyond it. Throws
-/// FileError.
+/// Prints the table. Returns kExitOk, or kExitDiffers: a tolerance was given and something is beyond it, or a side is not whole,
+/// failed or not valid, or has what the other has not. Throws FileError where there is no folder.
 int compare_command(const CompareArguments& args);
 
 }  // namespace talus::app

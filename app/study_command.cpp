@@ -127,7 +127,7 @@ std::vector<std::string> check_values(const study::Study& s, const std::vector<s
       Findings findings(s.model.string(), text);
       const Model model = read_model(s.model.string(), text, overrides, findings);
       findings.throw_if_errors();
-      files.insert(files.end(), model.files.begin(), model.files.end());
+      for (const InputFile& input : model.files) files.push_back(input.path);
     }
   }
   return files;
@@ -264,7 +264,7 @@ int begin_study(const StudyArguments& args) {
     return kExitOk;
   }
   files.push_back(model_file);
-  files.insert(files.end(), first.scene.model.files.begin(), first.scene.model.files.end());
+  for (const InputFile& input : first.scene.model.files) files.push_back(input.path);
   study::StudyFolder folder(args.folder);
   folder.begin(s, plan, sharing_of(s, plan, first.scene.model), kProgram, files);
   if (args.plan) {

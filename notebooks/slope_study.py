@@ -28,7 +28,7 @@ study = talus.Study({
     "model": MODEL,
     "set": {"variables.motion": motion, "stage.earthquake.duration": "2 s"},
     # Of the slope, not of one joint: the largest slip of all joints is that of its smallest sliver, which differs with every step size.
-    "answers": {"crest": "sqrt(crest.displacement_x.residual^2 + crest.displacement_y.residual^2)"},
+    "answers": {"crest": {"formula": "sqrt(crest.displacement_x.residual^2 + crest.displacement_y.residual^2)", "unit": "m"}},
     "vary": [{"key": "variables.phi", "name": "phi", "values": ["27 deg", "30 deg", "33 deg", "36 deg"]}],
 })
 print(study.dry_run())

@@ -96,7 +96,8 @@ class Study:
     def run(self, folder: Path, jobs: int = 0) -> StudyResults:
         """Runs what is not done yet, `jobs` at once (0: one for each processor). Killed or stopped, the same call goes on.
 
-        Raises InputError, FileError with what the command says (without findings); runs that fail are rows of the table.
+        Raises InputError, FileError with what the command says (without findings), Error where runs are not done (disk, memory, a
+        signal: the same call makes them). Runs that are refused or not valid are rows of the table.
         """
         jobs = operator.index(jobs)
         if jobs < 0:

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
 
 #include "support/command.h"
 #include "talus/output/files.h"
@@ -88,8 +89,111 @@ TEST_CASE("command: compare with wrong input") {
   write_file(f / "other/summary.json",
              "{\"status\": \"finished\", \"stages\": [{\"name\": \"rest\", \"kind\": \"static\"}]}");
   const Outcome o = shell(f, "$talus compare a other");
-  CHECK(o.code == 4);
+  CHECK(o.code == 9);
   has(o.text, "have nothing in common");
+  CHECK(shell(f, "$talus compare a a --rtol wrong").code == 2);
+  CHECK(shell(f, "$talus compare a a --rtol =1").code == 2);
+  CHECK(shell(f, "$talus compare a a --rtol nan").code == 2);
+  const Outcome unknown = shell(f, "$talus compare a a --rtol displacemnt=0.1");
+  CHECK(unknown.code == 2);
+  has(unknown.text, "displacemnt");
+}
+
+TEST_CASE("command: compare judges by quantity, unit and kind, the longest name that fits") {
+  const Folder f;
+  write_run(f, "a", "0,0,0\n1,1,0\n2,2,1\n3,3,2\n4,4,3\n", 0, 4);
+  write_run(f, "b", "0,0,0\n1,1,0\n2,2,1\n3,3,2\n4,4,3.3\n", 0, 4);
+  const auto code = [&](const std::string& how) { return shell(f, "$talus compare a b " + how).code; };
+  CHECK(code("--rtol 0.09") == 9);
+  CHECK(code("--rtol 0.09 --rtol displacement=0.11") == 0);
+  CHECK(code("--rtol 0.09 --rtol displacement_x=0.11 --rtol displacement=0") == 0);
+  CHECK(code("--rtol 0.11 --rtol m=0.01") == 9);
+  CHECK(code("--rtol m=0.01 --atol m=0.3") == 0);
+  CHECK(code("--rtol history=0.11") == 0);
+  CHECK(code("--rtol 0 --atol displacement_x=0.31") == 0);
+}
+
+TEST_CASE("command: compare of runs of two models, and of one solved in two ways") {
+  const Folder f;
+  write_file(f / "m.toml",
+             read_text_file(std::string(TALUS_SOURCE_DIR) + "/tests/fixtures/sliding_stone.toml"));
+  const auto run = [&](const std::string& name, const std::string& more) {
+    REQUIRE(shell(f, "$talus run m.toml -q -o " + name + more).code == 0);
+  };
+  run("a", ""), run("step", " --set stage.go.time_step=0.25e-3"), run("push", " --set variables.push=4.001");
+  run("wide", " --set 'block.floor.polygon=[[-5, -1], [51, -1], [51, 0], [-5, 0]]'");
+  const Outcome step = shell(f, "$talus compare a step --rtol 0.01 --atol 1e-3 --atol m/s2=0.01");
+  INFO(step.text);
+  CHECK(step.code == 0);
+  CHECK(shell(f, "$talus compare a push").code == 0);  // without a tolerance a note
+  const Outcome o = shell(f, "$talus compare a push --rtol 1 --atol 10");
+  CHECK(o.code == 9);
+  has(o.text, "ANOTHER MODEL: history.push.scale: 4 in a, 4.001 in push");
+  CHECK(shell(f, "$talus compare a push --rtol 1 --atol 10 --other-model").code == 0);
+  const Outcome wide = shell(f, "$talus compare a wide --rtol 1 --atol 10");
+  CHECK(wide.code == 9);
+  has(wide.text, "block 0 is another in wide");
+}
+
+TEST_CASE("command: compare of a run with itself, one side damaged in any way, is never passed") {
+  const Folder f;
+  REQUIRE(
+      shell(
+          f,
+          fmt::format(
+              "$talus run {}/examples/bolted_slope/bolted_slope.toml -q -o whole --set stage.shake.duration=0.1",
+              TALUS_SOURCE_DIR))
+          .code == 0);
+  REQUIRE(shell(f, "cp -r whole other && $talus compare whole other --rtol 0").code == 0);
+  std::vector<std::string> ways;
+  for (const char* table :
+       {"histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv", "blocks.csv"}) {
+    const auto way = [&](const std::string& line) { ways.push_back(fmt::format(fmt::runtime(line), table)); };
+    way("rm {}");
+    way(": > {}");
+    way("sed -i '$d' {}");                  // fewer rows
+    way("sed -i '2d' {}");                  // one in front
+    way("cut -d, -f2- {0} > x; mv x {0}");  // a column less
+    way("sed -i '1s/t/q/' {}");             // a title
+    way("truncate -s -5 {}");               // a row that is cut off
+    way("sed -i '$p' {}");                  // a row twice
+    way("sed -i '2s/[1-9]/nan,/' {}");      // what is no number
+  }
+  for (const char* way : {"rm summary.json",
+                          ": > summary.json",
+                          "truncate -s 100 summary.json",
+                          "sed -i 's/\"finished\"/\"failed\"/' summary.json",
+                          "sed -i 's/\"finished\"/\"running\"/' summary.json",
+                          "sed -i 's/\"valid\": true/\"valid\": false/' summary.json",
+                          "sed -i 's/\"name\": \"shake\"/\"name\": \"quake\"/' summary.json",
+                          "sed -i '0,/\"end .s.\": /s//\"end [s]\": 1/' summary.json",
+                          "sed -i '/\"status\"/d' summary.json",
+                          "echo '{}' > summary.json",
+                          "echo '[1]' > summary.json",
+                          "echo '{\"status\": \"finished\"}' > summary.json",
+                          "rm model.toml",
+                          "sed -i 's/25 deg/26 deg/' model.toml",
+                          "rm monitors.csv",
+                          "cp joints.csv histories.csv",
+                          "cp histories.csv steps.csv",
+                          "rm *.csv",
+                          "rm -rf *",
+                          "chmod 000 histories.csv; [ $(id -u) != 0 ] || rm histories.csv",
+                          "rm histories.csv; mkdir histories.csv",
+                          "rm histories.csv; ln -s /dev/null histories.csv",
+                          "sed -i 's/^\\([^t]*\\)\\.\\([0-9]\\)/\\1.9\\2/' histories.csv"})
+    ways.push_back(way);
+  CHECK(ways.size() > 40);
+  for (const std::string& way : ways)
+    for (const bool first : {true, false}) {
+      const Outcome o = shell(
+          f,
+          fmt::format(
+              "chmod -R u+rwx other; rm -rf other; cp -r whole other; (cd other && {}) && ! diff -rq whole other > /dev/null || exit 77; $talus compare {} --rtol 1 --atol 1e30",
+              way, first ? "other whole" : "whole other"));
+      INFO(way, first ? " in the first" : " in the second", ": ", o.text);
+      CHECK(o.code == 9);
+    }
 }
 
 }  // namespace test_compare_command

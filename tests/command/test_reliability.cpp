@@ -270,6 +270,29 @@ TEST_CASE("reliability: a folder that is moved away from under a run") {
   CHECK(status_of(f / "b") == "interrupted");
 }
 
+TEST_CASE("reliability: files that vanish or shrink under a run are its failure") {
+  const Folder f;
+  write_long_model(f);
+  const auto told = [&](const std::string& damage, const std::string& part) {
+    // held while it is damaged; ended by a signal: what it wrote is looked at then, too
+    const Outcome o = shell(
+        f,
+        "rm -rf r; $talus run long.toml -o r -q 2>told.txt & p=$!; while [ ! -e r/saved/stage_01.h5 ] || [ ! -s r/steps.csv ]; "
+        "do sleep 0.05; done; kill -STOP $p; (cd r && " +
+            damage + "); kill -CONT $p; kill -TERM $p; wait $p");
+    const std::string text = content(f / "told.txt");
+    INFO(damage, ": ", o.code, " ", text);
+    CHECK(o.code == 4);
+    has(text, part);
+    CHECK(status_of(f / "r") == "failed");
+  };
+  told("rm histories.csv", "histories.csv: has been removed");
+  told("cp steps.csv x && mv x steps.csv", "steps.csv: has been replaced");
+  told("truncate -s 0 blocks_start.svg", "blocks_start.svg: has 0 bytes");
+  told("rm blocks.csv", "blocks.csv: has been removed");
+  told("rm fields/blocks_000000.vtu", "blocks_000000.vtu: has been removed");
+}
+
 TEST_CASE("reliability: the audit refuses results that somebody has forged") {
   const Folder f;
   write_file(f / "m.toml", kShakenBricks);

@@ -125,9 +125,11 @@ std::string readable_seconds(double seconds) {
 }
 
 std::string text_hash(std::string_view text) {
-  uint64_t h = 14695981039346656037ull;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return fmt::format("{:016x}", h);
+  TextHash hash;
+  hash.add(text);
+  return hash.text();
 }
+
+std::string TextHash::text() const { return fmt::format("{:016x}", h_); }
 
 }  // namespace talus

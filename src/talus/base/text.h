@@ -1,6 +1,7 @@
 #pragma once
 // Small text helpers used by messages: closest name, lists, readable sizes and times.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,5 +35,17 @@ std::string readable_seconds(double seconds);
 
 /// FNV-1a 64-bit hash as 16 hexadecimal digits; identifies a model text, protects nothing.
 std::string text_hash(std::string_view text);
+
+/// The same of a text that comes in parts.
+class TextHash {
+ public:
+  void add(std::string_view part) {
+    for (const char c : part) h_ = (h_ ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  }
+  std::string text() const;
+
+ private:
+  uint64_t h_ = 14695981039346656037ull;
+};
 
 }  // namespace talus

@@ -9,6 +9,7 @@
 
 #include "talus/base/descriptor.h"
 #include "talus/base/error.h"
+#include "talus/base/text.h"
 
 namespace talus {
 
@@ -27,7 +28,11 @@ bool is_there(const std::filesystem::path& path) {
   return there;
 }
 
-std::string read_text_file(const std::filesystem::path& path, size_t most) {
+namespace {
+
+// Up to its end, wherever that is: some grow meanwhile, and those of /proc say that they have no size.
+template <class Take>
+void read_parts(const std::filesystem::path& path, const Take& take) {
   // a pipe would be waited for
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (file < 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
@@ -35,18 +40,34 @@ std::string read_text_file(const std::filesystem::path& path, size_t most) {
   if (fstat(file, &there) != 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
   if (const std::string kind = special_kind(there.st_mode); !kind.empty())
     refuse(path, fmt::format("is {}, not a file", kind));
-  std::string text;
-  text.reserve(std::min(static_cast<size_t>(there.st_size), most));
-  // up to its end, wherever that is: some grow meanwhile, and those of /proc say that they have no size
   for (std::string part(1 << 16, '\0');;) {
     const ssize_t n = read(file, part.data(), part.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
-    if (n == 0) return text;
-    text.append(part, 0, static_cast<size_t>(n));
+    if (n == 0) return;
+    take(std::string_view(part).substr(0, static_cast<size_t>(n)));
+  }
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path, size_t most) {
+  std::string text;
+  std::error_code ec;
+  if (const auto size = std::filesystem::file_size(path, ec); !ec)
+    text.reserve(std::min(static_cast<size_t>(size), most));
+  read_parts(path, [&](std::string_view part) {
+    text += part;
     if (text.size() > most)
       refuse(path, fmt::format("is longer than {} MiB, the most that is read", most >> 20));
-  }
+  });
+  return text;
+}
+
+std::string file_hash(const std::filesystem::path& path) {
+  TextHash hash;
+  read_parts(path, [&hash](std::string_view part) { hash.add(part); });
+  return hash.text();
 }
 
 }  // namespace talus

@@ -20,4 +20,7 @@ bool is_there(const std::filesystem::path& path);
 /// a pipe or a device (which may have no end), or longer than `most` bytes.
 std::string read_text_file(const std::filesystem::path& path, size_t most = kMostText);
 
+/// text_hash() of a whole regular file, of any size. Throws FileError as read_text_file().
+std::string file_hash(const std::filesystem::path& path);
+
 }  // namespace talus

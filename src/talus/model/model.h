@@ -340,6 +340,11 @@ struct PenaltyInput {
   double largest_displacement = 0.02;  // of a step, share of half the height of the model
 };
 
+/// A file that a model reads.
+struct InputFile {
+  std::string path, digest;  // text_hash() of its content
+};
+
 struct Model {
   // made and taken apart in one file: here every file of the program would hold that code
   Model();
@@ -350,10 +355,10 @@ struct Model {
   ~Model();
 
   std::string file, title, hash;
-  std::string shapes_hash;         // of the content of mesh files alone, "" without any
-  std::string folder;              // that relative paths of the file count from
-  std::vector<std::string> files;  // that it reads: paths of histories, meshes, blocks
-  std::string text;                // the file as read, byte for byte, with the overrides as closing comments
+  std::string shapes_hash;       // of the content of mesh files alone, "" without any
+  std::string folder;            // that relative paths of the file count from
+  std::vector<InputFile> files;  // that it reads: histories, meshes, blocks
+  std::string text;              // the file as read, byte for byte, with the overrides as closing comments
   // every block and grid has its polygon: the layout can be checked in spite of errors
   bool shapes_readable = true;
   double thickness = 1;

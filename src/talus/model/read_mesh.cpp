@@ -48,10 +48,10 @@ class MeshReader : private SectionReader {
 
   bool read_file(const Fields& f, Mesh& mesh) {
     const auto path = std::filesystem::path(model_.folder) / f.get<std::string>("file");
-    model_.files.push_back(path.string());
     try {
       const std::string text = read_text_file(path);
       files_ += text;
+      model_.files.push_back({path.string(), text_hash(text)});
       mesh = read_msh(path.string(), text);
       return true;
     } catch (const FileError& e) {

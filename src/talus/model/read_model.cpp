@@ -49,8 +49,12 @@ class ModelReader : private SectionReader {
     files_ += shapes;
     if (!files_.empty()) model_.hash = text_hash(model_.text + files_);
     read_cut_sections(source_, block_names_, model_, findings_);
-    if (!model_.cut.blocks_file.empty())
-      model_.files.push_back((std::filesystem::path(model_.folder) / model_.cut.blocks_file).string());
+    if (!model_.cut.blocks_file.empty()) {  // what is wrong with it is told where it is read
+      const auto path = std::filesystem::path(model_.folder) / model_.cut.blocks_file;
+      std::error_code ec;
+      if (std::filesystem::is_regular_file(path, ec))
+        model_.files.push_back({path.string(), file_hash(path)});
+    }
     read_contact();
     read_stage_sections(source_, model_, findings_);
     read_action_sections(source_, model_, findings_);
@@ -242,8 +246,12 @@ class ModelReader : private SectionReader {
       } else if (formula) {
         sample_expression(f, h);
       } else if (file) {
-        model_.files.push_back((std::filesystem::path(model_.folder) / f.get<std::string>("file")).string());
-        files_ += read_history_file(f, model_.folder, h, findings_);
+        const std::string text = read_history_file(f, model_.folder, h, findings_);
+        if (!text.empty())
+          model_.files.push_back(
+              {(std::filesystem::path(model_.folder) / f.get<std::string>("file")).string(),
+               text_hash(text)});
+        files_ += text;
       } else {
         h.time = f.get<std::vector<double>>("time");
         h.value = f.get<std::vector<double>>("value");

@@ -1,5 +1,6 @@
 #include "talus/model/read_penalty.h"
 
+#include "talus/model/joint_law.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {

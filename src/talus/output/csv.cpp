@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -62,6 +63,12 @@ void CsvWriter::flush() {
   }
   size_ += static_cast<int64_t>(done);
   waiting_.clear();
+}
+
+void CsvWriter::check() const {
+  struct stat ours {};
+  if (fstat(file_, &ours) != 0) fail_file(path_, "looked at", errno);
+  check_written(path_, size_, &ours);
 }
 
 const std::vector<double>& CsvTable::column(const std::string& name) const {

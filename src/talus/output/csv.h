@@ -29,6 +29,9 @@ class CsvWriter {
   void append(const std::vector<double>& row);
   /// Hands the waiting rows to the system. Throws FileError; the file then ends with a whole row.
   void flush();
+  /// Throws FileError when what was handed over is not all there, under its name: somebody has removed, replaced or
+  /// shortened the file.
+  void check() const;
   /// Bytes written so far, the waiting ones included.
   int64_t size() const { return size_ + static_cast<int64_t>(waiting_.size()); }
 

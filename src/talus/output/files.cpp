@@ -89,6 +89,18 @@ void check_continued(const fs::path& path, int64_t size) {
                     path.string(), size));
 }
 
+void check_written(const fs::path& path, int64_t size, const struct stat* ours) {
+  struct stat there {};
+  const auto lost = [&path](const std::string& what) {
+    throw FileError(fmt::format("{}: {} while results were written beside it", path.string(), what));
+  };
+  if (lstat(path.c_str(), &there) != 0) lost("has been removed");
+  if (ours && (there.st_ino != ours->st_ino || there.st_dev != ours->st_dev))
+    lost("has been replaced by another file");
+  if (there.st_size != size)
+    lost(fmt::format("has {} bytes, {} were written: it was changed", there.st_size, size));
+}
+
 void write_file(const fs::path& path, std::string_view content, Reach reach) {
   struct stat there {};
   const bool older = lstat(path.c_str(), &there) == 0;

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+struct stat;
+
 namespace talus {
 
 /// How far a file has to come before its writing counts as done: to the system, which outlives the process,
@@ -42,5 +44,9 @@ std::string unfit_target(const std::filesystem::path& path);
 /// Throws FileError unless writing can go on behind the first `size` bytes of what is at the path: a regular
 /// file, under this name alone, at least that long, its line that ends there whole.
 void check_continued(const std::filesystem::path& path, int64_t size);
+
+/// Throws FileError unless a file of this size lies at the path, `ours` where that is given: what was written while a run
+/// went on may have been removed, replaced or cut short by somebody else.
+void check_written(const std::filesystem::path& path, int64_t size, const struct stat* ours = nullptr);
 
 }  // namespace talus

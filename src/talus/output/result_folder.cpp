@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <map>
 #include <optional>
 #include <set>
 #include <vector>
@@ -332,7 +333,8 @@ std::optional<ResultKind> check_replaced(const fs::path& folder, bool force, Res
 struct ResultFolder::Parts {
   std::optional<FolderLock> lock;
   Descriptor manifest;
-  std::set<std::string> noted;  // but for frames, which are many and each noted once
+  std::set<std::string> noted;           // but for frames, which are many and each noted once
+  std::map<std::string, int64_t> sizes;  // of whole files that were written
 };
 
 void check_result_folder(const fs::path& folder, bool force, ResultKind kind) {
@@ -422,6 +424,16 @@ fs::path ResultFolder::note_picture(const std::string& name) {
 
 void ResultFolder::write(const std::string& name, std::string_view content, Reach reach) {
   write_file(note(name), content, reach);
+  parts_->sizes[name] = static_cast<int64_t>(content.size());
+}
+
+void ResultFolder::check_files() const {
+  for (const auto& [name, size] : parts_->sizes) check_written(path_ / name, size);
+}
+
+std::optional<ResultFolder::Mark> ResultFolder::mark_of(const std::string& name) const {
+  if (!parts_->noted.count(name) || !is_there(path_ / name)) return std::nullopt;
+  return Mark{static_cast<int64_t>(fs::file_size(path_ / name)), file_hash(path_ / name)};
 }
 
 void ResultFolder::make_folder(const std::string& name) {

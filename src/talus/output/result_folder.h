@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -49,6 +50,15 @@ class ResultFolder {
 
   /// Notes and writes a whole file.
   void write(const std::string& name, std::string_view content, Reach reach = Reach::kSystem);
+
+  /// Throws FileError unless all whole files that this object has written are there, as long as they were written.
+  void check_files() const;
+  /// Size and digest of a table that was noted; none where there is none.
+  struct Mark {
+    int64_t bytes = 0;
+    std::string digest;  // text_hash()
+  };
+  std::optional<Mark> mark_of(const std::string& name) const;
 
   /// Makes a folder in it. Throws FileError.
   void make_folder(const std::string& name);

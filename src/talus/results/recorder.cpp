@@ -13,6 +13,7 @@
 #include "talus/base/version.h"
 #include "talus/model/with_folder.h"
 #include "talus/output/paraview_view.h"
+#include "talus/output/summary_seal.h"
 #include "talus/results/model_report.h"
 #include "talus/results/problem_file.h"
 #include "talus/results/slip_report.h"
@@ -457,6 +458,16 @@ std::optional<audit::Report> Recorder::audit() const {
   return auditor_ ? std::optional(auditor_->report()) : std::nullopt;
 }
 
+// The summary with size and digest of each table, and its own: what is changed afterwards is known as such (talus compare).
+std::string Recorder::marked(const std::string& summary) const {
+  auto j = nlohmann::ordered_json::parse(summary);
+  auto& tables = j["tables"] = nlohmann::ordered_json::object();
+  for (const char* name : kMarkedTables)
+    if (const auto mark = folder_.mark_of(name))
+      tables[name] = {{"bytes", mark->bytes}, {"digest", mark->digest}};
+  return sealed_summary(std::move(j));
+}
+
 void Recorder::finish(const RunResult& result) {
   const std::lock_guard lock(taking_);
   if (ended_) return;
@@ -466,7 +477,8 @@ void Recorder::finish(const RunResult& result) {
   folder_.write("monitors.csv", histories_.answers().csv(), Reach::kDisk);
   if (const Histories::Spectra spectra = histories_.spectra(); !spectra.columns.empty())
     folder_.write("spectra.csv", spectra.csv(), Reach::kDisk);
-  folder_.write("summary.json", summary_of(result), Reach::kDisk);
+  history_file_.check(), steps_file_.check(), folder_.check_files();
+  folder_.write("summary.json", marked(summary_of(result)), Reach::kDisk);
   ended_ = true;
 }
 

@@ -89,6 +89,9 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   j["model_file"] = std::filesystem::path(scene.model.file).filename().string();
   j["model_hash"] = scene.model.hash;
   j["overrides"] = notes.overrides;
+  for (const InputFile& file : scene.model.files)
+    j["reads"].push_back(
+        {{"file", std::filesystem::path(file.path).filename().string()}, {"digest", file.digest}});
   if (notes.branch) {
     const BranchOrigin& o = *notes.branch;
     j["branch"] = {{"state", o.state},   {"digest", o.digest},       {"model_hash", o.model_hash},

@@ -2,7 +2,7 @@
 // A run that goes on from the saved state of another one, in a folder of its own, with a model that may differ in what
 // only begins later.
 
-#include "talus/run/model_keys.h"
+#include "talus/model/model_keys.h"
 #include "talus/run/saved_state.h"
 
 namespace talus {

@@ -9,7 +9,7 @@
 #include "talus/base/version.h"
 #include "talus/blocks/state_fields.h"
 #include "talus/blocks/validate.h"
-#include "talus/run/model_keys.h"
+#include "talus/model/model_keys.h"
 #include "talus/run/validate_loaded.h"
 
 namespace talus {

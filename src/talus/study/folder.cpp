@@ -134,7 +134,7 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
   }
   for (const std::string& file : files) {
     const std::string path = absolute_text(file);
-    if (!now.files.count(path)) now.files[path] = text_hash(read_text_file(path));
+    if (!now.files.count(path)) now.files[path] = file_hash(path);
   }
   std::map<std::vector<std::string>, size_t> number;
   for (const Task& task : known) number.emplace(task.overrides, number.size());
@@ -199,7 +199,7 @@ void StudyFolder::check_files(const Description& d, const std::string& program) 
                       there.st_mtim.tv_nsec};
     if (const auto at = looked_at_.find(file); at != looked_at_.end() && at->second == stamp) continue;
     looked_at_[file] = stamp, ++writings_;
-    if (text_hash(read_text_file(file)) != digest)
+    if (file_hash(file) != digest)
       refuse(fmt::format("{} is not what it was for the runs that this folder was begun with", file));
   }
 }

@@ -8,8 +8,8 @@
 
 #include "support/relative.h"
 #include "support/told.h"
+#include "talus/model/model_keys.h"
 #include "talus/model/read_model.h"
-#include "talus/run/model_keys.h"
 
 namespace test_variables {
 

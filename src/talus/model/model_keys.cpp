@@ -1,4 +1,4 @@
-#include "talus/run/model_keys.h"
+#include "talus/model/model_keys.h"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,7 @@ long_table="
 sliding_blocks | a block slides over blocks whose joints slant, on level ground, a slope and a wall, as a point mass does | tests/families/sliding_blocks.py build/release/app/talus
 tunnels | random tunnels in elastic joints end in equilibrium, or name what is loose | tests/families/tunnels.py build/release/app/talus
 hard_steps | the first step of each of 100 random models that sweeps alone do not solve is solved by the chain of solvers | tests/families/hard_steps.py build/release/app/talus
+schema_walk | every key of the model file with nineteen values that nobody means: a plain word, no signal, nothing that is not finite | tests/families/schema_walk.py build/release/app/talus
 sliding | joints slide at their strength, whatever the mesh | build/release/studies/sliding_joints
 includes | every file compiled by itself, all warnings | cmake -S . -B build/long/includes -G Ninja -DCMAKE_BUILD_TYPE=Release -DTALUS_STUDIES=OFF -DTALUS_REPORT=OFF && cmake --build build/long/includes
 sanitized | under the sanitizers what the daily tests leave out there: verification, Python, suites "optimised" | tests/sanitized.sh

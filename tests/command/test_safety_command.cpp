@@ -14,6 +14,7 @@
 
 #include "support/command.h"
 #include "talus/base/text_file.h"
+#include "talus/output/files.h"
 
 namespace test_safety_command {
 

@@ -41,6 +41,15 @@ class Cutter {
           "coordinates have no digits left for it: give a wider grid, or move the model to the origin");
       return {};
     }
+    // corners that are two cells apart stay apart
+    if (!(extent / out.grid >= 2)) {
+      findings_.error(
+          model_.cut.where_grid, "cut.grid",
+          fmt::format("{:.3g} m is coarser than a model of {:.3g} m: all of it would be one point",
+                      model_.cut.grid, extent),
+          "leave it out, or give a thousandth of the smallest block");
+      return {};
+    }
     if (extent / out.grid < 1e4)
       findings_.warning(model_.cut.where_grid, "cut.grid",
                         fmt::format("{:.3g} m is coarse for a model of {:.3g} m", out.grid, extent),

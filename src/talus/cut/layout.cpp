@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "talus/base/error.h"
@@ -258,6 +259,32 @@ void unknown_block(const Layout& layout, const std::string& name, const Where& w
                  near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
 }
 
+namespace {
+
+// Whether the corners of each block have digits for its shape where they lie: the limit of the contact error, 1e-6 of a block
+// (solver.limit), has to be more than what coordinates are rounded to.
+bool check_digits(const Layout& layout, Findings& findings) {
+  constexpr double kRoundedTo = 0x1p-52, kLeastDigits = 1e-6;
+  std::set<int> told;
+  for (const BlockShape& b : layout.blocks) {
+    const Box box = bounding_box(b.polygon);
+    const double size = std::max(box.max.x - box.min.x, box.max.y - box.min.y),
+                 farthest = std::max(
+                     {std::abs(box.min.x), std::abs(box.min.y), std::abs(box.max.x), std::abs(box.max.y)});
+    if (farthest * kRoundedTo <= kLeastDigits * size || !told.insert(b.group).second) continue;
+    const auto group = static_cast<size_t>(b.group);
+    findings.error(
+        layout.group_where[group], layout.groups[group],
+        fmt::format("block \"{}\" is {:.3g} m across where coordinates reach {:.3g} m: they have no "
+                    "digits left for its shape",
+                    b.name, size, farthest),
+        "move the model to the origin");
+  }
+  return told.empty();
+}
+
+}  // namespace
+
 Layout make_layout(const Model& model, Findings& findings) {
   return make_layout(model, cut_or_read(model, findings), findings);
 }
@@ -328,6 +355,7 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   if (layout.blocks.empty() && sound)
     findings.error({1, 1, ""}, "block", "the model has no block",
                    "add a [[block]], a [[grid]], a [[mesh]] or a [[region]]");
+  sound = sound && check_digits(layout, findings);
   layout.sound = sound;
   if (sound && !layout.blocks.empty()) check_overlaps(layout, findings);
   return layout;

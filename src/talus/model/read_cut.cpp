@@ -309,8 +309,25 @@ class CutReader : private SectionReader {
       t.irregularity = f.get("irregularity", 0.0);
       t.joint = joint(f);
       check_cells(f, "size", t.region, t.size, t.size);
+      check_divides(f, t);
       model_.tessellations.push_back(t);
     });
+  }
+
+  // Cells that are larger than their region divide nothing.
+  void check_divides(const Fields& f, const TessellationInput& t) {
+    if (t.region < 0 || !f.has("size")) return;
+    const Polygon& polygon = model_.regions[static_cast<size_t>(t.region)].polygon;
+    if (polygon.empty()) return;
+    const Box box = bounding_box(polygon);
+    const double across = norm(box.max - box.min);
+    if (t.size <= across) return;
+    incomplete();
+    findings_.error(
+        f.where("size"), f.path_of("size"),
+        fmt::format("{:g} m is more than the region is across ({:.3g} m): nothing would be divided", t.size,
+                    across),
+        "give the side of a cell");
   }
 
   // A region of known size must not be divided into more cells than any machine takes.

@@ -480,6 +480,11 @@ class ModelReader : private SectionReader {
                         "give one of point, centroid, convergence, crack, block, support, contact, bolt");
         return;
       }
+      for (const char* key : {"block", "centroid", "support", "bolt"})
+        if (f.given(key) && f.has(key) && f.get<std::string>(key).empty()) {
+          findings_.error(f.where(key), f.path_of(key), "is empty", "name what is to be recorded");
+          return;
+        }
       if (f.given("window") && !f.given("contact"))
         findings_.error(f.where("window"), f.path_of("window"), "is only for contact monitors");
       m.spectrum = f.get("spectrum", false);

@@ -80,7 +80,7 @@ SectionSpec type_section() {
         .dimension = D::kLength,
         .range = kPositive,
         .default_text = "\"0.25 m\"",
-        .doc = "Grouted: longest piece of bar between two springs of grout."},
+        .doc = "Grouted: longest piece of bar between two springs of grout; at most 10,000 to a bolt."},
        {.name = "plate",
         .type = K::kBool,
         .default_text = "false",

@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/base/vec2.h"
 
@@ -34,6 +38,9 @@ inline std::string base64(const std::vector<unsigned char>& bytes) {
 template <class T>
 std::string data_array(const std::string& type, const std::string& name, int components,
                        const std::vector<T>& values) {
+  if constexpr (std::is_same_v<T, double>)
+    if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }))
+      throw NumericalError(fmt::format("\"{}\" of a frame is not finite", name));
   std::vector<unsigned char> bytes(8 + values.size() * sizeof(T));
   const uint64_t size = values.size() * sizeof(T);
   std::memcpy(bytes.data(), &size, 8);

@@ -130,7 +130,7 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, RunNotes notes)
       model_(model_in_numbers(scene).dump()),
       history_file_(folder_.note("histories.csv"), texts_of(Histories(scene, nullptr).columns())),
       steps_file_(folder_.note("steps.csv"), titles_of(step_columns())),
-      histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
+      histories_(scene, [this](const std::vector<double>& row) { append_history(row); }),
       block_frames_(folder_, "blocks", "vtu"),
       contact_frames_(folder_, "contacts", "vtp"),
       bolt_frames_(folder_, "bolts", "vtp"),
@@ -146,7 +146,7 @@ Recorder::Recorder(const Scene& scene, ResultFolder folder, const Archive& saved
       model_(model_in_numbers(scene).dump()),
       history_file_(folder_.note("histories.csv"), size_in(saved, kHistorySize)),
       steps_file_(folder_.note("steps.csv"), size_in(saved, kStepsSize)),
-      histories_(scene, [this](const std::vector<double>& row) { history_file_.append(row); }),
+      histories_(scene, [this](const std::vector<double>& row) { append_history(row); }),
       block_frames_(folder_, "blocks", "vtu"),
       contact_frames_(folder_, "contacts", "vtp"),
       bolt_frames_(folder_, "bolts", "vtp"),
@@ -370,6 +370,14 @@ void Recorder::fails(const Instant& i) {
   // a step that failed before, and did not end the run, is not the one to look at
   if (left_.step != dump_name(i.state.step)) left_.step = write_dump(i);
   left_.frame = i.state.time;
+  try {
+    write_failed(i);
+  } catch (const NumericalError&) {  // what cannot be written is the failure, of which the run tells
+    left_.frame.reset();
+  }
+}
+
+void Recorder::write_failed(const Instant& i) {
   const bool there = !block_frames_.times().empty() && block_frames_.times().back() >= i.state.time;
   const FrameTexts texts = there ? frame_texts(scene_, i) : write_frame(i);
   write_joints(i, i.stage);
@@ -394,11 +402,41 @@ std::string Recorder::write_dump(const Instant& i) {
   return name;
 }
 
+namespace {
+
+// A table holds numbers, or the run ends with the first that is none.
+void check_finite(const std::vector<double>& row, const std::vector<std::string>& titles, const char* file,
+                  double time) {
+  for (size_t c = 0; c < row.size(); ++c)
+    if (!std::isfinite(row[c]))
+      throw NumericalError(fmt::format(
+          "t = {:.9g} s: {} would be {} in {}: the model has a number beyond what can be computed with", time,
+          titles[c], row[c], file));
+}
+
+// The first number of a summary that is none, by its keys; "".
+std::string not_finite_in(const nlohmann::ordered_json& j, const std::string& path) {
+  if (j.is_null()) return path;
+  if (j.is_structured())
+    for (const auto& [key, value] : j.items())
+      if (std::string found = not_finite_in(value, path.empty() ? key : path + "." + key); !found.empty())
+        return found;
+  return "";
+}
+
+}  // namespace
+
+void Recorder::append_history(const std::vector<double>& row) {
+  check_finite(row, texts_of(histories_.columns()), "histories.csv", row[0]);
+  history_file_.append(row);
+}
+
 void Recorder::record_step(const Instant& i) {
   std::vector<double> row = values_of(step_columns(), i);
   if (!due_.worst.empty()) take_in(step_columns(), due_.worst, row);
   if (is_due(i.state.time, i.advance, scene_.model.output.steps_interval, due_.steps) || i.last ||
       i.report.failed) {
+    if (!i.report.failed) check_finite(row, titles_of(step_columns()), "steps.csv", i.state.time);
     steps_file_.append(row);
     due_.worst.clear();
   } else {
@@ -461,6 +499,12 @@ std::optional<audit::Report> Recorder::audit() const {
 // The summary with size and digest of each table, and its own: what is changed afterwards is known as such (talus compare).
 std::string Recorder::marked(const std::string& summary) const {
   auto j = nlohmann::ordered_json::parse(summary);
+  if (j["status"] == "finished") {
+    auto numbers = j;
+    numbers.erase("valid"), numbers.erase("audit");  // null: not audited
+    if (const std::string found = not_finite_in(numbers, ""); !found.empty())
+      throw NumericalError(fmt::format("summary.json: {} is not finite", found));
+  }
   auto& tables = j["tables"] = nlohmann::ordered_json::object();
   for (const char* name : kMarkedTables)
     if (const auto mark = folder_.mark_of(name))

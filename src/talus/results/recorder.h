@@ -109,7 +109,9 @@ class Recorder : public Observer {
   void write_last_word(const std::string& why) noexcept;
   void load(const Archive& saved);
   std::string summary_of(const RunResult& result) const;
+  void write_failed(const Instant& i);
   std::string marked(const std::string& summary) const;
+  void append_history(const std::vector<double>& row);
   std::filesystem::path write_saved(const std::string& name, const Archive& archive);
   void write_step(int64_t step, const Archive& archive);
   void write_held();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -25,14 +26,13 @@ nlohmann::ordered_json monitor_numbers(const Scene& scene, const Histories& hist
     for (size_t k = 0; k < answers.titles().size(); ++k) {
       const ColumnTitle& title = answers.titles()[k];
       const Answer& a = s.asked[k];
-      j[title.monitor]["stages"][stage.name][ColumnTitle{"", title.quantity, title.unit}.text()] = {
-          {"at_start", a.at_start},
-          {"at_end", a.at_end},
-          {"least", a.least},
-          {"time_of_least [s]", a.time_of_least},
-          {"greatest", a.greatest},
-          {"time_of_greatest [s]", a.time_of_greatest},
-          {"residual", a.residual(stage.kind == StageKind::kDynamic)}};
+      auto& out = j[title.monitor]["stages"][stage.name][ColumnTitle{"", title.quantity, title.unit}.text()];
+      out = {{"at_start", a.at_start}, {"at_end", a.at_end},
+             {"least", a.least},       {"time_of_least [s]", a.time_of_least},
+             {"greatest", a.greatest}, {"time_of_greatest [s]", a.time_of_greatest}};
+      // of a stage that was entered on its way nobody knows it
+      if (const double left = a.residual(stage.kind == StageKind::kDynamic); !std::isnan(left))
+        out["residual"] = left;
     }
   }
   return j;
@@ -180,12 +180,12 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
                           {"end [s]", s.end},
                           {"steps", s.steps},
                           {"dt [s]", s.plan.dt},
-                          {"dt_bound [s]", s.plan.dt_bound},
-                          {"dt_bound_undamped [s]", s.plan.dt_undamped},
                           {"dt_bound_block", bound_name(scene, s.plan)},
                           {"blocks_clamped", s.plan.clamped},
                           {"largest_clamp", s.plan.largest_clamp},
                           {"unbalanced", s.unbalanced}};
+    if (std::isfinite(s.plan.dt_bound))  // where nothing bounds the step there is no bound
+      stage["dt_bound [s]"] = s.plan.dt_bound, stage["dt_bound_undamped [s]"] = s.plan.dt_undamped;
     if (s.kind == StageKind::kStatic) stage["at_rest"] = s.at_rest;
     if (s.plan.balances > 0) stage["balances"] = s.balances, stage["balances_of_path"] = s.plan.balances;
     if (s.followed()) {

@@ -362,7 +362,21 @@ class Plausible {
           "is the record in cm/s2 (gal)? Then give scale = 0.01");
   }
 
+  // Rows between two steps are on the straight line between these: a thousand of them tell nothing that two do not.
+  void check_rows() {
+    constexpr double kMostRows = 1000;  // of a step
+    const double interval = model_.output.history_interval;
+    double longest = 0;
+    for (const StagePlan& plan : plans_) longest = std::max(longest, plan.dt);
+    if (!(interval > 0) || interval * kMostRows >= longest) return;
+    findings_.error(
+        model_.output.where_history, "output.history_interval",
+        fmt::format("{:.3g} s makes more than {:g} rows of a step of {:.3g} s", interval, kMostRows, longest),
+        "0 writes every step");
+  }
+
   void check_outputs() {
+    check_rows();
     double longest = 0;
     bool all_dynamic = true;
     for (const StageInput& s : model_.stages) {

@@ -349,6 +349,9 @@ Comparison compare_runs(const RunFolder& a, const RunFolder& b) {
     if (run->summary.contains("valid") && run->summary["valid"].is_null())
       out.notes.push_back(fmt::format("{} was not audited", run->name));
   }
+  const std::string of_a = a.summary.value("arithmetic", ""), of_b = b.summary.value("arithmetic", "");
+  if (!of_a.empty() && !of_b.empty() && of_a != of_b)
+    out.notes.emplace_back("they were made by two mathematics libraries: last digits differ");
   compare_files(a, b, out.faults);
   compare_stages(a, b, out.faults);
   compare_models(a, b, out.models);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "talus/base/arithmetic.h"
 #include "talus/base/version.h"
 
 namespace talus {
@@ -85,6 +86,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   const auto count = [&b](BlockKind k) { return std::count(b.kind.begin(), b.kind.end(), k); };
   ordered_json j;
   j["program"] = fmt::format("talus {}", kVersion);
+  j["arithmetic"] = arithmetic_digest();
   j["title"] = scene.model.title;
   j["model_file"] = std::filesystem::path(scene.model.file).filename().string();
   j["model_hash"] = scene.model.hash;

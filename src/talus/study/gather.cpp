@@ -73,6 +73,7 @@ ResultRow row_of(const Study& study, const PlannedRun& run, const StudyFolder& f
   try {
     const auto summary = nlohmann::json::parse(read_text_file(there / "summary.json"));
     numbers = numbers_of(summary);
+    row.arithmetic = summary.value("arithmetic", "");
     if (row.outcome == Outcome::kNotValid) row.findings = findings_of(summary, *record);
     add_units(study, summary, units);
   } catch (const nlohmann::json::exception& e) {
@@ -171,6 +172,13 @@ Gathered gather(const Study& study, const std::vector<PlannedRun>& plan, const S
     ++out.count[static_cast<size_t>(row.outcome)];
     out.rows.push_back(std::move(row));
   }
+  std::set<std::string> arithmetics;
+  for (const ResultRow& row : out.rows)
+    if (!row.arithmetic.empty()) arithmetics.insert(row.arithmetic);
+  if (arithmetics.size() > 1)
+    troubles.insert(fmt::format(
+        "the hosts that made these runs have {} mathematics libraries: the last digits of runs are those of their host",
+        arithmetics.size()));
   out.not_done = out.of(Outcome::kNotDone);
   out.troubles.assign(troubles.begin(), troubles.end());
   size_t over = 0;

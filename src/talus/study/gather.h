@@ -29,6 +29,7 @@ struct ResultRow {
   std::vector<int> damaged;     // of each state: 1, 0, or -1: counts as neither
   std::vector<RunFinding> findings;
   RunRecord record;
+  std::string arithmetic;                  // of the host that made it
   bool begun = false, has_report = false;  // begun: there is a record
 
   bool counts() const { return outcome == Outcome::kFinished || outcome == Outcome::kMechanism; }

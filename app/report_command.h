@@ -12,6 +12,8 @@ struct ReportArguments {
   std::string output;
   int frames = 0;
   double megabytes = 0;
+  double live = -1;  // of talus run --watch: live.html, loaded anew after so many seconds (0: never again)
+  bool force = false;
 };
 
 void add_report_arguments(CLI::App& verb, ReportArguments& args);

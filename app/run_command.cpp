@@ -112,7 +112,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (args.force && !args.from.empty() && !branches)
     throw Error(kExitUsage, "--force replaces results and --from goes on with them: give one of them");
   if (args.from.empty() || branches) check_result_folder(args.folder, args.force);
-  const std::string page = args.watch ? page_text() : "";
+  if (args.watch) (void)page_text();  // told before anything is run
   auto [findings, prepared] = prepare_model(model);
   if (!args.until.empty()) end_after(prepared, known_stages_until(prepared.scene.model, args.until));
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
@@ -156,7 +156,7 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   recorder->dump_step(args.dump_step);
   std::optional<LivePage> live;
   if (args.watch) {
-    live.emplace(*recorder, name, page);
+    live.emplace(*recorder, name);
     say(out, fmt::format("to watch it, open {} in a browser\n", live->file().string()));
   }
   Run run;

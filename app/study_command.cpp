@@ -12,6 +12,7 @@
 
 #include "talus/base/name.h"
 #include "talus/base/parallel.h"
+#include "talus/base/spawn.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
@@ -40,13 +41,6 @@ void stop_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int signal) { asked_to_stop = signal; };  // no SA_RESTART: waiting is to end
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
-}
-
-std::string own_path() {
-  std::error_code ec;
-  const fs::path self = fs::read_symlink("/proc/self/exe", ec);
-  if (ec) throw FileError(fmt::format("/proc/self/exe: cannot be read: {}", ec.message()));
-  return self.string();
 }
 
 study::Study read(const std::string& file, const std::string& text) {
@@ -150,7 +144,7 @@ int run_here(const study::StudyFolder& folder, const study::Study& s, const std:
              int jobs, bool quiet) {
   folder.clean();
   stop_on_signals();
-  study::Runner runner(folder, {own_path(), kProgram, jobs, s.keep_all, s.report});
+  study::Runner runner(folder, {own_program(), kProgram, jobs, s.keep_all, s.report});
   const bool terminal = isatty(fileno(stdout)) != 0;
   const study::Progress end = runner.run(
       numbers, [&](const study::Progress& p) { show_progress(p, terminal, quiet); },
@@ -224,7 +218,7 @@ int submit_to_slurm(const study::StudyFolder& folder, const StudyArguments& args
   output.insert(output.size() - 1, "%A_%a.txt");
   script += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n#SBATCH --output={}\n", used - 1, output);
   script += fmt::format("exec {} study task {} $((SLURM_ARRAY_TASK_ID * {})) --count {}\n",
-                        quoted(own_path()), quoted(root.string()), pack, pack);
+                        quoted(own_program()), quoted(root.string()), pack, pack);
   write_file(root / "slurm.sh", script);
   const std::string said =
       output_of(fmt::format("sbatch --parsable {} {}", args.sbatch, quoted((root / "slurm.sh").string())));
@@ -309,6 +303,25 @@ void add_study_arguments(CLI::App& verb, StudyArguments& args) {
   args.gather->add_flag("-q,--quiet", args.quiet, "say nothing but errors");
   args.gather->footer("Example: talus study gather out/walls");
   verb.footer("Example: talus study examples/many_runs/friction.toml -o out/friction");
+}
+
+bool is_study_folder(const std::string& folder) { return is_there(fs::path(folder) / "study.json"); }
+
+int report_of_study(const std::string& name, const std::function<void(const std::string& run)>& make) {
+  const study::StudyFolder folder(name);
+  folder.check(kProgram);
+  const study::Study s = read(folder);
+  int made = 0;
+  for (int k = 0; k < folder.planned(); ++k) {
+    const fs::path run = folder.run_folder(k);
+    const auto record = folder.record_of(k);
+    if (!record || !is_there(run / "histories.csv") || is_there(run / "report.html")) continue;
+    make(run.string());
+    ++made;
+  }
+  if (made > 0) show("reports of {} runs made\n", made);
+  if (!s.keep_all) show("runs keep their answers alone (keep = \"answers\"): they have no reports\n");
+  return gather(folder, s, false);
 }
 
 int study_command(const StudyArguments& args) {

@@ -2,6 +2,7 @@
 // `talus study`: one model many times, with keys that vary.
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,5 +22,9 @@ void add_study_arguments(CLI::App& verb, StudyArguments& args);
 
 /// Throws InputError, FileError; returns the exit code.
 int study_command(const StudyArguments& args);
+
+bool is_study_folder(const std::string& folder);
+/// Makes the reports of its runs that have none, and its table and page anew, whose rows open them. Returns as study gather.
+int report_of_study(const std::string& folder, const std::function<void(const std::string& run)>& make);
 
 }  // namespace talus::app

@@ -1,11 +1,14 @@
 #include "watch.h"
 
+#include <fmt/format.h>
+#include <sys/wait.h>
+
 #include <algorithm>
+#include <cerrno>
 
 #include "talus/base/clock.h"
+#include "talus/base/spawn.h"
 #include "talus/output/files.h"
-#include "talus/output/result_folder.h"
-#include "talus/report/page.h"
 #include "tell.h"
 
 namespace talus::app {
@@ -19,31 +22,51 @@ constexpr int kStepsBetween = 16;  // the clock is not asked at every step
 
 }  // namespace
 
-LivePage::LivePage(Observer& next, std::filesystem::path folder, std::string page)
-    : next_(next), folder_(std::move(folder)), page_(std::move(page)), next_at_(wall_now() + kEvery) {}
+LivePage::LivePage(Observer& next, std::filesystem::path folder)
+    : next_(next), folder_(std::move(folder)), next_at_(wall_now() + kEvery) {}
 
 void LivePage::at(const Instant& instant) {
   next_.at(instant);
-  if (++steps_ % kStepsBetween != 0 || wall_now() < next_at_) return;
-  write(kEvery);
+  if (++steps_ % kStepsBetween != 0) return;
+  if (writer_ != 0) look(false);
+  if (writer_ == 0 && wall_now() >= next_at_) begin(kEvery);
 }
 
-void LivePage::write(double reload) {
-  const double begin = wall_now();
+void LivePage::finish() {
+  look(true);
+  begin(0);
+  look(true);
+}
+
+void LivePage::begin(double reload) {
+  begun_ = wall_now();
   try {
-    const report::RunFolder run = report::read_run_folder(folder_);
-    report::PageNotes notes;
-    const std::string html =
-        report::report_page(page_, {run}, {.frames = 0, .megabytes = kMegabytes, .reload = reload}, notes);
-    if (!noted_) note_result(folder_, file());
-    noted_ = true;
-    write_file(file(), html);
+    writer_ = spawn({own_program(), "report", folder_.string(), "--megabytes", fmt::format("{}", kMegabytes),
+                     "--live", fmt::format("{}", reload)},
+                    "/dev/null", Life::kOfParent);
   } catch (const std::exception& e) {  // the run goes on without
-    if (!told_) tell("talus: note: live.html is not written: {}\n", e.what());
-    told_ = true;
+    tell_once(e.what());
+    next_at_ = begun_ + kEvery;
   }
-  const double took = wall_now() - begin;
-  next_at_ = begin + took + std::max(kEvery, took * (1 / kShare - 1));
+}
+
+// Whether the page is written by now.
+void LivePage::look(bool wait) {
+  if (writer_ == 0) return;
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = waitpid(writer_, &status, wait ? 0 : WNOHANG)) < 0 && errno == EINTR) continue;
+  if (ended == 0) return;
+  writer_ = 0;
+  if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    tell_once(fmt::format("talus report {} tells why", folder_.string()));
+  const double took = wall_now() - begun_;
+  next_at_ = begun_ + took + std::max(kEvery, took * (1 / kShare - 1));
+}
+
+void LivePage::tell_once(const std::string& why) {
+  if (!told_) tell("talus: note: live.html is not written: {}\n", why);
+  told_ = true;
 }
 
 }  // namespace talus::app

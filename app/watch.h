@@ -1,6 +1,8 @@
 #pragma once
 // `talus run --watch`: the report of a run that goes on, written anew every few seconds.
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 
@@ -8,12 +10,12 @@
 
 namespace talus::app {
 
-/// Hands everything on, and writes live.html of the folder in between: atomically, at most every kEvery seconds and in at
-/// most 5 % of the time of the run. The page reloads itself while the run goes on.
+/// Hands everything on, and has live.html of the folder written in between, by a process of `talus report` beside the run,
+/// whose memory and steps stay its own: at most every kEvery seconds, and in at most a twentieth of the time. The page
+/// reloads itself while the run goes on.
 class LivePage : public Observer {
  public:
-  /// @param page  of the report, without data
-  LivePage(Observer& next, std::filesystem::path folder, std::string page);
+  LivePage(Observer& next, std::filesystem::path folder);
 
   void stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
                          const std::string& why) override {
@@ -38,18 +40,20 @@ class LivePage : public Observer {
   }
 
   /// The page of the run that has ended, which does not reload. Never throws: what went wrong is told once.
-  void finish() { write(0); }
+  void finish();
   std::filesystem::path file() const { return folder_ / "live.html"; }
 
  private:
-  void write(double reload);
+  void begin(double reload);
+  void look(bool wait);
+  void tell_once(const std::string& why);
 
   Observer& next_;
   std::filesystem::path folder_;
-  std::string page_;
-  double next_at_ = 0;  // wall time [s]
+  double next_at_ = 0, begun_ = 0;  // wall time [s]
+  pid_t writer_ = 0;                // 0: none at work
   int steps_ = 0;
-  bool noted_ = false, told_ = false;
+  bool told_ = false;
 };
 
 }  // namespace talus::app

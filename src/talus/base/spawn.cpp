@@ -45,4 +45,11 @@ pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& 
   return process;
 }
 
+std::string own_program() {
+  std::error_code ec;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ec);
+  if (ec) throw FileError("/proc/self/exe: cannot be read: " + ec.message());
+  return self.string();
+}
+
 }  // namespace talus

@@ -17,4 +17,7 @@ enum class Life { kOwn, kOfParent };
 /// @param life  kOfParent: of the thread that calls, which has to stay
 pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& log, Life life = Life::kOwn);
 
+/// Path of the program that this process runs. Throws FileError.
+std::string own_program();
+
 }  // namespace talus

@@ -79,7 +79,7 @@ std::string page_of(const json& found, const fs::path& folder) {
   const std::string file = found.at("model_file").get<std::string>(),
                     given = found.at("title").get<std::string>(), title = given.empty() ? file : given;
   std::string out = fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"generator\" content=\"talus\"><title>{0}</title><meta name=\"viewport\" "
       "content=\"width=device-width\"><style>{1}{2}</style></head><body>\n<h1>{0}</h1>\n<div class=\"answer\">\n",
       in_markup(title), kPageStyle, kStyle);
   const std::string answer = found.at("answer").get<std::string>();

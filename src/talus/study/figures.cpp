@@ -364,7 +364,7 @@ std::string findings_part(const Gathered& found) {
 std::string study_page(const Study& study, const Gathered& found, const std::vector<std::string>& figures) {
   const std::string title = study.title.empty() ? "Study of " + study.model.filename().string() : study.title;
   std::string out = fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><meta name=\"viewport\" "
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"generator\" content=\"talus\"><title>{0}</title><meta name=\"viewport\" "
       "content=\"width=device-width\"><style>{1}{2}</style></head><body>\n<h1>{0}</h1>\n"
       "<p>{3}, of <code>{4}</code>.</p>\n",
       in_markup(title), kPageStyle, kStyle, in_markup(found.counts()),

@@ -21,9 +21,14 @@ from .run import picture_of
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?inf|nan")
 
 
-def _column(cells: List[str]) -> Any:
-    """Numbers, where all cells are numbers or empty (NaN) and one at least is a number; else texts."""
-    if any(cells) and all(not c or _NUMBER.fullmatch(c) for c in cells):
+# Columns of names, which may be of digits.
+_NAMES = {"monitor", "quantity", "unit", "stage", "block_a", "block_b", "joint", "set", "state", "name", "kind", "material", "group", "bolt",
+          "status", "host", "message", "answer", "key", "over", "not_valid_as", "trouble"}
+
+
+def _column(title: str, cells: List[str]) -> Any:
+    """Numbers, where all cells are numbers or empty (NaN) and one at least is a number; else texts, as those of names always are."""
+    if title not in _NAMES and any(cells) and all(not c or _NUMBER.fullmatch(c) for c in cells):
         return numpy.array([float(c) if c else numpy.nan for c in cells])
     return cells
 
@@ -38,7 +43,7 @@ def read_table(path: str) -> Dict[str, Any]:
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]):
             raise FileError(f"{path}:{number}: has {len(row)} cells, not {len(rows[0])}")
-    return {title: _column([row[k] for row in rows[1:]]) for k, title in enumerate(rows[0])} if rows else {}
+    return {title: _column(title, [row[k] for row in rows[1:]]) for k, title in enumerate(rows[0])} if rows else {}
 
 
 class Frame:

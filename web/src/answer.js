@@ -11,9 +11,9 @@ export function verdictsOf(run) {
   if (j.points > 0) {
     const slipped = j.slipped_joints ?? j.slipped;
     if (slipped > 0) {
-      const at = j["residual_slip_largest_at"];
+      const at = j["residual_slip_largest_at"], open = j["residual_slip_largest_while_open [m]"] ?? 0;
       const left = j["residual_slip_largest [m]"] !== undefined
-        ? `residual slip at most ${withUnit(j["residual_slip_largest [m]"], "m")}${at ? ` between ${at.blocks.join(" and ")}${at.set ? ` along "${at.set}"` : ""}` : ""}, ` : "";
+        ? `residual slip at most ${withUnit(j["residual_slip_largest [m]"], "m")}${open > 0.01 * j["residual_slip_largest [m]"] ? ` (${withUnit(open, "m")} of it while the joint was open)` : ""}${at ? ` between ${at.blocks.join(" and ")}${at.set ? ` along "${at.set}"` : ""}` : ""}, ` : "";
       out.push(["joints", `${count(slipped, "joint")} slipped: ${left}accumulated slip at most ${withUnit(j["slip_largest [m]"], "m")}`]);
     } else out.push(["joints", "no joint slipped"]);
     const broken = j["broken_length [m]"], open = j["opening_largest [m]"], more = [];
@@ -23,8 +23,10 @@ export function verdictsOf(run) {
   }
   const bolts = boltsOf(run);
   if (bolts) out.push(["bolts", bolts]);
-  const most = s.moved && s.moved.most;
-  if (most) out.push(["moved most", `${most.block}, ${withUnit(most["displacement [m]"], "m")} (${number(100 * most["share of its size"], 2)} % of its size)`]);
+  const far = s.moved && s.moved.most_in_metres, most = s.moved && s.moved.most_for_its_size;
+  const went = (m) => `${m.block}, ${withUnit(m["displacement [m]"], "m")} (${number(100 * m["share of its size"], 2)} % of its size)`;
+  if (far && most && far.block !== most.block) out.push(["moved most, in metres", went(far)], ["moved most, for its size", went(most)]);
+  else if (most) out.push(["moved most", went(most)]);
   if (s.moved && s.moved.blocks > 0)
     out.push(["moved", `${count(s.moved.blocks, "block")} moved by a tenth of their size or more, ${number(s.moved["area [m2]"], 3)} m² together`]);
   return out;

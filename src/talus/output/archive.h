@@ -13,7 +13,7 @@
 namespace talus {
 
 /// Number of the layout of saved states; another one is refused.
-inline constexpr int kStateFormat = 20;
+inline constexpr int kStateFormat = 21;
 
 /// What a file holds. Numbers keep their bits; whole numbers are kept as doubles, exact up to 2^53.
 struct Archive {

@@ -333,6 +333,7 @@ void JointSummary::look(const Scene& scene, const State& state) {
     if (scene.blocks.removed(b)) continue;
     const double share = norm(state.displacement[k]) / scene.blocks.size[k];
     if (share > moved_share) moved_share = share, moved_most = b;
+    if (const double way = norm(state.displacement[k]); way > moved_way) moved_way = way, moved_far = b;
     if (share < kMoved) continue;
     moved_area += scene.blocks.size[k] * scene.blocks.size[k];
     ++moved_blocks;
@@ -397,6 +398,7 @@ void exchange_summary(auto& x, auto& s, const std::string& name) {
   x(name + ".slip_area", s.slip_area), x(name + ".broken", s.broken);
   x(name + ".moved_area", s.moved_area), x(name + ".moved_blocks", s.moved_blocks);
   x(name + ".moved_most", s.moved_most), x(name + ".moved_share", s.moved_share);
+  x(name + ".moved_far", s.moved_far), x(name + ".moved_way", s.moved_way);
   exchange_sets(x, s.broken_by_set, name + ".broken_set"),
       exchange_sets(x, s.slip_by_set, name + ".slip_set"),
       exchange_sets(x, s.residual_by_set, name + ".residual_set");
@@ -417,7 +419,8 @@ void JointSummary::load(Loader& from, const std::string& name, const Scene& scen
   };
   // the others have no place
   if ((!(largest.slip <= 0) && !known(largest)) || (slipped_joints != 0 && !known(most_residual)) ||
-      moved_most < -1 || moved_most >= scene.blocks.count)
+      moved_most < -1 || moved_most >= scene.blocks.count || moved_far < -1 ||
+      moved_far >= scene.blocks.count)
     throw FileError(
         fmt::format("\"{}\" of the saved state speaks of blocks or joints that there are not", name));
 }

@@ -2,6 +2,7 @@
 // The condition of joints, point by point: for joints.csv, for the contact frames and for the summary of a
 // run. Theory: docs/theory.md section 4.19.
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -24,7 +25,9 @@ struct JointPoint : FramePoint {
   int joint = -1;
   std::string set;  // what the edge was cut along (a joint set, a fault ...); "": a block that was not cut
 
-  double residual_slip() const { return std::abs(slip_signed); }  // what is left of it [m]
+  double residual_slip() const { return std::abs(slip_signed); }
+  /// What of it the two went while they were apart, which accumulated slip does not count: residual slip beyond that [m].
+  double slip_while_open() const { return std::max(0.0, residual_slip() - slip); }  // what is left of it [m]
   bool is(JointState s) const { return state == static_cast<int>(s); }
 };
 
@@ -70,6 +73,8 @@ struct JointSummary {
   int moved_blocks = 0;
   int moved_most = -1;     // block that has gone furthest, as share of its size; -1: none goes
   double moved_share = 0;  // that share
+  int moved_far = -1;      // block that has gone furthest, in metres
+  double moved_way = 0;    // that way [m]
 
   /// What of the instant is no matter of points: broken faces, blocks that have moved.
   void look(const Scene& scene, const State& state);

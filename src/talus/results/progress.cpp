@@ -133,6 +133,31 @@ void Progress::finish() {
   line_open_ = false;
 }
 
+namespace {
+
+// Of residual slip that is more than was slid: the rest came while the joint was open.
+std::string open_text(const JointPoint& p) {
+  constexpr double kWorthAWord = 0.01;
+  return p.slip_while_open() > kWorthAWord * p.residual_slip()
+             ? fmt::format(" ({:.3g} m of it while the joint was open)", p.slip_while_open())
+             : "";
+}
+
+// The block that has gone furthest, in metres and for its size.
+std::string moved_text(const Scene& scene, const JointSummary& joints) {
+  const auto line = [&scene](const std::string& by, int block, double way, double share) {
+    return fmt::format("  moved most      {}, {:.3g} m ({:.2g} % of its size){}\n",
+                       scene.blocks.name[static_cast<size_t>(block)], way, 100 * share, by);
+  };
+  const auto size = [&scene](int block) { return scene.blocks.size[static_cast<size_t>(block)]; };
+  const int most = joints.moved_most, far = joints.moved_far;
+  if (most == far || far < 0) return line("", most, joints.moved_share * size(most), joints.moved_share);
+  return line(", in metres", far, joints.moved_way, joints.moved_way / size(far)) +
+         line(", for its size", most, joints.moved_share * size(most), joints.moved_share);
+}
+
+}  // namespace
+
 std::string closing_text(const Scene& scene, const RunResult& r, const JointSummary& joints,
                          const BoltSummary& bolts, const std::string& folder,
                          const std::optional<audit::Report>& audit) {
@@ -211,16 +236,13 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         "  broken          {} of {} faces held together (bonded, or by cohesion or tensile strength)\n",
         r.broken_faces, scene.bonds.faces.size());
   if (joints.slipped_joints > 0)
-    out += fmt::format("  slipped         {} joint{}, residual slip {:.3g} m at most: {}; all in slips.csv\n",
-                       joints.slipped_joints, joints.slipped_joints == 1 ? "" : "s",
-                       joints.most_residual.residual_slip(), place_text(scene, joints.most_residual));
+    out += fmt::format(
+        "  slipped         {} joint{}, residual slip {:.3g} m at most{}: {}; all in slips.csv\n",
+        joints.slipped_joints, joints.slipped_joints == 1 ? "" : "s", joints.most_residual.residual_slip(),
+        open_text(joints.most_residual), place_text(scene, joints.most_residual));
   if (bolts.bolts > 0) out += fmt::format("  bolts           {}\n", bolts.text());
   constexpr double kWorthALine = 1e-3;  // of its size
-  if (joints.moved_share > kWorthALine)
-    out += fmt::format("  moved most      {}, {:.3g} m ({:.2g} % of its size)\n",
-                       scene.blocks.name[static_cast<size_t>(joints.moved_most)],
-                       joints.moved_share * scene.blocks.size[static_cast<size_t>(joints.moved_most)],
-                       100 * joints.moved_share);
+  if (joints.moved_share > kWorthALine) out += moved_text(scene, joints);
   if (const std::string side = free_field_side(scene, joints); !side.empty())
     out += fmt::format(
         "  WARNING         the largest slip ends at the free-field side \"{}\": the ground beyond, which "

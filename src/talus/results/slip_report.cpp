@@ -51,6 +51,7 @@ const Columns<SlipRow, Cell>& slip_columns() {
       {"y", "m", [](const R& r) { return r.joint.most.point.y; }},
       {"residual_slip", "m", [](const R& r) { return r.joint.most.residual_slip(); }, Over::kLast, 9},
       {"accumulated_slip", "m", [](const R& r) { return r.joint.most.slip; }, Over::kLast, 9},
+      {"slip_while_open", "m", [](const R& r) { return r.joint.most.slip_while_open(); }, Over::kLast, 9},
       {"opening", "m", [](const R& r) { return r.joint.opening; }, Over::kLast, 9},
       {"points", "", [](const R& r) { return int64_t{r.joint.points}; }},
       {"state", "", [](const R& r) { return kJointStates.at(static_cast<size_t>(r.joint.most.state)); }}};

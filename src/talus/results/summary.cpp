@@ -159,16 +159,20 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
                   {"tension_largest [N]", bolts.tension},
                   {"tension_largest_in", bolts.tension_in}};
   j["moved"] = {{"blocks", joints.moved_blocks}, {"area [m2]", joints.moved_area}};
-  if (joints.moved_most >= 0) {
-    const auto k = static_cast<size_t>(joints.moved_most);
-    j["moved"]["most"] = {{"block", b.name[k]},
-                          {"displacement [m]", joints.moved_share * b.size[k]},
-                          {"share of its size", joints.moved_share}};
-  }
+  const auto moved = [&](const char* key, int block, double way) {
+    if (block < 0) return;
+    const auto k = static_cast<size_t>(block);
+    j["moved"][key] = {
+        {"block", b.name[k]}, {"displacement [m]", way}, {"share of its size", way / b.size[k]}};
+  };
+  moved("most_in_metres", joints.moved_far, joints.moved_way);
+  moved("most_for_its_size", joints.moved_most,
+        joints.moved_most < 0 ? 0 : joints.moved_share * b.size[static_cast<size_t>(joints.moved_most)]);
   if (joints.largest.slip > 0) j["joints"]["slip_largest_at"] = where(joints.largest);
   j["joints"]["slipped_joints"] = joints.slipped_joints;
   if (joints.slipped_joints > 0) {
     j["joints"]["residual_slip_largest [m]"] = joints.most_residual.residual_slip();
+    j["joints"]["residual_slip_largest_while_open [m]"] = joints.most_residual.slip_while_open();
     j["joints"]["residual_slip_largest_at"] = where(joints.most_residual);
     if (!joints.most_residual.set.empty())
       j["joints"]["residual_slip_largest_at"]["set"] = joints.most_residual.set;

@@ -275,6 +275,7 @@ th { cursor: pointer; position: sticky; top: 0; background: #f5f5f5; }
 tr.bad td { color: #a33; }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(480px, 1fr)); gap: 1rem; }
 .figures img { width: 100%; }
+td.long { white-space: normal; text-align: left; min-width: 14rem; }
 .scroll { overflow: auto; max-height: 75vh; }
 input { font: inherit; padding: .2rem .5rem; margin: .5rem 0; }
 )";
@@ -332,7 +333,7 @@ std::string fragility_part(const Study& study, const Gathered& found) {
       out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\">{}</td>",
                          in_markup(study.states[s].name), c.not_valid > 0 ? name_of(as) : "");
       out += f.found() ? fmt::format("<td>{:.4g}</td><td>{:.3f}</td>", f.median, f.beta)
-                       : fmt::format("<td colspan=\"2\" class=\"text\">{}</td>", in_markup(f.trouble));
+                       : fmt::format("<td colspan=\"2\" class=\"long\">{}</td>", in_markup(f.trouble));
       out += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", runs, damaged, c.not_valid,
                          c.not_finite);
     }
@@ -352,7 +353,7 @@ std::string findings_part(const Gathered& found) {
     std::replace(name.begin(), name.end(), '_', ' ');
     for (const auto& [row, f] : list)
       out += fmt::format(
-          "<tr class=\"bad\"><td class=\"text\">{}</td><td><a href=\"runs/{:06}/\">{}</a></td><td class=\"text\">{}</td><td>{:.4g}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
+          "<tr class=\"bad\"><td class=\"text\">{}</td><td><a href=\"runs/{:06}/\">{}</a></td><td class=\"text\">{}</td><td>{:.4g}</td><td>{}</td><td class=\"long\">{}</td></tr>\n",
           in_markup(name), row->number, row->number, in_markup(f->where), f->time, f->count,
           in_markup(f->text));
   }

@@ -139,13 +139,13 @@ bool StateCurves::has_single() const { return not_valid <= kMostNotValid * (runs
 
 std::string StateCurves::headline(NotValidAs asked) const {
   if (not_valid == 0) return fit_text(of(NotValidAs::kLeftOut));
-  const auto median = [this](NotValidAs as) {
+  const auto median = [this](NotValidAs as, const char* how) {
     const Fragility& f = of(as);
-    return f.found() ? fmt::format("{:.4g}", f.median) : fmt::format("no curve ({})", f.trouble);
+    return f.found() ? fmt::format("median {:.4g} {}", f.median, how)
+                     : fmt::format("no curve {} ({})", how, f.trouble);
   };
-  const std::string between =
-      fmt::format("median between {} (what is not valid as damaged) and {} (as sound)",
-                  median(NotValidAs::kDamaged), median(NotValidAs::kSound));
+  const std::string between = median(NotValidAs::kDamaged, "with what is not valid as damaged") + ", " +
+                              median(NotValidAs::kSound, "as sound");
   return has_single() ? fmt::format("{}; {}: {}", between, name_of(asked), fit_text(of(asked)))
                       : fmt::format("{}; {} of {} runs are not valid: no single curve", between, not_valid,
                                     runs + not_valid);

@@ -507,7 +507,8 @@ TEST_CASE(
   CHECK(open.of(NotValidAs::kSound).median == sound.of(NotValidAs::kLeftOut).median);
   CHECK(open.of(NotValidAs::kDamaged).median < open.of(NotValidAs::kLeftOut).median);
   CHECK(open.of(NotValidAs::kLeftOut).median < open.of(NotValidAs::kSound).median);
-  CHECK(open.headline(NotValidAs::kLeftOut).find("median between ") == 0);
+  CHECK(open.headline(NotValidAs::kLeftOut).find("with what is not valid as damaged, median ") !=
+        std::string::npos);
 }
 
 TEST_CASE("docs/many_runs.md holds the tables of the program") {

@@ -64,6 +64,39 @@ TEST_CASE("command report: one page with all data, the same bytes twice, from an
   has(shell(f, fmt::format("$talus report {}", a)).text, "0 of 0 frames");
 }
 
+TEST_CASE("command report: what is no report is replaced with --force alone") {
+  if (!page_was_built()) return;
+  const Folder f;
+  const std::string run = (f / "run").string();
+  REQUIRE(shell(f, fmt::format("$talus run {} -o {} -q", kBar, run)).code == 0);
+  write_file(f / "thesis.html", "<html>years of work</html>");
+  const Outcome o = shell(f, "$talus report run -o thesis.html");
+  CHECK(o.code == 4);
+  has(o.text, "is no report of talus; --force replaces it");
+  has(read_text_file(f / "thesis.html"), "years of work");
+  CHECK(shell(f, "$talus report run -o thesis.html --force").code == 0);
+  CHECK(shell(f, "$talus report run -o thesis.html").code == 0);  // it is one by now
+}
+
+TEST_CASE("command report: of a study, whose table opens its runs") {
+  if (!page_was_built()) return;
+  const Folder f;
+  write_file(f / "model.toml",
+             read_text_file(std::string(TALUS_SOURCE_DIR) + "/tests/fixtures/sliding_stone.toml"));
+  write_file(
+      f / "study.toml",
+      "talus_study = 1\nmodel = \"model.toml\"\n[[vary]]\nkey = \"variables.push\"\nvalues = [2, 8]\n");
+  REQUIRE(shell(f, "$talus study study.toml -q -o out").code == 0);
+  has(read_text_file(f / "out/study.html"), "<a href=\"runs/000001/\">1</a>");
+  const Outcome o = shell(f, "$talus report out");
+  CHECK(o.code == 0);
+  has(o.text, "reports of 2 runs made");
+  has(read_text_file(f / "out/study.html"), "<a href=\"runs/000001/report.html\">1</a>");
+  CHECK(fs::exists(f / "out/runs/000001/report.html"));
+  has(shell(f, "$talus report out out").text, "whose page stands alone");
+  CHECK(shell(f, "$talus report out -o x.html").code == 2);
+}
+
 TEST_CASE("command report: wrong folders are told") {
   const Folder f;
   const Outcome none = shell(f, "$talus report /nowhere");

@@ -129,6 +129,17 @@ class Cuts(unittest.TestCase):
         self.assertIn("there is nothing to cut", " ".join(f.message for f in caught.exception.findings if f.severity == "error"))
 
 
+class Tables(unittest.TestCase):
+    def test_names_of_digits_are_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "monitors.csv")
+            path.write_text("monitor,quantity,stage,at_end\n1,x,007,1\n2,x,007,2\n")
+            table = talus.results.read_table(str(path))
+            self.assertEqual(table["monitor"], ["1", "2"])
+            self.assertEqual(table["stage"], ["007", "007"])
+            self.assertEqual(list(table["at_end"]), [1, 2])
+
+
 class Studies(unittest.TestCase):
     def test_a_study(self):
         with tempfile.TemporaryDirectory() as folder:

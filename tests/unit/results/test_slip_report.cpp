@@ -212,6 +212,56 @@ time_step = 1e-3
     CHECK(p.slip < 0.5 * gone);  // on the joint
   }
   CHECK(closed > 0);
+  // the summary says how much that is, and which block went furthest in metres and for its size
+  JointPoint p;
+  p.slip = 0.02, p.slip_signed = -0.1;
+  CHECK(p.slip_while_open() == test::approx(0.08).epsilon(1e-12));
+  p.slip = 0.2;
+  CHECK(p.slip_while_open() == 0);
+}
+
+TEST_CASE("slips: the block that moved most in metres is told beside the one that did for its size") {
+  const std::string model = R"(talus = 1
+[model]
+gravity = [0, 0]
+[material.rock]
+density = 2500
+[joint.face]
+friction_angle = "45 deg"
+[contact]
+joint = "face"
+[[block]]
+name = "large"
+polygon = [[0, 0], [10, 0], [10, 10], [0, 10]]
+material = "rock"
+kind = "rigid"
+velocity = [0, 1]
+[[block]]
+name = "crumb"
+polygon = [[20, 0], [20.1, 0], [20.1, 0.1], [20, 0.1]]
+material = "rock"
+kind = "rigid"
+velocity = [0, 0.5]
+[[stage]]
+name = "go"
+kind = "dynamic"
+duration = 0.4
+time_step = 1e-2
+)";
+  Findings findings("two.toml", model);
+  PreparedRun run = prepare_run("two.toml", model, {}, findings);
+  State state = start_state(run.scene);
+  struct Nothing : Observer {
+    void at(const Instant&) override {}
+  } none;
+  const RunResult r = run_stages(run.scene, run.plans, state, none);
+  JointSummary joints;
+  joints.look(run.scene, state);
+  const std::string closing = closing_text(run.scene, r, joints, {}, "out");
+  INFO(closing);
+  CHECK(closing.find("moved most      large, 0.4 m (4 % of its size), in metres") != std::string::npos);
+  CHECK(closing.find("moved most      crumb, 0.2 m (2e+02 % of its size), for its size") !=
+        std::string::npos);
 }
 
 TEST_CASE("slips: a corner that comes down where it never lay has no way through the air in its slip") {

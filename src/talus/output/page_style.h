@@ -9,6 +9,7 @@ h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2rem .6rem; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
 td.text, th.text { text-align: left; }
+.scroll { overflow: auto; }
 )";
 
 }  // namespace talus

@@ -46,17 +46,17 @@ std::string names_of(const json& list) {
 
 std::string acts_table(const json& acts) {
   std::string out = fmt::format(
-      "<h2>What acts</h2>\n<table><tr><th class=\"text\">in the end of stage</th><td class=\"text\">{}</td></tr>\n",
+      "<h2>What acts</h2>\n<div class=\"scroll\"><table><tr><th class=\"text\">in the end of stage</th><td class=\"text\">{}</td></tr>\n",
       in_markup(acts.at("stage").get<std::string>()));
   for (const char* kind : {"supports", "boundaries", "loads", "bolts"})
     out += fmt::format("<tr><th class=\"text\">{}</th><td class=\"text\">{}</td></tr>\n", kind,
                        names_of(acts.at(kind)));
-  return out + "</table>\n";
+  return out + "</table></div>\n";
 }
 
 std::string trials_table(const std::string& by, const json& trials) {
   std::string out = fmt::format(
-      "<h2>Trials</h2>\n<table><tr><th>{}</th><th>from</th><th class=\"text\"></th><th class=\"text\">ended "
+      "<h2>Trials</h2>\n<div class=\"scroll\"><table><tr><th>{}</th><th>from</th><th class=\"text\"></th><th class=\"text\">ended "
       "by</th><th>steps</th><th>unbalanced</th><th>moved [m]</th><th class=\"text\">block</th></tr>\n",
       by == "tilt"           ? "tilt [deg]"
       : by == "acceleration" ? "share of gravity"
@@ -72,7 +72,7 @@ std::string trials_table(const std::string& by, const json& trials) {
         number(t.at("steps"), "{:.0f}"), number(t.at("unbalanced"), "{:.2e}"),
         number(t.at("displacement [m]"), "{:.3e}"), in_markup(t.at("block").get<std::string>()));
   }
-  return out + "</table>\n";
+  return out + "</table></div>\n";
 }
 
 std::string page_of(const json& found, const fs::path& folder) {

@@ -7,6 +7,7 @@
 #include "talus/base/clock.h"
 #include "talus/base/text.h"
 #include "talus/results/slip_report.h"
+#include "talus/results/summary.h"
 
 namespace talus {
 
@@ -185,21 +186,13 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
         r.closure() < 1e-2 ? "good below 1e-2" : "TOO MUCH: above 1e-2, look in steps.csv",
         0.0 - r.energy.work[Cause::kContactClosing]);
   }
-  if (r.ringing_steps > 0)
-    out += fmt::format(
-        "  ringing         in {} of {} steps blocks that deform knocked on others at hard contacts without restitution; only "
-        "contact.alpha damps what they ring by then. Where they knock for long, how far they slip and rock hangs on the step, and "
-        "far less with a joint of restitution = 0, or as rigid blocks\n",
-        r.ringing_steps, r.steps);
   if (r.penalty > 0)
     out += fmt::format(
         "  penalty         normal springs of {:.3g} N/m; {} of {} steps cut, {} parts in all; deepest penetration {:.3g} m; "
         "largest pivot over smallest {:.1g}\n",
         r.penalty, r.cut_steps, r.steps, r.parts, r.penetration, r.condition);
-  if (r.closed_share > 0.05)
-    out += fmt::format("  WARNING         {} (t = {:.4g} s)\n", r.closed_row, r.closed_time);
-  if (const std::string jolt = jolt_text(scene, r); !jolt.empty())
-    out += fmt::format("  WARNING         {}\n", jolt);
+  for (const auto& [what, text] : warnings_of(scene, r, joints, audit.has_value()))
+    out += fmt::format("  {:<14}  {}\n", what, text);
   if (audit) {
     out += fmt::format(
         "  audit           {}; {} frames and {} steps looked at; unexplained overlap {:.1e} of the smaller "
@@ -209,8 +202,6 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
                                      : "valid",
         audit->frames, audit->steps, audit->unexplained_share, 100 * audit->closure_share);
     for (const std::string& line : audit->lines(scene.blocks.name)) out += "    " + line + "\n";
-  } else {
-    out += "  audit           none (output.audit = false): nothing says that the forces are right\n";
   }
   const Layout& cut = scene.layout;
   if (cut.slivers_merged + cut.slivers_deleted > 0)
@@ -229,7 +220,6 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
           : s.followed()      ? fmt::format(" ({} from rest, then damped motion)", s.steps_from_rest)
                               : "",
           s.unbalanced);
-    if (!s.left_out.empty()) out += fmt::format("  not waited for  stage \"{}\": {}\n", s.name, s.left_out);
   }
   if (r.broken_faces > 0)
     out += fmt::format(
@@ -243,11 +233,6 @@ std::string closing_text(const Scene& scene, const RunResult& r, const JointSumm
   if (bolts.bolts > 0) out += fmt::format("  bolts           {}\n", bolts.text());
   constexpr double kWorthALine = 1e-3;  // of its size
   if (joints.moved_share > kWorthALine) out += moved_text(scene, joints);
-  if (const std::string side = free_field_side(scene, joints); !side.empty())
-    out += fmt::format(
-        "  WARNING         the largest slip ends at the free-field side \"{}\": the ground beyond, which "
-        "does not slip, holds it; move the side away\n",
-        side);
   out += fmt::format(
       "  results         {0}: summary.json, histories.csv, steps.csv, blocks_end.svg, fields/view.py "
       "(ParaView)\n"

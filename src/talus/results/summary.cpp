@@ -78,6 +78,34 @@ RunNotes notes_of(const std::vector<std::string>& overrides, const Findings& fin
   return notes;
 }
 
+std::vector<std::pair<std::string, std::string>> warnings_of(const Scene& scene, const RunResult& r,
+                                                             const JointSummary& joints, bool audited) {
+  constexpr double kMostClosed = 0.05;  // of a block's thickness
+  std::vector<std::pair<std::string, std::string>> out;
+  if (r.ringing_steps > 0)
+    out.emplace_back(
+        "ringing",
+        fmt::format(
+            "in {} of {} steps blocks that deform knocked on others at hard contacts without restitution; only "
+            "contact.alpha damps what they ring by then. Where they knock for long, how far they slip and rock "
+            "hangs on the step, and far less with a joint of restitution = 0, or as rigid blocks",
+            r.ringing_steps, r.steps));
+  if (r.closed_share > kMostClosed)
+    out.emplace_back("WARNING", fmt::format("{} (t = {:.4g} s)", r.closed_row, r.closed_time));
+  if (const std::string jolt = jolt_text(scene, r); !jolt.empty()) out.emplace_back("WARNING", jolt);
+  if (!audited)
+    out.emplace_back("audit", "none (output.audit = false): nothing says that the forces are right");
+  for (const StageResult& s : r.stages)
+    if (!s.left_out.empty())
+      out.emplace_back("not waited for", fmt::format("stage \"{}\": {}", s.name, s.left_out));
+  if (const std::string side = free_field_side(scene, joints); !side.empty())
+    out.emplace_back("WARNING",
+                     fmt::format("the largest slip ends at the free-field side \"{}\": the ground beyond, "
+                                 "which does not slip, holds it; move the side away",
+                                 side));
+  return out;
+}
+
 std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes& notes, int frames,
                          const JointSummary& joints, const BoltSummary& bolts, const Histories* histories,
                          const std::string& model, const std::optional<audit::Report>& audit) {
@@ -106,9 +134,8 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   if (audit)
     for (const std::string& line : audit->lines(b.name)) warnings.push_back("audit: " + line);
   j["valid"] = audit ? ordered_json(audit->valid()) : ordered_json();
-  if (const std::string side = free_field_side(scene, joints); !side.empty())
-    warnings.push_back("the largest slip ends at the free-field side " + side);
-  if (const std::string jolt = jolt_text(scene, r); !jolt.empty()) warnings.push_back(jolt);
+  for (const auto& [what, text] : warnings_of(scene, r, joints, audit.has_value()))
+    warnings.push_back(what == "WARNING" ? text : what + ": " + text);
   j["warnings"] = warnings;
   j["audit"] = audit_numbers(scene, audit);
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "talus/audit/findings.h"
@@ -22,6 +23,11 @@ struct RunNotes {
 
 /// Notes of a run of a model that these overrides were given to, with the warnings found in it.
 RunNotes notes_of(const std::vector<std::string>& overrides, const Findings& findings);
+
+/// What a run has to say against itself, each with the word that the closing lines begin it with: {"WARNING", "..."},
+/// {"ringing", "..."}. But for its audit, which has findings.
+std::vector<std::pair<std::string, std::string>> warnings_of(const Scene& scene, const RunResult& result,
+                                                             const JointSummary& joints, bool audited);
 
 /// Text of summary.json.
 /// @param model  model_in_numbers() of the scene as it began, as text

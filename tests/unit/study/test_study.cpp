@@ -511,6 +511,17 @@ TEST_CASE(
         std::string::npos);
 }
 
+TEST_CASE("study: up to a tenth of runs that are not valid there is a single median") {
+  const auto single = [](int runs, int not_valid) {
+    StateCurves c;
+    c.runs = runs, c.not_valid = not_valid;
+    return c.has_single();
+  };
+  CHECK(single(100, 0));
+  CHECK(single(91, 9));
+  CHECK(!single(89, 11));
+}
+
 TEST_CASE("docs/many_runs.md holds the tables of the program") {
   const std::string page = read_text_file(std::string(TALUS_SOURCE_DIR) + "/docs/many_runs.md");
   const std::string begin = "<!-- begin of `talus schema --study` -->\n\n",

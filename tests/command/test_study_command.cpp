@@ -137,6 +137,22 @@ TEST_CASE(
   CHECK(std::filesystem::is_empty(folder / "stopped/work"));
 }
 
+TEST_CASE("command study: runs end with their study, however that ends") {
+  const Folder folder;
+  write(folder, "model.toml", kModel),
+      write(folder, "study.toml", "set = [\"stage.go.duration=2000 s\"]\n" + std::string(kStudy));
+  const std::string runs = fmt::format("pgrep -f ' [r]un .*{}out/work' > /dev/null", (folder / "").string());
+  const Outcome o = shell(
+      folder,
+      "$talus study study.toml -q -o $PWD/out --jobs 2 & p=$!; n=0; until " + runs +
+          " && [ -e out/parents ] && ls out/work | grep -q '^00' || [ $n -gt 600 ]; do sleep 0.05; n=$((n + 1)); done; "
+          "kill -9 $p; wait $p; sleep 0.5; " +
+          runs + " && echo orphans; true");
+  INFO(o.text);
+  CHECK(o.text.find("orphans") == std::string::npos);
+  CHECK(!std::filesystem::is_empty(folder / "out/work"));  // what they had begun
+}
+
 TEST_CASE("command study: what is refused is a row that says so") {
   const Folder folder;
   std::string model = kModel;

@@ -138,8 +138,8 @@ void with_kills(int kills, uint64_t seed) {
     for (int tries = 0;; ++tries) {
       const int n = 1 + static_cast<int>(random.uniform() * 120), k = static_cast<int>(random.uniform() * 6);
       const bool begun = fs::exists(f / "out/study.json"), task = begun && random.uniform() < 0.4;
-      const std::string verb = task ? fmt::format("$talus study task out {} --count {}", k, 6 - k)
-                                    : "$talus study study.toml -q -o out --jobs 2";
+      const std::string verb = task ? fmt::format("$talus study task $PWD/out {} --count {}", k, 6 - k)
+                                    : "$talus study study.toml -q -o $PWD/out --jobs 2";
       write_file(f / "count", std::string(8, '\0'));
       const Outcome o =
           shell(f, fmt::format("rm -f told; LD_PRELOAD='{}' TALUS_FAULT=kill:{} TALUS_FAULT_TOLD=$PWD/told "
@@ -151,7 +151,7 @@ void with_kills(int kills, uint64_t seed) {
       masters += o.code == 137;
       CHECK((o.code == 0 || o.code == 10 || o.code == 137));
       // runs end with their master
-      const std::string runs = fmt::format("pgrep -f ' [r]un .*{}/out/work'", (f / "").string());
+      const std::string runs = fmt::format("pgrep -f ' [r]un .*{}out/work'", (f / "").string());
       const Outcome orphans =
           shell(f, fmt::format("for i in $(seq 50); do {} > /dev/null || exit 1; sleep 0.1; done", runs));
       CHECK(orphans.code == 1);

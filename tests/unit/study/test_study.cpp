@@ -511,6 +511,36 @@ TEST_CASE(
         std::string::npos);
 }
 
+TEST_CASE("study: answers that are not finite are neither damaged nor sound, and counted") {
+  const Folder scratch;
+  std::ofstream(scratch / "m.toml") << "talus = 1\n";
+  const Study s =
+      read(kHead +
+               "[[vary]]\nkey = \"a\"\nvalues = [1, 2]\n[answers]\nslip = \"joints.slip_largest\"\n"
+               "drift = \"slip / sqrt(joints.opening_largest)\"\n[failure.one]\nwhen = \"drift > 0.01\"\n"
+               "[failure.other]\nwhen = \"drift > 0.01 || slip > 0.05\"\n[fragility]\nover = \"a\"\n",
+           (scratch / "study.toml").string());
+  std::vector<PlannedRun> plan = plan_runs(s);
+  StudyFolder folder(scratch / "out");
+  folder.begin(s, plan, {}, "talus test", {(scratch / "m.toml").string()});
+  for (int k = 0; k < 2; ++k) {
+    const auto attempt = folder.attempt("x");
+    std::filesystem::create_directories(attempt);
+    std::ofstream(attempt / "summary.json")
+        << R"({"status": "finished", "valid": true, "joints": {"slip_largest [m]": 0.2, "opening_largest [m]": )"
+        << (k == 0 ? "-1" : "4") << "}}";
+    folder.finish(k, attempt, {k, Outcome::kFinished, 0, 1.0, "here", ""});
+  }
+  const Gathered found = gather(s, plan, folder);
+  CHECK(found.rows[0].damaged == std::vector<int>{-1, -1});
+  CHECK(found.rows[1].damaged == std::vector<int>{1, 1});
+  for (const StateCurves& c : found.states) {
+    CHECK(c.not_finite == 1);
+    CHECK(c.runs == 1);
+  }
+  CHECK(fragility_csv(s, found).find(",1,1,0,1,0,") != std::string::npos);
+}
+
 TEST_CASE("study: up to a tenth of runs that are not valid there is a single median") {
   const auto single = [](int runs, int not_valid) {
     StateCurves c;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "study_command.h"
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
@@ -23,6 +24,9 @@ std::optional<report::RunFolder> side(const std::string& folder, std::string& wh
   if (!is_there(folder)) throw FileError(fmt::format("{}: there is no such folder", folder));
   if (!std::filesystem::is_directory(folder))
     throw FileError(fmt::format("{}: is a file, not a folder of results", folder));
+  if (is_study_folder(folder))
+    throw FileError(
+        fmt::format("{0}: is a folder of talus study: compare its runs, {0}/runs/000000", folder));
   try {
     return report::read_run_folder(folder);
   } catch (const FileError& e) {
@@ -54,9 +58,10 @@ size_t show_table(const report::Comparison& found, const report::Tolerances& tol
 void add_compare_arguments(CLI::App& verb, CompareArguments& args) {
   verb.add_option("A", args.a, "result folder")->required();
   verb.add_option("B", args.b, "the one beside it")->required();
-  verb.add_option("--rtol", args.rtol,
-                  "what they may differ by, as share of the largest value of A; above it the exit code is 9. "
-                  "QUANTITY=NUMBER: of a quantity (displacement), a unit (m/s), joints or ledger alone")
+  verb.add_option(
+          "--rtol", args.rtol,
+          "what they may differ by, as share of the largest value of A; above it the exit code is 9. "
+          "QUANTITY=NUMBER: of a quantity (displacement), a unit (m/s), joints or ledger alone; what none names is held to 0")
       ->expected(1)
       ->take_all();
   verb.add_option("--atol", args.atol, "the same, in the unit of each quantity, added to it")
@@ -86,7 +91,7 @@ int compare_command(const CompareArguments& args) {
     show("NOT WHOLE: a summary is not what a run writes: {}\n", e.what());
     return kExitDiffers;
   }
-  if (const auto unused = tolerances.unused(found.list); !unused.empty() && !found.list.empty())
+  if (const auto unused = tolerances.unused(found.list); !unused.empty() && found.faults.empty())
     throw Error(
         kExitUsage,
         fmt::format("nothing that is compared is called {}: give a quantity, a unit, joints or ledger",

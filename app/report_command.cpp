@@ -32,7 +32,10 @@ std::string page_text() {
 }
 
 void add_report_arguments(CLI::App& verb, ReportArguments& args) {
-  verb.add_option("DIR", args.folders, "result folders; the charts of several are overlaid")->required();
+  verb.add_option(
+          "DIR", args.folders,
+          "result folders; the charts of several are overlaid. One of a study: reports of its runs, and its page; of a search for safety: its page")
+      ->required();
   verb.add_option("-o,--output", args.output,
                   "file to write, - for standard output; without: report.html in the first folder");
   verb.add_option("--frames", args.frames,

@@ -165,9 +165,11 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
                        branches);
   } catch (const std::bad_alloc&) {
     recorder->abandon("not enough memory");
+    if (live) live->finish();
     throw;
   } catch (const std::exception& e) {
     recorder->abandon(e.what());
+    if (live) live->finish();
     recorder->check_place();  // the cause, whatever failed first
     throw;
   }

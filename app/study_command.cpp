@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -36,12 +37,28 @@ namespace {
 volatile std::sig_atomic_t asked_to_stop = 0;
 const std::string kProgram = fmt::format("talus {}", kVersion);
 
-// Ctrl-C and kill: runs on the way are given up, and made anew when the study is started again.
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int signal) { asked_to_stop = signal; };  // no SA_RESTART: waiting is to end
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
-}
+// Ctrl-C and kill: runs on the way are given up, and made anew when the study is started again. What is ignored stays so
+// (nohup). While it exists.
+class StopOnSignals {
+ public:
+  StopOnSignals() {
+    struct sigaction action {};
+    action.sa_handler = [](int signal) { asked_to_stop = signal; };  // no SA_RESTART: waiting is to end
+    for (size_t k = 0; k < kSignals.size(); ++k) {
+      sigaction(kSignals[k], nullptr, &before_[k]);
+      if (before_[k].sa_handler != SIG_IGN) sigaction(kSignals[k], &action, nullptr);
+    }
+  }
+  ~StopOnSignals() {
+    for (size_t k = 0; k < kSignals.size(); ++k) sigaction(kSignals[k], &before_[k], nullptr);
+  }
+  StopOnSignals(const StopOnSignals&) = delete;
+  StopOnSignals& operator=(const StopOnSignals&) = delete;
+
+ private:
+  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, 3> before_{};
+};
 
 study::Study read(const std::string& file, const std::string& text) {
   Findings findings(file, text);
@@ -143,7 +160,7 @@ void show_progress(const study::Progress& p, bool terminal, bool quiet) {
 int run_here(const study::StudyFolder& folder, const study::Study& s, const std::vector<int>& numbers,
              int jobs, bool quiet) {
   folder.clean();
-  stop_on_signals();
+  const StopOnSignals signals;
   study::Runner runner(folder, {own_program(), kProgram, jobs, s.keep_all, s.report});
   const bool terminal = isatty(fileno(stdout)) != 0;
   const study::Progress end = runner.run(

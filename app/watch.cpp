@@ -58,7 +58,7 @@ void LivePage::look(bool wait) {
   while ((ended = waitpid(writer_, &status, wait ? 0 : WNOHANG)) < 0 && errno == EINTR) continue;
   if (ended == 0) return;
   writer_ = 0;
-  if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  if (WIFEXITED(status) && WEXITSTATUS(status) != 0)  // one that a signal ended was ended with the run
     tell_once(fmt::format("talus report {} tells why", folder_.string()));
   const double took = wall_now() - begun_;
   next_at_ = begun_ + took + std::max(kEvery, took * (1 / kShare - 1));

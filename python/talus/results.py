@@ -7,7 +7,7 @@ import html
 import json
 import os
 import re
-from typing import Any, Dict, List
+from typing import Any, Collection, Dict, List
 
 import numpy
 from numpy.typing import NDArray
@@ -22,19 +22,19 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?inf|nan")
 
 
 # Columns of names, which may be of digits.
-_NAMES = {"monitor", "quantity", "unit", "stage", "block_a", "block_b", "joint", "set", "state", "name", "kind", "material", "group", "bolt",
-          "status", "host", "message", "answer", "key", "over", "not_valid_as", "trouble"}
+_NAMES = {"monitor", "quantity", "unit", "stage", "block_a", "block_b", "joint", "set", "state", "name", "kind", "material", "group", "bolt"}
 
 
-def _column(title: str, cells: List[str]) -> Any:
+def _column(is_name: bool, cells: List[str]) -> Any:
     """Numbers, where all cells are numbers or empty (NaN) and one at least is a number; else texts, as those of names always are."""
-    if title not in _NAMES and any(cells) and all(not c or _NUMBER.fullmatch(c) for c in cells):
+    if not is_name and any(cells) and all(not c or _NUMBER.fullmatch(c) for c in cells):
         return numpy.array([float(c) if c else numpy.nan for c in cells])
     return cells
 
 
-def read_table(path: str) -> Dict[str, Any]:
-    """A CSV file with a head: columns by title, arrays where all cells are numbers or empty (NaN), else lists of texts."""
+def read_table(path: str, names: Collection[str] = _NAMES) -> Dict[str, Any]:
+    """A CSV file with a head: columns by title, arrays where all cells are numbers or empty (NaN), else lists of texts.
+    Columns called as in `names` are texts always."""
     try:
         with open(path, encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
@@ -43,7 +43,7 @@ def read_table(path: str) -> Dict[str, Any]:
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]):
             raise FileError(f"{path}:{number}: has {len(row)} cells, not {len(rows[0])}")
-    return {title: _column(title, [row[k] for row in rows[1:]]) for k, title in enumerate(rows[0])} if rows else {}
+    return {title: _column(title in names, [row[k] for row in rows[1:]]) for k, title in enumerate(rows[0])} if rows else {}
 
 
 class Frame:

@@ -47,12 +47,12 @@ class StudyResults:
     @property
     def table(self) -> Dict[str, Any]:
         """results.csv: what varies and the answers by title, a row for each run."""
-        return read_table(os.path.join(self.folder, "results.csv"))
+        return read_table(os.path.join(self.folder, "results.csv"), ("status", "host", "message"))
 
     @property
     def fragility(self) -> Dict[str, Any]:
         """fragility.csv, of studies with states of damage."""
-        return read_table(os.path.join(self.folder, "fragility.csv"))
+        return read_table(os.path.join(self.folder, "fragility.csv"), ("state", "over", "not_valid_as", "trouble"))
 
     def run(self, number: int) -> Results:
         """The results of one run, where the study keeps them."""

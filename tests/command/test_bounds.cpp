@@ -31,7 +31,7 @@ TEST_CASE("command: sizes beyond all bounds are refused at once, with little mem
   told("impact_bar", "grid.bar.move=[1e15, 1]", 3, "no digits left for its shape");
   told("specimen", "tessellation.grains.size=1e300", 3, "nothing would be divided");
   told("spinning_block", "monitor.spinner.block=\"\"", 3, "monitor.spinner.block: is empty");
-  told("pile", "output.history_interval=1e-300", 3, "more than 1000 rows of a step");
+  told("pile", "output.history_interval=1e-300", 3, "more than 100000 rows of a step");
   told("impact_bar", "monitor.impact.window=1e-300", 5, "in histories.csv");
   told("impact_bar", "model.thickness=1e300", 5, "in steps.csv");
 }

@@ -22,6 +22,7 @@ const std::string kExample = std::string(TALUS_SOURCE_DIR) + "/examples/conventi
 void write_run(const Folder& f, const std::string& name, const std::string& rows, double begin, double end,
                const std::string& kind = "\"dynamic\"") {
   std::filesystem::create_directories(f / name);
+  write_file(f / name / "model.toml", "talus = 1\n");
   write_file(
       f / name / "summary.json",
       fmt::format(

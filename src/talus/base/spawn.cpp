@@ -37,7 +37,9 @@ pid_t spawn(const std::vector<std::string>& words, const std::filesystem::path& 
   close(told[1]);
   told[1] = -1;
   int cause = 0;
-  if (read(told[0], &cause, sizeof cause) == sizeof cause) {
+  ssize_t got = 0;
+  while ((got = read(told[0], &cause, sizeof cause)) < 0 && errno == EINTR) continue;
+  if (got == sizeof cause) {
     (void)waitpid(process, nullptr, 0);
     fail(cause);
   }

@@ -21,6 +21,8 @@ std::string read_history_file(const Fields& fields, const std::string& folder, H
   try {
     text = read_text_file(path);
   } catch (const FileError& e) {
+    if (std::error_code ec; std::filesystem::is_regular_file(path, ec))
+      throw;  // there, and not to be read now
     findings.error(fields.where("file"), fields.path_of("file"), e.what(),
                    "the path counts from the folder of the model file");
     return "";

@@ -38,8 +38,8 @@ std::string csv_line(const std::vector<std::string>& cells) {
 
 std::string cell_text(const Cell& cell, int digits) {
   if (const auto* number = std::get_if<double>(&cell); number && !std::isfinite(*number))
-    throw NumericalError(
-        fmt::format("{} in a table of results: the model has a number beyond what can be computed with", *number));
+    throw NumericalError(fmt::format(
+        "{} in a table of results: the model has a number beyond what can be computed with", *number));
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{:.{}g}", *number, digits);
   if (const auto* whole = std::get_if<int64_t>(&cell)) return fmt::format("{}", *whole);
   return table_cell(std::get<std::string>(cell));

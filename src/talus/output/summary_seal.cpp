@@ -20,15 +20,19 @@ std::string sealed_summary(nlohmann::ordered_json summary) {
   return text_of(summary);
 }
 
-std::string seal_defect(const std::filesystem::path& folder, nlohmann::ordered_json summary) {
+bool is_sealed(nlohmann::ordered_json summary) {
   const auto digest = summary.find("digest");
-  if (digest == summary.end()) return "";
+  if (digest == summary.end()) return false;
   const nlohmann::ordered_json told = *digest;
   summary.erase("digest");
-  if (told != text_hash(text_of(summary))) return "summary.json is not what the run wrote";
-  const auto tables = summary.find("tables");
-  if (tables == summary.end()) return "summary.json is not what the run wrote";
-  for (const auto& [name, mark] : tables->items()) {
+  return told == text_hash(text_of(summary));
+}
+
+std::string seal_defect(const std::filesystem::path& folder, const nlohmann::ordered_json& summary) {
+  if (!summary.contains("digest")) return "";
+  const auto files = summary.find("files");
+  if (!is_sealed(summary) || files == summary.end()) return "summary.json is not what the run wrote";
+  for (const auto& [name, mark] : files->items()) {
     if (!is_there(folder / name)) return fmt::format("{} is missing", name);
     const auto size = std::filesystem::file_size(folder / name);
     if (mark.at("bytes") != size)

@@ -9,11 +9,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <tuple>
 
 #include "talus/base/error.h"
 #include "talus/model/model_keys.h"
+#include "talus/model/units.h"
 #include "talus/output/columns.h"
 #include "talus/output/summary_seal.h"
 
@@ -241,6 +241,8 @@ void judge_side(const RunFolder& run, std::vector<std::string>& faults) {
                                  status.empty() ? "has no status" : "has not ended well: it is " + status));
   if (run.summary.contains("valid") && run.summary["valid"] == false)
     faults.push_back(fmt::format("{} is not valid, by its audit", run.name));
+  if (run.summary.contains("arithmetic") && !run.summary.contains("digest"))
+    faults.push_back(fmt::format("{}: its summary has no digest, which runs that end write", run.name));
   if (const std::string why = seal_defect(run.path, run.summary); !why.empty())
     faults.push_back(fmt::format("{}: {}", run.name, why));
   for (const std::string& note : run.notes) faults.push_back(fmt::format("{}: {}", run.name, note));
@@ -257,10 +259,12 @@ void judge_side(const RunFolder& run, std::vector<std::string>& faults) {
 void compare_files(const RunFolder& a, const RunFolder& b, std::vector<std::string>& faults) {
   std::error_code ec;
   for (const auto& [one, two] : {std::pair(&a, &b), std::pair(&b, &a)})
-    for (const char* name : {"histories.csv", "steps.csv", "joints.csv", "slips.csv", "bolts.csv",
-                             "blocks.csv", "monitors.csv", "model.toml"})
+    for (const char* name : kMarkedFiles)
       if (std::filesystem::exists(one->path / name, ec) && !std::filesystem::exists(two->path / name, ec))
         faults.push_back(fmt::format("{} is missing in {}", name, two->name));
+  for (const RunFolder* run : {&a, &b})
+    if (run->model.empty())
+      faults.push_back(fmt::format("{} has no model.toml to be held against the other", run->name));
   for (const auto& [name, table, other] :
        {std::tuple("histories.csv", &a.histories, &b.histories), std::tuple("steps.csv", &a.steps, &b.steps)})
     if ((table->rows() == 0) != (other->rows() == 0))
@@ -288,6 +292,7 @@ bool is_of_the_solution(const std::string& key) {
       "time_step",    "integration",   "increments",        "safety",     "elasticity",  "moment_clamp",
       "damping_mass", "damping_local", "damping_stiffness", "unbalanced", "strict_rest", "relaxation"};
   const std::string last = key.substr(key.rfind('.') + 1);
+  if (last == "file" || key == "cut.blocks") return true;  // known by its content
   if (key == "contact.joint" || key == "contact.restitution") return false;
   return key == "model.formulation" ||
          std::any_of(sections.begin(), sections.end(),
@@ -297,9 +302,9 @@ bool is_of_the_solution(const std::string& key) {
           std::find(of_stages.begin(), of_stages.end(), last) != of_stages.end());
 }
 
-std::multiset<std::string> digests_read(const RunFolder& run) {
-  std::multiset<std::string> out;
-  for (const json& file : run.summary.value("reads", json::array())) out.insert(file.value("digest", ""));
+std::vector<std::string> digests_read(const RunFolder& run) {
+  std::vector<std::string> out;
+  for (const json& file : run.summary.value("reads", json::array())) out.push_back(file.value("digest", ""));
   return out;
 }
 
@@ -309,6 +314,17 @@ bool same_cell(const std::string& a, const std::string& b) {
   const double x = std::strtod(a.c_str(), &end_a), y = std::strtod(b.c_str(), &end_b);
   return !a.empty() && !b.empty() && *end_a == '\0' && *end_b == '\0' &&
          std::abs(x - y) <= 1e-9 * (1 + std::abs(x));
+}
+
+// "30 deg" and 0.5235987755982988, "500 ms" and 0.5.
+bool same_quantity(const std::string& a, const std::string& b) {
+  const auto bare = [](const std::string& text) {
+    return text.size() > 1 && (text.front() == '"' || text.front() == '\'') ? text.substr(1, text.size() - 2)
+                                                                            : text;
+  };
+  const auto x = parse_any_quantity(bare(a)), y = parse_any_quantity(bare(b));
+  constexpr double kRounded = 1e-12;
+  return x && y && std::abs(x->value - y->value) <= kRounded * std::abs(x->value);
 }
 
 void compare_models(const RunFolder& a, const RunFolder& b, std::vector<std::string>& models) {
@@ -330,7 +346,8 @@ void compare_models(const RunFolder& a, const RunFolder& b, std::vector<std::str
   const ModelKeys now = keys_in_force(a.model), before = keys_in_force(b.model);
   size_t count = 0;
   for (const KeyDifference& d : differences(now, before))
-    if (!is_of_the_solution(d.key) && ++count <= kMost)
+    if (!is_of_the_solution(d.key) && !(d.now && d.before && same_quantity(*d.now, *d.before)) &&
+        ++count <= kMost)
       models.push_back(fmt::format("{}: {} in {}, {} in {}", d.key, d.now ? *d.now : "not given", a.name,
                                    d.before ? *d.before : "not given", b.name));
   if (count > kMost) models.push_back(fmt::format("and {} keys more", count - kMost));

@@ -25,9 +25,9 @@ struct JointPoint : FramePoint {
   int joint = -1;
   std::string set;  // what the edge was cut along (a joint set, a fault ...); "": a block that was not cut
 
-  double residual_slip() const { return std::abs(slip_signed); }
+  double residual_slip() const { return std::abs(slip_signed); }  // what is left of it [m]
   /// What of it the two went while they were apart, which accumulated slip does not count: residual slip beyond that [m].
-  double slip_while_open() const { return std::max(0.0, residual_slip() - slip); }  // what is left of it [m]
+  double slip_while_open() const { return std::max(0.0, residual_slip() - slip); }
   bool is(JointState s) const { return state == static_cast<int>(s); }
 };
 

@@ -405,13 +405,12 @@ std::string Recorder::write_dump(const Instant& i) {
 namespace {
 
 // A table holds numbers, or the run ends with the first that is none.
-void check_finite(const std::vector<double>& row, const std::vector<std::string>& titles, const char* file,
-                  double time) {
+void check_finite(const std::vector<double>& row, const auto& titles, const char* file, double time) {
   for (size_t c = 0; c < row.size(); ++c)
     if (!std::isfinite(row[c]))
       throw NumericalError(fmt::format(
           "t = {:.9g} s: {} would be {} in {}: the model has a number beyond what can be computed with", time,
-          titles[c], row[c], file));
+          titles()[c], row[c], file));
 }
 
 // The first number of a summary that is none, by its keys; "".
@@ -427,7 +426,8 @@ std::string not_finite_in(const nlohmann::ordered_json& j, const std::string& pa
 }  // namespace
 
 void Recorder::append_history(const std::vector<double>& row) {
-  check_finite(row, texts_of(histories_.columns()), "histories.csv", row[0]);
+  check_finite(
+      row, [this] { return texts_of(histories_.columns()); }, "histories.csv", row[0]);
   history_file_.append(row);
 }
 
@@ -436,7 +436,9 @@ void Recorder::record_step(const Instant& i) {
   if (!due_.worst.empty()) take_in(step_columns(), due_.worst, row);
   if (is_due(i.state.time, i.advance, scene_.model.output.steps_interval, due_.steps) || i.last ||
       i.report.failed) {
-    if (!i.report.failed) check_finite(row, titles_of(step_columns()), "steps.csv", i.state.time);
+    if (!i.report.failed)
+      check_finite(
+          row, [] { return titles_of(step_columns()); }, "steps.csv", i.state.time);
     steps_file_.append(row);
     due_.worst.clear();
   } else {
@@ -496,7 +498,7 @@ std::optional<audit::Report> Recorder::audit() const {
   return auditor_ ? std::optional(auditor_->report()) : std::nullopt;
 }
 
-// The summary with size and digest of each table, and its own: what is changed afterwards is known as such (talus compare).
+// The summary with size and digest of each table and of the model, and its own: what is changed afterwards is known as such (talus compare).
 std::string Recorder::marked(const std::string& summary) const {
   auto j = nlohmann::ordered_json::parse(summary);
   if (j["status"] == "finished") {
@@ -505,10 +507,10 @@ std::string Recorder::marked(const std::string& summary) const {
     if (const std::string found = not_finite_in(numbers, ""); !found.empty())
       throw NumericalError(fmt::format("summary.json: {} is not finite", found));
   }
-  auto& tables = j["tables"] = nlohmann::ordered_json::object();
-  for (const char* name : kMarkedTables)
+  auto& files = j["files"] = nlohmann::ordered_json::object();
+  for (const char* name : kMarkedFiles)
     if (const auto mark = folder_.mark_of(name))
-      tables[name] = {{"bytes", mark->bytes}, {"digest", mark->digest}};
+      files[name] = {{"bytes", mark->bytes}, {"digest", mark->digest}};
   return sealed_summary(std::move(j));
 }
 

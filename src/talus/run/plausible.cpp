@@ -362,9 +362,9 @@ class Plausible {
           "is the record in cm/s2 (gal)? Then give scale = 0.01");
   }
 
-  // Rows between two steps are on the straight line between these: a thousand of them tell nothing that two do not.
+  // Rows between two steps are on the straight line between these, and wait in memory together.
   void check_rows() {
-    constexpr double kMostRows = 1000;  // of a step
+    constexpr double kMostRows = 1e5;  // of a step; with twenty columns 16 MB
     const double interval = model_.output.history_interval;
     double longest = 0;
     for (const StagePlan& plan : plans_) longest = std::max(longest, plan.dt);

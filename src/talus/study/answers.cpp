@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -35,6 +36,49 @@ double evaluate(const std::string& formula, const Numbers& numbers, std::string&
     used.insert(*at);
   }
   return evaluate_with(formula, used, trouble);
+}
+
+// Ends of the parts of a formula between these operators, outside of parentheses; one part: it has none.
+std::vector<std::string> parts_between(const std::string& formula,
+                                       const std::vector<std::string>& operators) {
+  std::vector<std::string> out(1);
+  int depth = 0;
+  for (size_t i = 0; i < formula.size(); ++i) {
+    depth += formula[i] == '(', depth -= formula[i] == ')';
+    const auto here = depth > 0 ? operators.end()
+                                : std::find_if(operators.begin(), operators.end(), [&](const std::string& o) {
+                                    return formula.compare(i, o.size(), o) == 0;
+                                  });
+    if (here == operators.end())
+      out.back() += formula[i];
+    else
+      i += here->size() - 1, out.emplace_back();
+  }
+  return out;
+}
+
+// Whether a comparison that the formula hangs on is of a number that is not finite: it would be false, and told as an answer.
+// What follows a part that decides (false && ..., true || ...) is not asked; of a ? b : c all is as muParser has it.
+bool compares_no_number(std::string formula, const Numbers& numbers) {
+  std::string trouble;
+  if (formula.find('?') != std::string::npos) return false;
+  for (const char* join : {"||", "&&"}) {
+    const auto parts = parts_between(formula, {join});
+    if (parts.size() == 1) continue;
+    for (const std::string& part : parts) {
+      if (compares_no_number(part, numbers)) return true;
+      if ((evaluate(part, numbers, trouble) != 0) == (join[0] == '|')) return false;
+    }
+    return false;
+  }
+  const auto sides = parts_between(formula, {"<=", ">=", "==", "!=", "<", ">"});
+  if (sides.size() > 1)
+    return std::any_of(sides.begin(), sides.end(), [&](const std::string& side) {
+      return !std::isfinite(evaluate(side, numbers, trouble));
+    });
+  const std::string_view inner = trimmed(formula);
+  return inner.size() > 2 && inner.front() == '(' && inner.back() == ')' &&
+         compares_no_number(std::string(inner.substr(1, inner.size() - 2)), numbers);
 }
 
 void add_leaves(const std::string& prefix, const json& j, Numbers& out) {
@@ -135,7 +179,9 @@ std::vector<double> evaluate_answers(const Study& study, Numbers& numbers, std::
 
 int is_damaged(const DamageState& state, const Numbers& numbers, std::string& trouble) {
   std::string why;
-  const double value = evaluate(state.when, numbers, why);
+  double value = evaluate(state.when, numbers, why);
+  if (why.empty() && compares_no_number(state.when, numbers))
+    value = std::nan(""), why = fmt::format("\"{}\" compares what is not finite", state.when);
   if (!why.empty()) trouble = fmt::format("failure \"{}\": {}", state.name, why);
   return std::isnan(value) ? -1 : value != 0;
 }

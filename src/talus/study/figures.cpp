@@ -76,7 +76,10 @@ class Figures {
   void fragility() {
     if (found_.states.empty()) return;
     plot::Figure figure;
-    figure.title = "Fragility: probability of damage, with bands of 90 %";
+    const bool beside = std::any_of(found_.states.begin(), found_.states.end(),
+                                    [](const StateCurves& c) { return c.not_valid > 0; });
+    figure.title = beside ? "Fragility: probability of damage; marks: shares of valid runs"
+                          : "Fragility: probability of damage, with bands of 90 %";
     figure.x_label = study_.axes[over_].title(), figure.y_label = "probability";
     figure.y_min = -0.02, figure.y_max = 1.02, figure.x_min = 0;  // marks at 0 and 1 are seen whole
     double most = 0;
@@ -113,10 +116,14 @@ class Figures {
         figure.curves.push_back({"", x, low, color, plot::Style::kThin, false});
         figure.curves.push_back({"", x, high, color, plot::Style::kThin, false});
       }
-      figure.curves.push_back(
-          {fmt::format("{}: median {:.3g}, beta {:.2f}", name, f.median, f.beta), x, y, color,
-           as == NotValidAs::kLeftOut && beside ? plot::Style::kDashed : plot::Style::kSolid, true});
+      figure.curves.push_back({fmt::format("{}: median {:.3g}, beta {:.2f}", name, f.median, f.beta), x, y,
+                               color,
+                               !beside || as == NotValidAs::kDamaged ? plot::Style::kSolid
+                               : as == NotValidAs::kSound            ? plot::Style::kDashed
+                                                                     : plot::Style::kThin,
+                               true});
     }
+    if (as != NotValidAs::kLeftOut && f.found()) return;  // marks are of what is known
     std::vector<double> px, py;
     for (const FragilityPoint& p : c.points[static_cast<size_t>(as)])
       px.push_back(p.intensity), py.push_back(static_cast<double>(p.damaged) / p.runs);
@@ -130,7 +137,7 @@ class Figures {
     std::map<std::string, std::vector<std::pair<double, double>>> lines;
     std::map<double, std::vector<double>> levels;
     for (const ResultRow& row : found_.rows) {
-      if (!row.counts() || !std::isfinite(row.answers[k]) || !std::isfinite(row.values[over_].number))
+      if (!row.answers_count() || !std::isfinite(row.answers[k]) || !std::isfinite(row.values[over_].number))
         continue;
       std::string others;
       for (size_t a = 0; a < row.values.size(); ++a)
@@ -191,7 +198,8 @@ class Figures {
       std::vector<double> x, y;
       std::map<double, std::vector<double>> levels;
       for (const ResultRow& row : found_.rows) {
-        if (!row.counts() || !std::isfinite(row.answers[k]) || row.values[other].shown != by.values[v].shown)
+        if (!row.answers_count() || !std::isfinite(row.answers[k]) ||
+            row.values[other].shown != by.values[v].shown)
           continue;
         x.push_back(numbers ? row.values[a].number : place.at(row.values[a].shown)),
             y.push_back(row.answers[k]);
@@ -226,7 +234,7 @@ class Figures {
     for (const AxisValue& v : axis.values)
       if (place[v.shown] == 0) place[v.shown] = ++next;
     for (const ResultRow& row : found_.rows) {
-      if (!row.counts() || !std::isfinite(row.answers[k])) continue;
+      if (!row.answers_count() || !std::isfinite(row.answers[k])) continue;
       x.push_back(numbers ? row.values[a].number : place[row.values[a].shown]), y.push_back(row.answers[k]);
       levels[x.back()].push_back(y.back());
     }
@@ -308,7 +316,11 @@ namespace {
 
 std::string fragility_part(const Study& study, const Gathered& found) {
   if (found.states.empty()) return "";
-  std::string out = fmt::format("<h2>Fragility over {}</h2>\n", in_markup(study.over));
+  std::string out = fmt::format("<h2>Fragility over {}</h2>\n", in_markup(study.over)), others;
+  for (const Axis& a : study.axes)
+    if (a.name != study.over) others += (others.empty() ? "" : ", ") + a.name;
+  if (!others.empty())
+    out += fmt::format("<p>Runs of all values of {} count together.</p>\n", in_markup(others));
   bool not_valid = false;
   for (size_t s = 0; s < found.states.size(); ++s) {
     const DamageState& state = study.states[s];
@@ -320,7 +332,7 @@ std::string fragility_part(const Study& study, const Gathered& found) {
   }
   if (not_valid)
     out +=
-        "<p>Runs that are not valid know nothing of damage, and strong motions are the ones that fail: leaving them out alone is biased. The truth lies between the curve that counts them as damaged and the one that counts them as sound.</p>\n";
+        "<p>Runs that are not valid know nothing of damage, and often are those of strong motions: leaving them out alone may be biased. The truth lies between the curve that counts them as damaged (solid) and the one that counts them as sound (dashed).</p>\n";
   out +=
       "<div class=\"scroll\"><table><tr><th class=\"text\">state</th><th class=\"text\">not valid as</th><th>median</th><th>beta</th><th>runs</th><th>damaged</th><th>not valid</th><th>not finite</th></tr>\n";
   for (size_t s = 0; s < found.states.size(); ++s)
@@ -376,9 +388,16 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
         found.not_done);
   for (const std::string& trouble : found.troubles) out += "<p><b>" + in_markup(trouble) + "</b></p>\n";
   out += fragility_part(study, found) + findings_part(found);
-  if (!study.states.empty() && found.states.empty())
+  if (!study.states.empty() && found.states.empty()) {
+    for (size_t k = 0; k < study.states.size(); ++k) {
+      int damaged = 0, counted = 0;
+      for (const ResultRow& row : found.rows) counted += row.damaged[k] >= 0, damaged += row.damaged[k] > 0;
+      out += fmt::format("<p><b>{}</b> (<code>{}</code>): {} of {} runs that count.</p>\n",
+                         in_markup(study.states[k].name), in_markup(study.states[k].when), damaged, counted);
+    }
     out +=
         "<p>There is no fragility curve: it needs a key with numbers, scaled by a measure or named by <code>[fragility] over</code>.</p>\n";
+  }
   if (const std::vector<Sensitivity> list = sensitivities(study, found); !list.empty()) {
     out +=
         "<h2>Sensitivity</h2>\n<p>Rank correlation (Spearman) of answers with keys: 1 grows together, -1 against each other, 0 neither.</p>\n<table><tr><th class=\"text\">answer</th><th class=\"text\">key</th><th>correlation</th></tr>\n";
@@ -423,12 +442,20 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
 }
 
 void write_results(const Study& study, const Gathered& found, const StudyFolder& folder) {
+  std::error_code ec;
+  const auto write_or_remove = [&](const char* name, bool wanted, const std::string& text) {
+    if (wanted)
+      write_file(folder.path() / name, text);
+    else
+      std::filesystem::remove(folder.path() / name, ec);  // of a study file that asked for it before
+  };
   write_file(folder.path() / "results.csv", results_csv(study, found));
-  if (!found.states.empty()) write_file(folder.path() / "fragility.csv", fragility_csv(study, found));
+  write_or_remove("fragility.csv", !found.states.empty(), fragility_csv(study, found));
   std::string table = "answer,key,rank_correlation\n";
   for (const Sensitivity& s : sensitivities(study, found))
     table += fmt::format("{},{},{:.6f}\n", s.answer, table_cell(s.axis), s.correlation);
-  if (!study.answers.empty()) write_file(folder.path() / "sensitivity.csv", table);
+  write_or_remove("sensitivity.csv", !study.answers.empty(), table);
+  std::filesystem::remove_all(folder.path() / "figures", ec);
   const std::vector<std::string> figures = write_figures(study, found, folder.path() / "figures");
   write_file(folder.path() / "study.html", study_page(study, found, figures));
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -16,6 +17,7 @@
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
 #include "talus/output/folder_lock.h"
+#include "talus/output/summary_seal.h"
 
 namespace talus::study {
 
@@ -76,6 +78,14 @@ std::optional<std::vector<StudyFolder::Task>> plan_of(const fs::path& file) {
   return tasks;
 }
 
+// Of a study that is begun: no two have the same.
+std::string new_id(const fs::path& folder) {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return text_hash(
+      fmt::format("{} {} {} {} {}", absolute_text(folder), this_host(), getpid(), now.tv_sec, now.tv_nsec));
+}
+
 std::string key_values(const std::vector<std::string>& overrides) {
   std::string out;
   for (const std::string& item : overrides) out += (out.empty() ? "" : ", ") + item;
@@ -85,7 +95,9 @@ std::string key_values(const std::vector<std::string>& overrides) {
 // What a folder holds before its study.json is written: a study that was being begun.
 bool is_only_begun(const fs::path& folder) {
   std::error_code ec;
-  for (const auto& entry : fs::directory_iterator(folder, ec)) {
+  fs::directory_iterator entries(folder, ec);
+  if (ec) return false;
+  for (const auto& entry : entries) {
     const std::string name = entry.path().filename().string();
     const bool empty =
         name == "work" || name == "runs" || name == "parents" ? fs::is_empty(entry.path(), ec) : false;
@@ -122,13 +134,20 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
   std::error_code ec;
   forget();
   std::vector<Task> known;
-  Description now{program, absolute_text(study.file), absolute_text(study.model), sharing.until, {}};
+  Description now{new_id(path_), program, absolute_text(study.file), absolute_text(study.model),
+                  sharing.until, {}};
   if (is_there(path_ / "study.json") && !is_only_begun(path_)) {
     const Description before = description();
+    if (now.model != before.model)
+      throw InputError(
+          fmt::format("{}: error: {} is its model, and the study file names {}. Runs of two models are no "
+                      "study: take another folder\n",
+                      path_.string(), before.model, now.model));
     check_files(before, program);
-    now.study_file = before.study_file, now.files = before.files;
+    now.id = before.id, now.study_file = before.study_file, now.files = before.files;
     if (now.until.empty()) now.until = before.until;
     known = plan_of(path_ / "plan.jsonl").value_or(std::vector<Task>());
+    if (known.empty()) known = tasks_by_runs();
   } else if (fs::exists(path_, ec) && !is_only_begun(path_)) {
     throw FileError(fmt::format("{}: is not empty, and holds no study. Take another folder", path_.string()));
   }
@@ -137,13 +156,19 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
     if (!now.files.count(path)) now.files[path] = file_hash(path);
   }
   std::map<std::vector<std::string>, size_t> number;
-  for (const Task& task : known) number.emplace(task.overrides, number.size());
+  std::vector<bool> planned;
+  size_t free = 0;  // numbers that no record tells of, where the plan was lost
+  for (const Task& task : known) {
+    if (!task.overrides.empty()) number.emplace(task.overrides, planned.size());
+    planned.push_back(task.overrides.empty());
+  }
   const size_t before = known.size();
-  std::vector<bool> planned(before);
   for (size_t k = 0; k < plan.size(); ++k) {
-    const auto [at, added] = number.emplace(plan[k].overrides, number.size());
+    while (free < known.size() && !known[free].overrides.empty()) ++free;
+    const auto [at, added] = number.emplace(plan[k].overrides, free);
     if (added) {
-      Task& task = known.emplace_back();
+      if (free == known.size()) known.emplace_back();
+      Task& task = known[free];
       task.overrides = plan[k].overrides;
       if (k < sharing.group.size() && !sharing.group[k].empty())
         task.group = sharing.group[k], task.group_overrides = sharing.group_overrides[k];
@@ -169,9 +194,17 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
     if (ec) fail_file(path_ / name, "made", ec.value());
   }
   write_file(study_file(), study.text);  // answers may have changed
-  if (known.size() > before) write_file(path_ / "plan.jsonl", plan_text(known), Reach::kDisk);
-  ordered_json j = {{"talus_study", kFormat}, {"program", now.program}, {"study_file", now.study_file},
-                    {"model", now.model},     {"until", now.until},     {"files", ordered_json(now.files)}};
+  if (!std::all_of(known.begin(), known.end(), [](const Task& t) { return !t.overrides.empty(); }))
+    throw FileError(
+        fmt::format("{}: is missing or torn, and runs/ holds runs that the study file does not plan: "
+                    "take another folder",
+                    (path_ / "plan.jsonl").string()));
+  const std::string lines = plan_text(known);
+  if (!is_there(path_ / "plan.jsonl") || read_text_file(path_ / "plan.jsonl") != lines)
+    write_file(path_ / "plan.jsonl", lines, Reach::kDisk);
+  ordered_json j = {
+      {"talus_study", kFormat}, {"program", now.program}, {"study_file", now.study_file},    {"id", now.id},
+      {"model", now.model},     {"until", now.until},     {"files", ordered_json(now.files)}};
   // last: the folder is one of a study
   write_file(path_ / "study.json", json_text(j, 2), Reach::kDisk);
   forget();
@@ -204,7 +237,10 @@ void StudyFolder::check_files(const Description& d, const std::string& program) 
   }
 }
 
-void StudyFolder::number(const Study&, std::vector<PlannedRun>& plan) const {
+void StudyFolder::number(const Study& study, std::vector<PlannedRun>& plan) const {
+  if (absolute_text(study.model) != model())
+    throw InputError(fmt::format("{}: error: names another model, {}: the runs are of {}\n",
+                                 study_file().string(), absolute_text(study.model), model()));
   std::map<std::vector<std::string>, int> numbers;
   for (const Task& task : tasks()) numbers.emplace(task.overrides, static_cast<int>(numbers.size()));
   for (PlannedRun& run : plan) {
@@ -232,9 +268,10 @@ const StudyFolder::Description& StudyFolder::description() const {
     if (j->at("talus_study") != kFormat)
       throw FileError(fmt::format("{}: was begun by another version of talus ({}): take another folder",
                                   file.string(), j->value("program", "")));
-    description_ = {j->at("program").get<std::string>(), j->at("study_file").get<std::string>(),
-                    j->at("model").get<std::string>(), j->at("until").get<std::string>(),
-                    j->at("files").get<std::map<std::string, std::string>>()};
+    description_ = {
+        j->at("id").get<std::string>(),         j->at("program").get<std::string>(),
+        j->at("study_file").get<std::string>(), j->at("model").get<std::string>(),
+        j->at("until").get<std::string>(),      j->at("files").get<std::map<std::string, std::string>>()};
   } catch (const nlohmann::json::exception& e) {
     throw FileError(fmt::format("{}: is not what talus study wrote: {}", file.string(), e.what()));
   }
@@ -247,6 +284,21 @@ const std::vector<StudyFolder::Task>& StudyFolder::tasks() const {
     throw FileError(fmt::format("{}: is missing or torn: talus study {} -o {} --plan writes it anew",
                                 (path_ / "plan.jsonl").string(), study_origin(), path_.string()));
   return *tasks_;
+}
+
+// What the records of runs tell of a plan that was lost, each under its number.
+std::vector<StudyFolder::Task> StudyFolder::tasks_by_runs() const {
+  std::vector<Task> found;
+  std::error_code ec;
+  for (const auto& entry : fs::directory_iterator(path_ / "runs", ec)) {
+    const auto j = json_of(entry.path() / "run.json");
+    if (!j || !j->contains("run") || !j->contains("set") || !(*j)["run"].is_number_unsigned()) continue;
+    const size_t k = (*j)["run"];
+    if (run_folder(static_cast<int>(k)).filename() != entry.path().filename()) continue;
+    if (k >= found.size()) found.resize(k + 1);
+    found[k].overrides = (*j)["set"].get<std::vector<std::string>>();
+  }
+  return found;
 }
 
 StudyFolder::Task StudyFolder::task(int number) const {
@@ -263,7 +315,7 @@ std::optional<RunRecord> StudyFolder::record_of(int number) const {
   if (!j) return std::nullopt;
   RunRecord record;
   try {
-    if (j->at("set") != task(number).overrides) return std::nullopt;
+    if (j->at("study") != description().id || j->at("set") != task(number).overrides) return std::nullopt;
     const std::string outcome = j->at("outcome");
     const auto at = std::find(kOutcomeName.begin(), kOutcomeName.end(), outcome);
     if (at == kOutcomeName.end()) return std::nullopt;
@@ -273,7 +325,7 @@ std::optional<RunRecord> StudyFolder::record_of(int number) const {
     if (record.outcome == Outcome::kRefused || record.outcome == Outcome::kNotDone) return record;
     // it has results, and they say the same
     const auto summary = json_of(run_folder(number) / "summary.json");
-    if (!summary) return std::nullopt;
+    if (!summary || !is_sealed(*summary) || summary->at("digest") != j->at("summary")) return std::nullopt;
     const bool ended = record.exit_code == kExitOk || record.exit_code == kExitNotValid;
     if (summary->at("status") != (ended ? "finished" : "failed")) return std::nullopt;
     if (summary->value("valid", ordered_json()) == false) record.outcome = Outcome::kNotValid;
@@ -300,7 +352,10 @@ fs::path StudyFolder::attempt(const std::string& what) const {
 void StudyFolder::finish(int number, const fs::path& attempt, const RunRecord& record) const {
   std::error_code ec;
   fs::create_directories(attempt, ec);
-  const ordered_json j = {{"run", record.number},
+  const auto summary = json_of(attempt / "summary.json");
+  const ordered_json j = {{"study", description().id},
+                          {"run", record.number},
+                          {"summary", summary ? summary->value("digest", "") : ""},
                           {"set", task(number).overrides},
                           {"outcome", name_of(record.outcome)},
                           {"exit_code", record.exit_code},
@@ -311,11 +366,16 @@ void StudyFolder::finish(int number, const fs::path& attempt, const RunRecord& r
   const fs::path place = run_folder(number);
   fs::rename(attempt, place, ec);
   if (ec && !is_done(number)) {  // what is there is not done, or torn
-    const fs::path aside = this->attempt("aside");
-    fs::rename(place, aside, ec);
-    fs::rename(attempt, place, ec);
-    std::error_code ignored;
-    if (!ec) fs::remove_all(aside, ignored);
+    if (record.outcome == Outcome::kNotDone) {
+      write_file(place / "run.json", read_text_file(attempt / "run.json"), Reach::kDisk);
+      ec.clear();
+    } else {
+      const fs::path aside = this->attempt("aside");
+      fs::rename(place, aside, ec);
+      fs::rename(attempt, place, ec);
+      std::error_code ignored;
+      fs::remove_all(aside, ignored);
+    }
   }
   if (ec && !is_done(number)) fail_file(place, "written", ec.value());
   fs::remove_all(attempt, ec);  // another one was first

@@ -98,12 +98,13 @@ class StudyFolder {
  private:
   // What study.json holds. Throws FileError.
   struct Description {
-    std::string program, study_file, model, until;
-    std::map<std::string, std::string> files;  // path and digest of each that the runs read
+    std::string id, program, study_file, model, until;  // id: of this study, in the records of its runs
+    std::map<std::string, std::string> files;           // path and digest of each that the runs read
   };
   const Description& description() const;
   void check_files(const Description& d, const std::string& program) const;
   const std::vector<Task>& tasks() const;
+  std::vector<Task> tasks_by_runs() const;
   void forget() const { description_.reset(), tasks_.reset(); }
 
   // What tells without reading it that a file has not been written.

@@ -1,5 +1,7 @@
 #include "talus/study/fragility.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,6 +38,11 @@ double log_likelihood(const std::vector<FragilityPoint>& points, double a, doubl
 // Why the likelihood has no greatest value inside.
 std::string separated(const std::vector<FragilityPoint>& points) {
   int damaged = 0, whole = 0;
+  double highest_damaged = 0, lowest_whole = std::numeric_limits<double>::infinity();
+  for (const FragilityPoint& p : points) {
+    if (p.damaged > 0) highest_damaged = std::max(highest_damaged, p.intensity);
+    if (p.runs > p.damaged) lowest_whole = std::min(lowest_whole, p.intensity);
+  }
   double highest_whole = 0, lowest_damaged = std::numeric_limits<double>::infinity(), lowest = lowest_damaged,
          highest = 0;
   for (const FragilityPoint& p : points) {
@@ -45,13 +52,17 @@ std::string separated(const std::vector<FragilityPoint>& points) {
     if (p.runs > 0) lowest = std::min(lowest, p.intensity), highest = std::max(highest, p.intensity);
   }
   if (damaged + whole == 0) return "no run counts";
-  if (damaged == 0) return "no run is in this state: go to higher intensities";
-  if (whole == 0) return "every run is in this state: go to lower intensities";
+  if (damaged == 0) return "no run is in this state: go to where it is";
+  if (whole == 0) return "every run is in this state: go to where it is not";
   if (lowest == highest) return "all runs have one intensity";
+  if (highest_damaged <= lowest_whole) return "damage does not grow with intensity";
   if (highest_whole == lowest_damaged)
-    return "only at one intensity some runs are in this state and some are not: give levels just below and above it";
+    return fmt::format(
+        "only at {:g} some runs are in this state and some are not: give levels just below and above it",
+        lowest_damaged);
   if (highest_whole < lowest_damaged)
-    return "all runs above some intensity are in this state and none below: give levels between";
+    return fmt::format("all runs from {:g} on are in this state and none up to {:g}: give levels between",
+                       lowest_damaged, highest_whole);
   return "";
 }
 

@@ -38,7 +38,7 @@ std::string outside_text(std::string text) {
 std::vector<RunFinding> findings_of(const nlohmann::json& summary, const RunRecord& record) {
   std::vector<RunFinding> out;
   if (record.exit_code == kExitNumerical)
-    out.push_back({"failed", "", 0, 1, summary.value("failure", record.message)});
+    return {{"failed", "", 0, 1, summary.value("failure", record.message)}};
   const auto audit = summary.find("audit");
   if (audit == summary.end() || !audit->is_object()) return out;
   for (const auto& d : audit->value("defects", nlohmann::json::array())) {
@@ -80,6 +80,9 @@ ResultRow row_of(const Study& study, const PlannedRun& run, const StudyFolder& f
     troubles.insert(fmt::format("run {}: its summary cannot be read: {}", run.number, e.what()));
   }
   row.answers = evaluate_answers(study, numbers, trouble);
+  // what a run came to that did not reach its end is no answer
+  if (record->exit_code == kExitNumerical || record->exit_code == kExitMechanism)
+    row.answers.assign(study.answers.size(), std::nan(""));
   for (size_t s = 0; s < study.states.size(); ++s) {
     const int damaged = is_damaged(study.states[s], numbers, trouble);
     if (row.outcome == Outcome::kMechanism)
@@ -213,7 +216,7 @@ std::string results_csv(const Study& study, const Gathered& found) {
 std::string fragility_csv(const Study& study, const Gathered& found) {
   std::string out =
       "state,over,not_valid_as,median,beta,error_of_ln_median,error_of_beta,runs,damaged,not_valid,not_finite,"
-      "not_done,trouble\n";
+      "refused,not_done,trouble\n";
   for (size_t s = 0; s < found.states.size(); ++s)
     for (const NotValidAs as : {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut}) {
       const StateCurves& c = found.states[s];
@@ -221,12 +224,13 @@ std::string fragility_csv(const Study& study, const Gathered& found) {
       const Fragility& f = c.of(as);
       int runs = 0, damaged = 0;
       for (const FragilityPoint& p : c.points[static_cast<size_t>(as)]) runs += p.runs, damaged += p.damaged;
-      out += fmt::format("{},{},{},", table_cell(study.states[s].name), table_cell(study.over), name_of(as));
+      out += fmt::format("{},{},{},", table_cell(outside_text(study.states[s].name)), table_cell(study.over),
+                         name_of(as));
       out += f.found()
                  ? fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", f.median, f.beta, f.median_error, f.beta_error)
                  : ",,,";
-      out += fmt::format(",{},{},{},{},{},{}\n", runs, damaged, c.not_valid, c.not_finite, found.not_done,
-                         table_cell(f.trouble));
+      out += fmt::format(",{},{},{},{},{},{},{}\n", runs, damaged, c.not_valid, c.not_finite,
+                         found.of(Outcome::kRefused), found.not_done, table_cell(f.trouble));
     }
   return out;
 }
@@ -265,7 +269,7 @@ std::vector<Sensitivity> sensitivities(const Study& study, const Gathered& found
     for (size_t a = 0; a < study.axes.size(); ++a) {
       std::vector<double> x, y;
       for (const ResultRow& row : found.rows)
-        if (row.counts() && std::isfinite(row.answers[k]) && std::isfinite(row.values[a].number))
+        if (row.answers_count() && std::isfinite(row.answers[k]) && std::isfinite(row.values[a].number))
           x.push_back(row.values[a].number), y.push_back(row.answers[k]);
       if (x.size() < 3) continue;
       if (const double r = correlation(ranks(x), ranks(y)); std::isfinite(r))

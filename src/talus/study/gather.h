@@ -32,6 +32,9 @@ struct ResultRow {
   std::string arithmetic;                  // of the host that made it
   bool begun = false, has_report = false;  // begun: there is a record
 
+  /// Whether its answers are those of a whole run, for figures and correlations: what a mechanism came to until it failed is
+  /// damage, and no answer.
+  bool answers_count() const { return outcome == Outcome::kFinished; }
   bool counts() const { return outcome == Outcome::kFinished || outcome == Outcome::kMechanism; }
 };
 

@@ -248,6 +248,14 @@ class StudyReader {
       if (!names.insert(axis.name).second)
         findings_.error(axis.where, path, fmt::format("a second [[vary]] is called \"{}\"", axis.name),
                         "give it a name");
+      for (const Axis& other : study_.axes)
+        if (!axis.key.empty() && other.key == axis.key)
+          findings_.error(axis.where, path,
+                          fmt::format("\"{}\" varies already, as \"{}\"", axis.key, other.name),
+                          "the last one would hold for all runs: leave one out");
+      if (axis.name == "run" || axis.name == "status" || axis.name == "host" || axis.name == "message")
+        findings_.error(f.where("name"), path + ".name",
+                        fmt::format("\"{}\" is a column of the table", axis.name), "give it another name");
       if (t.contains("values")) read_values(*t.get("values"), path, axis);
       if (t.contains("range")) read_range(*t.get("range"), path, axis);
       if (t.contains("distribution")) read_distribution(*t.get("distribution"), path, axis);
@@ -286,6 +294,11 @@ class StudyReader {
     if (quantities && !numbers)
       findings_.error(where_of(node.source()), path + ".values", "has more than one unit",
                       "write all values in one");
+    std::set<std::string> seen;
+    for (const AxisValue& v : axis.values)
+      if (!seen.insert(v.toml).second)
+        findings_.error(where_of(node.source()), path + ".values", fmt::format("{} is given twice", v.shown),
+                        "its runs would count twice: leave one out");
     if (numbers) axis.unit = unit;
     if (!numbers)
       for (size_t i = 0; i < axis.values.size(); ++i) {
@@ -369,6 +382,11 @@ class StudyReader {
       axis.values.push_back(
           {in_quotes(fs::absolute(file).lexically_normal().string()), name_of_match(file, pattern)});
     }
+    std::set<std::string> names;
+    for (const AxisValue& v : axis.values) names.insert(v.shown);
+    if (names.size() < axis.values.size())  // told apart by what the pattern leaves open
+      for (size_t i = 0; i < axis.paths.size(); ++i)
+        axis.values[i].shown = axis.paths[i].lexically_relative(folder_.empty() ? "." : folder_).string();
     if (axis.paths.empty())
       findings_.error(
           f.where("files"), path + ".files", fmt::format("\"{}\" are no files", (folder_ / pattern).string()),
@@ -478,7 +496,7 @@ class StudyReader {
         findings_.error(
             where_of(key.source()), path, "is no formula in quotes",
             "write drift = \"top.displacement_x.largest / 3\", or { formula = \"...\", unit = \"m\" }");
-      const std::string unit = with_unit ? (*with_unit)["unit"].value_or(std::string()) : "";
+      const std::string unit = with_unit ? (*with_unit)["unit"].value_or(std::string("?")) : "";
       const auto one = parse_any_quantity("1 " + unit);
       if (with_unit && (!one || one->value != 1))
         findings_.error(where_of(key.source()), path + ".unit", fmt::format("\"{}\" is no unit of SI", unit),
@@ -536,6 +554,14 @@ class StudyReader {
       if (numbers && !a.values.empty()) names.push_back(a.name);
       if (study_.over.empty() && !a.measure.empty() && !f.given("over")) study_.over = a.name;
     }
+    for (const Axis& a : study_.axes)
+      if (a.name == study_.over)
+        for (const AxisValue& v : a.values)
+          if (!a.sampled && !(v.number > 0) && std::isfinite(v.number)) {
+            findings_.error(a.where, "vary." + a.name, fmt::format("{} has no logarithm", v.shown),
+                            "fragility is over values above 0");
+            break;
+          }
     if (f.given("over") && std::find(names.begin(), names.end(), study_.over) == names.end())
       findings_.error(f.where("over"), "fragility.over",
                       fmt::format("there is no [[vary]] with numbers called \"{}\"", study_.over),

@@ -1,14 +1,18 @@
 #include "talus/study/runner.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <nlohmann/json.hpp>
 
 #include "talus/base/clock.h"
+#include "talus/base/descriptor.h"
 #include "talus/base/error.h"
 #include "talus/base/spawn.h"
 #include "talus/base/text_file.h"
@@ -26,9 +30,13 @@ constexpr size_t kMostMessage = 2000;
 
 // The end of what a process has said.
 std::string said(const fs::path& log) {
-  std::error_code ec;
-  if (!fs::exists(log, ec)) return "";
-  std::string text = read_text_file(log);
+  std::string text;
+  try {
+    if (!is_there(log)) return "";
+    text = read_text_file(log);
+  } catch (const FileError& e) {
+    return e.what();
+  }
   if (text.size() > kMostMessage) text = "... " + text.substr(text.size() - kMostMessage);
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   return text;
@@ -82,15 +90,22 @@ void Runner::start(Job job) {
   if (job.branch) words.insert(words.end(), {"--from", state_of(job.group)});
   folder_.check(settings_.version);
   job.begun = wall_now(), job.writings = folder_.writings();
-  const pid_t process = spawn(words, job.attempt.string() + ".log", Life::kOfParent);
-  running_[process] = std::move(job);
+  try {
+    const pid_t process = spawn(words, job.attempt.string() + ".log", Life::kOfParent);
+    running_[process] = std::move(job);
+  } catch (const FileError& e) {  // no room for its log, no process to be had
+    if (parent)
+      group_state_[job.group] = 2;
+    else
+      keep(job, {job.number, Outcome::kNotDone, kExitFile, 0, this_host(), e.what()});
+  }
 }
 
 void Runner::ended(Job job, int status, bool stopped) {
   std::error_code ec;
   const fs::path log = job.attempt.string() + ".log";
   const int code = WIFSIGNALED(status) ? kExitSignal + WTERMSIG(status) : WEXITSTATUS(status);
-  if (stopped) {  // it will be made anew
+  if (stopped && outcome_of(code) == Outcome::kNotDone) {  // it will be made anew
     fs::remove_all(job.attempt, ec);
     fs::remove(log, ec);
     return;
@@ -116,7 +131,13 @@ void Runner::ended(Job job, int status, bool stopped) {
   }
   RunRecord record{job.number, outcome_of(code), code, wall_now() - job.begun, this_host(), said(log)};
   if (code == kExitOk) record.message.clear();  // warnings stand in its summary
-  if (code == kExitNotValid && record.message.empty()) record.message = not_valid_because(job.attempt);
+  if (code > kExitSignal && record.message.empty())
+    record.message = fmt::format("ended by signal {}", code - kExitSignal);
+  // what it says of its folder is true of where that goes
+  for (size_t at; (at = record.message.find(job.attempt.string())) != std::string::npos;)
+    record.message.replace(at, job.attempt.string().size(), folder_.run_folder(job.number).string());
+  if (code == kExitNotValid)
+    if (std::string why = not_valid_because(job.attempt); !why.empty()) record.message = std::move(why);
   if (folder_.check(settings_.version); folder_.writings() != job.writings)
     record.outcome = Outcome::kNotDone, record.message = "a file that it reads was written while it ran";
   keep(job, std::move(record));
@@ -128,8 +149,6 @@ void Runner::keep(const Job& job, RunRecord record) {
   const fs::path log = job.attempt.string() + ".log";
   try {
     fs::create_directories(job.attempt, ec);
-    if (settings_.report && record.outcome != Outcome::kRefused && record.outcome != Outcome::kNotDone)
-      make_report(job);
     if (!settings_.keep_all) keep_answers(job.attempt);
     if (settings_.keep_all && !record.message.empty()) fs::rename(log, job.attempt / kLog, ec);
     folder_.finish(job.number, job.attempt, record);
@@ -137,6 +156,8 @@ void Runner::keep(const Job& job, RunRecord record) {
     const auto kept = folder_.record_of(job.number);
     record.outcome = kept ? kept->outcome : Outcome::kNotDone;
     if (!kept) record.message = "what it wrote is not whole";
+    if (settings_.report && record.outcome != Outcome::kRefused && record.outcome != Outcome::kNotDone)
+      make_report(job);
   } catch (const FileError& e) {
     record.outcome = Outcome::kNotDone, record.message = e.what();
     fs::remove_all(job.attempt, ec);
@@ -153,11 +174,15 @@ void Runner::keep(const Job& job, RunRecord record) {
   }
 }
 
+// A report that cannot be made is none: the row of the run opens its folder.
 void Runner::make_report(const Job& job) {
-  const pid_t process =
-      spawn({settings_.program, "report", job.attempt.string()}, "/dev/null", Life::kOfParent);
-  int ignored = 0;
-  while (waitpid(process, &ignored, 0) < 0 && errno == EINTR) continue;
+  try {
+    const pid_t process = spawn({settings_.program, "report", folder_.run_folder(job.number).string()},
+                                "/dev/null", Life::kOfParent);
+    int ignored = 0;
+    while (waitpid(process, &ignored, 0) < 0 && errno == EINTR) continue;
+  } catch (const FileError&) {
+  }
 }
 
 // Ends what runs, and leaves nothing of it.
@@ -169,6 +194,22 @@ void Runner::give_up() {
     ended(std::move(job), status, true);
   }
   running_.clear();
+}
+
+// The first of those that run that has ended; -1 after a while without, to ask for a stop: a signal that comes before one
+// waits does not end the waiting.
+pid_t Runner::one_that_ended(int& status) const {
+  constexpr int kWhile = 200;  // [ms]
+  std::vector<Descriptor> descriptors;
+  std::vector<pollfd> ends;
+  for (const auto& [process, job] : running_) {
+    descriptors.emplace_back(static_cast<int>(syscall(SYS_pidfd_open, process, 0)));
+    if (descriptors.back() >= 0) ends.push_back({descriptors.back(), POLLIN, 0});
+  }
+  (void)poll(ends.data(), ends.size(), ends.size() < running_.size() ? kWhile / 10 : kWhile);
+  for (const auto& [process, job] : running_)
+    if (waitpid(process, &status, WNOHANG) == process) return process;
+  return -1;
 }
 
 Progress Runner::run(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
@@ -227,19 +268,19 @@ Progress Runner::run_all(const std::vector<int>& numbers, const std::function<vo
       waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
       start(std::move(job));
     }
-    if (running_.empty()) break;
+    if (running_.empty() && waiting_.empty()) break;
+    if (running_.empty()) continue;  // none could be started
     progress_.running = static_cast<int>(running_.size());
     told(progress_);
     int status = 0;
-    const pid_t process = waitpid(-1, &status, 0);
-    if (process < 0 && errno != EINTR) fail_file(settings_.program, "waited for", errno);
+    const pid_t process = one_that_ended(status);
     if (!stopped && stop()) {
       stopped = true;
       waiting_.clear();
       for (const auto& [running, job] : running_) kill(running, SIGTERM);
     }
     const auto at = running_.find(process);
-    if (process < 0 || at == running_.end()) continue;
+    if (at == running_.end()) continue;
     Job job = std::move(at->second);
     running_.erase(at);
     ended(std::move(job), status, stopped);

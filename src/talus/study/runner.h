@@ -59,6 +59,7 @@ class Runner {
   void ended(Job job, int status, bool stopped);
   void keep(const Job& job, RunRecord record);
   void make_report(const Job& job);
+  pid_t one_that_ended(int& status) const;
   std::string state_of(const std::string& group) const;
 
   const StudyFolder& folder_;

@@ -15,6 +15,7 @@
 #include "talus/base/error.h"
 #include "talus/base/text_file.h"
 #include "talus/output/folder_lock.h"
+#include "talus/output/summary_seal.h"
 #include "talus/study/answers.h"
 #include "talus/study/figures.h"
 #include "talus/study/folder.h"
@@ -44,6 +45,12 @@ std::string refusal(const std::string& text) {
     return e.what();
   }
   return "";
+}
+
+// As a run seals it.
+std::string sealed(const std::string& summary) {
+  const auto j = nlohmann::ordered_json::parse(summary, nullptr, false);
+  return j.is_object() ? sealed_summary(j) : summary;
 }
 
 const std::string kHead = "talus_study = 1\nmodel = \"m.toml\"\n";
@@ -246,7 +253,7 @@ TEST_CASE("study: where there is no fragility curve, it says why") {
   CHECK(fit_fragility({{1, 5, 0}, {2, 5, 0}}).trouble.find("no run is in this state") != std::string::npos);
   CHECK(fit_fragility({{1, 5, 5}, {2, 5, 5}}).trouble.find("every run") != std::string::npos);
   CHECK(fit_fragility({{1, 5, 0}, {2, 5, 5}}).trouble.find("levels between") != std::string::npos);
-  CHECK(fit_fragility({{1, 5, 0}, {2, 5, 2}, {3, 5, 5}}).trouble.find("only at one intensity") !=
+  CHECK(fit_fragility({{1, 5, 0}, {2, 5, 2}, {3, 5, 5}}).trouble.find("only at 2 some runs") !=
         std::string::npos);
   CHECK(fit_fragility({{1, 50, 0}, {2, 50, 20}, {3, 50, 49}}).found());
   CHECK(fit_fragility({{1, 5, 3}}).trouble.find("one intensity") != std::string::npos);
@@ -317,7 +324,7 @@ TEST_CASE("study: the folder takes a run whole or not at all, and the first of t
     const auto attempt = folder.attempt("000000");
     std::filesystem::create_directories(attempt);
     std::ofstream(attempt / "mark") << mark;
-    if (!summary.empty()) std::ofstream(attempt / "summary.json") << summary;
+    if (!summary.empty()) std::ofstream(attempt / "summary.json") << sealed(summary);
     folder.finish(number, attempt,
                   {number, outcome, outcome == Outcome::kFinished ? 0 : 137, 1.0, "here", ""});
     CHECK(!std::filesystem::exists(attempt));
@@ -361,14 +368,28 @@ TEST_CASE("study: the folder takes a run whole or not at all, and the first of t
   CHECK_THROWS_AS(begin(again, s), InputError);  // run 2 would be gone
   CHECK_THROWS_AS(begin(again, study_of("values = [3, 1, 2]"), "talus other"), InputError);
   CHECK_NOTHROW(again.check("talus test"));
-  // a plan that is torn is written anew by the study file, and its runs are known by their keys
+  // a plan that is torn is written anew by the study file and the records of its runs, which keep their numbers
   const std::string plan = read_text_file(again.path() / "plan.jsonl");
   std::ofstream(again.path() / "plan.jsonl") << plan.substr(0, plan.size() - 5);
   CHECK_THROWS_AS(StudyFolder(scratch / "out").planned(), FileError);
   begin(again, study_of("values = [3, 1, 2]"));
-  CHECK(!again.is_done(0));  // whose keys are those of a = 3 now
-  std::ofstream(again.path() / "plan.jsonl") << plan;
-  CHECK(StudyFolder(scratch / "out").is_done(0));
+  CHECK(again.is_done(0));
+  CHECK(again.task(0).overrides == std::vector<std::string>{"a=1"});
+  // a summary that somebody has changed, or of another run
+  const std::string mine = read_text_file(again.run_folder(0) / "summary.json");
+  std::ofstream(again.run_folder(0) / "summary.json")
+      << sealed(R"({"status": "finished", "valid": true, "x": 1})");
+  CHECK(!again.is_done(0));
+  std::ofstream(again.run_folder(0) / "summary.json") << mine;
+  CHECK(again.is_done(0));
+  // a study file that names another model
+  std::ofstream(scratch / "other.toml") << "talus = 1\n";
+  const Study other =
+      read("talus_study = 1\nmodel = \"other.toml\"\n[[vary]]\nkey = \"a\"\nvalues = [3, 1, 2]\n",
+           (scratch / "study.toml").string());
+  std::vector<PlannedRun> others = plan_runs(other);
+  CHECK_THROWS_AS(again.begin(other, others, {}, "talus test", {model}), InputError);
+  CHECK_THROWS_AS(again.number(other, others), InputError);
   // another model
   std::ofstream(scratch / "m.toml") << "talus = 1 # another\n";
   CHECK_THROWS_AS(StudyFolder(scratch / "out").check("talus test"), InputError);
@@ -434,7 +455,7 @@ TEST_CASE("study: what runs that are not valid count as, and which findings they
   const auto finish = [&](int number, int code, const std::string& summary) {
     const auto attempt = folder.attempt("x");
     std::filesystem::create_directories(attempt);
-    if (!summary.empty()) std::ofstream(attempt / "summary.json") << summary;
+    if (!summary.empty()) std::ofstream(attempt / "summary.json") << sealed(summary);
     folder.finish(number, attempt, {number, outcome_of(code), code, 1.0, "=here", "line one\nline \"two\""});
   };
   finish(0, 0, R"({"status": "finished", "valid": true, "joints": {"slip_largest [m]": 0.2}})");
@@ -454,7 +475,7 @@ TEST_CASE("study: what runs that are not valid count as, and which findings they
         "0,1,finished,1,0.2,1.000,'=here,line one line 'two'\n"
         "1,2,not valid,,0.05,1.000,'=here,line one line 'two'\n"
         "2,3,not valid,,,1.000,'=here,line one line 'two'\n"
-        "3,4,mechanism,1,0.01,1.000,'=here,line one line 'two'\n"
+        "3,4,mechanism,1,,1.000,'=here,line one line 'two'\n"
         "4,5,not done,,,1.000,'=here,line one line 'two'\n"
         "5,6,not done,,,,,\n");
   REQUIRE(found.rows[1].findings.size() == 1);
@@ -494,8 +515,8 @@ TEST_CASE(
       if (hidden && not_valid_as >= 0) slip = not_valid_as;
       const auto attempt = folder.attempt("x");
       std::filesystem::create_directories(attempt);
-      std::ofstream(attempt / "summary.json") << fmt::format(
-          R"({{"status": "finished", "valid": {}, "joints": {{"slip_largest [m]": {}}}}})", code == 0, slip);
+      std::ofstream(attempt / "summary.json") << sealed(fmt::format(
+          R"({{"status": "finished", "valid": {}, "joints": {{"slip_largest [m]": {}}}}})", code == 0, slip));
       folder.finish(run.number, attempt, {run.number, outcome_of(code), code, 1.0, "here", ""});
     }
     return gather(s, plan, folder).states[0];
@@ -526,9 +547,10 @@ TEST_CASE("study: answers that are not finite are neither damaged nor sound, and
   for (int k = 0; k < 2; ++k) {
     const auto attempt = folder.attempt("x");
     std::filesystem::create_directories(attempt);
-    std::ofstream(attempt / "summary.json")
-        << R"({"status": "finished", "valid": true, "joints": {"slip_largest [m]": 0.2, "opening_largest [m]": )"
-        << (k == 0 ? "-1" : "4") << "}}";
+    std::ofstream(attempt / "summary.json") << sealed(
+        std::string(
+            R"({"status": "finished", "valid": true, "joints": {"slip_largest [m]": 0.2, "opening_largest [m]": )") +
+        (k == 0 ? "-1" : "4") + "}}");
     folder.finish(k, attempt, {k, Outcome::kFinished, 0, 1.0, "here", ""});
   }
   const Gathered found = gather(s, plan, folder);
@@ -538,7 +560,35 @@ TEST_CASE("study: answers that are not finite are neither damaged nor sound, and
     CHECK(c.not_finite == 1);
     CHECK(c.runs == 1);
   }
-  CHECK(fragility_csv(s, found).find(",1,1,0,1,0,") != std::string::npos);
+  CHECK(fragility_csv(s, found).find(",1,1,0,1,0,0,") != std::string::npos);
+}
+
+TEST_CASE("study: what is no number within a comparison decides nothing") {
+  const auto damaged = [](const std::string& when, double x) {
+    std::string trouble;
+    return is_damaged({"s", when, false, {}}, {{"x", x}}, trouble);
+  };
+  CHECK(damaged("ln(x) > -8", 1) == 1);
+  CHECK(damaged("ln(x) > -8", -1) == -1);
+  CHECK(damaged("1 / (x - x) > 1", 1) == -1);
+  CHECK(damaged("x > 0 && ln(x) > 1", -1) == 0);  // the first decides
+  CHECK(damaged("x < 0 || (ln(x) > 1)", -1) == 1);
+  CHECK(damaged("(ln(x) > 1) || x < 0", -1) == -1);
+  CHECK(damaged("x > 0 ? ln(x) > 1 : 0", -1) == 0);
+}
+
+TEST_CASE("study: values and keys that would count twice, and intensities without a logarithm, are refused") {
+  const auto refused = [](const std::string& text) { return refusal(kHead + text); };
+  CHECK(refused("[[vary]]\nkey = \"a\"\nvalues = [\"5 m\", \"5.0 m\"]\n").find("given twice") !=
+        std::string::npos);
+  CHECK(refused("[[vary]]\nkey = \"a\"\nvalues = [5, 5e0]\n").find("given twice") != std::string::npos);
+  CHECK(refused("[[vary]]\nkey = \"a\"\nvalues = [5]\n[[vary]]\nkey = \"a\"\nname = \"b\"\nvalues = [1]\n")
+            .find("varies already") != std::string::npos);
+  CHECK(refused("[[vary]]\nkey = \"a\"\nvalues = [0, 1]\n[fragility]\nover = \"a\"\n")
+            .find("has no logarithm") != std::string::npos);
+  CHECK(
+      refused("[[vary]]\nkey = \"a\"\nname = \"status\"\nvalues = [1]\n").find("is a column of the table") !=
+      std::string::npos);
 }
 
 TEST_CASE("study: up to a tenth of runs that are not valid there is a single median") {

@@ -124,7 +124,7 @@ study::StudyFolder::Sharing sharing_of(const study::Study& s, const std::vector<
 // The files that they read.
 std::vector<std::string> check_values(const study::Study& s, const std::vector<study::PlannedRun>& plan,
                                       const std::string& text) {
-  constexpr size_t kMost = 300;  // of an axis
+  constexpr size_t kMost = 300;  // of an axis: of samples beyond it what is wrong is told by their runs
   std::vector<std::string> files;
   for (const study::Axis& axis : s.axes)
     for (const fs::path& path : axis.paths) files.push_back(path.string());
@@ -151,8 +151,8 @@ void show_progress(const study::Progress& p, bool terminal, bool quiet) {
   last = now;
   const std::string to_go = p.to_go > 0 ? fmt::format(", {} to go", readable_seconds(p.to_go)) : "";
   const std::string not_done = p.not_done > 0 ? fmt::format(", {} not done", p.not_done) : "";
-  fmt::print("{}  {} of {} done, {} running, {} without result{}{}{}", terminal ? "\r\x1b[K" : "", p.done,
-             p.all, p.running, p.without, not_done, to_go, terminal ? "" : "\n");
+  fmt::print("{}  {} of {} done, {} running, {} not valid or refused{}{}{}", terminal ? "\r\x1b[K" : "",
+             p.done, p.all, p.running, p.without, not_done, to_go, terminal ? "" : "\n");
   if (terminal && p.running == 0) fmt::print("\n");
   std::fflush(stdout);
 }

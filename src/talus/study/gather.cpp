@@ -19,7 +19,8 @@ namespace talus::study {
 
 namespace {
 
-constexpr double kMostNotValid = 0.1;  // share of runs, above which no single median is told
+// Share of runs above which no single median is told: of a tenth the median is off by about its own error of some tens of runs.
+constexpr double kMostNotValid = 0.1;
 
 std::string number_text(double v) { return std::isnan(v) ? "" : fmt::format("{:.12g}", v); }
 

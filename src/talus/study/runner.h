@@ -23,7 +23,7 @@ struct RunnerSettings {
 /// What the runner tells while it goes on.
 struct Progress {
   int done = 0, running = 0, all = 0;
-  int without = 0;    // of those done: without a result, since refused or not valid
+  int without = 0;    // of those done: not valid, or refused
   int not_done = 0;   // ended otherwise: the same command makes them again
   double to_go = 0;   // [s], 0: not known yet
   std::string cause;  // of the last one that is not done

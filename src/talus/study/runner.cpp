@@ -189,9 +189,11 @@ void Runner::make_report(const Job& job) {
 void Runner::give_up() {
   for (const auto& [process, job] : running_) kill(process, SIGKILL);
   for (auto& [process, job] : running_) {
+    std::error_code ec;
     int status = 0;
     while (waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
-    ended(std::move(job), status, true);
+    fs::remove_all(job.attempt, ec);
+    fs::remove(job.attempt.string() + ".log", ec);
   }
   running_.clear();
 }
@@ -268,6 +270,7 @@ Progress Runner::run_all(const std::vector<int>& numbers, const std::function<vo
       waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
       start(std::move(job));
     }
+    if (stopped) waiting_.clear();  // a branch that was refused meanwhile, too
     if (running_.empty() && waiting_.empty()) break;
     if (running_.empty()) continue;  // none could be started
     progress_.running = static_cast<int>(running_.size());

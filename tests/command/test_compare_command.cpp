@@ -119,7 +119,9 @@ TEST_CASE("command: compare of runs of two models, and of one solved in two ways
   write_file(f / "m.toml",
              read_text_file(std::string(TALUS_SOURCE_DIR) + "/tests/fixtures/sliding_stone.toml"));
   const auto run = [&](const std::string& name, const std::string& more) {
-    REQUIRE(shell(f, "$talus run m.toml -q -o " + name + more).code == 0);
+    const Outcome o = shell(f, "$talus run m.toml -q -o " + name + more);
+    INFO(o.text);
+    REQUIRE(o.code == 0);
   };
   run("a", ""), run("step", " --set stage.go.time_step=0.25e-3"), run("push", " --set variables.push=4.001");
   run("wide", " --set 'block.floor.polygon=[[-5, -1], [51, -1], [51, 0], [-5, 0]]'");
@@ -127,6 +129,14 @@ TEST_CASE("command: compare of runs of two models, and of one solved in two ways
   INFO(step.text);
   CHECK(step.code == 0);
   CHECK(shell(f, "$talus compare a push").code == 0);  // without a tolerance a note
+  // the same model in other words
+  run("words",
+      " --set 'joint.face.friction_angle=\"0.5235987755982988 rad\"' --set joint.face.cohesion=0 --set 'material.m.density=\"2 t/m3\"'");
+  const Outcome words = shell(f, "$talus compare a words --rtol 1e-9 --atol 1e-9");
+  INFO(words.text);
+  CHECK(words.code == 0);
+  run("cohesive", " --set 'joint.face.cohesion=\"1 kPa\"'");
+  CHECK(shell(f, "$talus compare a cohesive --rtol 1 --atol 1e3").code == 9);
   const Outcome o = shell(f, "$talus compare a push --rtol 1 --atol 10");
   CHECK(o.code == 9);
   has(o.text, "ANOTHER MODEL: history.push.scale: 4 in a, 4.001 in push");

@@ -13,6 +13,7 @@
 
 #include "talus/base/error.h"
 #include "talus/model/model_keys.h"
+#include "talus/model/schema.h"
 #include "talus/model/units.h"
 #include "talus/output/columns.h"
 #include "talus/output/summary_seal.h"
@@ -316,15 +317,32 @@ bool same_cell(const std::string& a, const std::string& b) {
          std::abs(x - y) <= 1e-9 * (1 + std::abs(x));
 }
 
-// "30 deg" and 0.5235987755982988, "500 ms" and 0.5.
-bool same_quantity(const std::string& a, const std::string& b) {
+// "30 deg" and 0.5235987755982988, "500 ms" and 0.5; a text with quotes and without.
+bool same_value(const std::string& a, const std::string& b) {
   const auto bare = [](const std::string& text) {
     return text.size() > 1 && (text.front() == '"' || text.front() == '\'') ? text.substr(1, text.size() - 2)
                                                                             : text;
   };
-  const auto x = parse_any_quantity(bare(a)), y = parse_any_quantity(bare(b));
   constexpr double kRounded = 1e-12;
-  return x && y && std::abs(x->value - y->value) <= kRounded * std::abs(x->value);
+  const std::string one = bare(a), other = bare(b);
+  const auto x = parse_any_quantity(one), y = parse_any_quantity(other);
+  return one == other || (x && y && std::abs(x->value - y->value) <= kRounded * std::abs(x->value));
+}
+
+// What a key is where it is not given; "" where nothing is.
+std::string default_of(const std::string& key) {
+  const std::string section = key.substr(0, key.find('.')), last = key.substr(key.rfind('.') + 1);
+  for (const SectionSpec& s : model_schema())
+    if (s.name == section)
+      for (const KeySpec& k : s.keys)
+        if (k.name == last) return std::string(k.default_text);
+  return "";
+}
+
+bool is_same(const KeyDifference& d) {
+  const std::string unless_given = default_of(d.key);
+  const std::string &now = d.now ? *d.now : unless_given, &before = d.before ? *d.before : unless_given;
+  return !now.empty() && same_value(now, before);
 }
 
 void compare_models(const RunFolder& a, const RunFolder& b, std::vector<std::string>& models) {
@@ -346,8 +364,7 @@ void compare_models(const RunFolder& a, const RunFolder& b, std::vector<std::str
   const ModelKeys now = keys_in_force(a.model), before = keys_in_force(b.model);
   size_t count = 0;
   for (const KeyDifference& d : differences(now, before))
-    if (!is_of_the_solution(d.key) && !(d.now && d.before && same_quantity(*d.now, *d.before)) &&
-        ++count <= kMost)
+    if (!is_of_the_solution(d.key) && !is_same(d) && ++count <= kMost)
       models.push_back(fmt::format("{}: {} in {}, {} in {}", d.key, d.now ? *d.now : "not given", a.name,
                                    d.before ? *d.before : "not given", b.name));
   if (count > kMost) models.push_back(fmt::format("and {} keys more", count - kMost));

@@ -144,6 +144,30 @@ std::vector<std::string> check_values(const study::Study& s, const std::vector<s
   return files;
 }
 
+// Whether each key that varies changes something of its own: two may name one key in two ways (stage.go, stage.0), and the
+// last would hold for all runs.
+void check_effects(const study::Study& s, const std::vector<study::PlannedRun>& plan,
+                   const std::string& text) {
+  Findings findings(s.file, s.text);
+  for (size_t a = 0; a < s.axes.size(); ++a) {
+    const size_t at = s.set.size() + a;
+    const auto other = std::find_if(plan.begin(), plan.end(), [&](const study::PlannedRun& r) {
+      return r.overrides[at] != plan[0].overrides[at];
+    });
+    if (other == plan.end()) continue;
+    std::vector<std::string> overrides = plan[0].overrides;
+    overrides[at] = other->overrides[at];
+    const ModelKeys now = keys_in_force(with_overrides(text, overrides)),
+                    before = keys_in_force(with_overrides(text, plan[0].overrides));
+    const auto list = differences(now, before);
+    if (list.empty())
+      findings.error(s.axes[a].where, "vary." + s.axes[a].name,
+                     "changes nothing: another key that varies, or set, has the last word",
+                     "name a key in one way, once");
+  }
+  findings.throw_if_errors();
+}
+
 void show_progress(const study::Progress& p, bool terminal, bool quiet) {
   static double last = -1e9;
   const double now = wall_now();
@@ -175,7 +199,9 @@ int run_here(const study::StudyFolder& folder, const study::Study& s, const std:
 // The runs of a study that was begun, in the order of their numbers.
 std::vector<study::PlannedRun> planned(const study::Study& s, const study::StudyFolder& folder) {
   std::vector<study::PlannedRun> plan = study::plan_runs(s);
-  folder.number(s, plan);
+  if (const int unknown = folder.number(s, plan); unknown > 0)
+    tell("talus: note: {} runs of the study file are not in {} yet: talus study {} -o {} adds them\n",
+         unknown, folder.path().string(), folder.study_origin(), folder.path().string());
   std::sort(plan.begin(), plan.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   return plan;
 }
@@ -269,6 +295,7 @@ int begin_study(const StudyArguments& args) {
   of_study.throw_if_errors();
 
   std::vector<std::string> files = check_values(s, plan, text);
+  check_effects(s, plan, text);
   if (args.dry) {
     show("{} runs of {}, {} blocks each; the first:\n", plan.size(), model_file, first.scene.blocks.count);
     for (const std::string& item : plan[0].overrides) show("  --set {}\n", item);

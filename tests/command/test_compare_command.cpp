@@ -131,7 +131,7 @@ TEST_CASE("command: compare of runs of two models, and of one solved in two ways
   CHECK(shell(f, "$talus compare a push").code == 0);  // without a tolerance a note
   // the same model in other words
   run("words",
-      " --set 'joint.face.friction_angle=\"0.5235987755982988 rad\"' --set joint.face.cohesion=0 --set 'material.m.density=\"2 t/m3\"'");
+      " --set 'joint.face.friction_angle=\"0.5235987755982988 rad\"' --set joint.face.cohesion=0 --set 'material.m.density=\"2 t/m3\"' --set 'model.gravity=[\"0 m/s2\", -9.810]'");
   const Outcome words = shell(f, "$talus compare a words --rtol 1e-9 --atol 1e-9");
   INFO(words.text);
   CHECK(words.code == 0);

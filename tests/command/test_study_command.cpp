@@ -247,7 +247,22 @@ TEST_CASE("command study: more values in the same folder, and what was there kee
   write(folder, "out/study.toml", with("[2, 4, 5, 8, 9]"));
   const Outcome unknown = shell(folder, "$talus study gather out");
   CHECK(unknown.code == 3);
-  has(unknown.text, "plans a run that the folder does not hold");
+  has(unknown.text, "the folder holds 16: put back what was taken away");
+  // what is not in the folder yet waits for talus study
+  std::string ahead = more;
+  ahead.replace(ahead.find("[2, 4, 5, 8]"), 12, "[2, 4, 5, 8, 9]");
+  write(folder, "out/study.toml", ahead);
+  const Outcome early = shell(folder, "$talus study gather out");
+  CHECK(early.code == 0);
+  has(early.text, "4 runs of the study file are not in out yet");
+  // keys in another order are the same runs
+  const size_t first = more.find("[[vary]]"), second = more.find("[[vary]]", first + 1),
+               after = more.find("[failure]");
+  write(folder, "turned.toml",
+        more.substr(0, first) + more.substr(second, after - second) + more.substr(first, second - first) +
+            more.substr(after));
+  CHECK(shell(folder, "$talus study turned.toml -o out").code == 0);
+  has(content(folder / "out/results.csv"), "run,push,phi [deg]");
 }
 
 TEST_CASE("command study: answers have units, and what a script of Slurm cannot name is refused") {
@@ -305,6 +320,22 @@ TEST_CASE("command study: wrong input is told before anything is run or written"
   refused("stone.displacement_x.greatest", "stone.displacement_x.max", 3,
           "stone.displacement_x has at_end, at_start, greatest");
   refused("over = \"push\"", "over = \"pull\"", 3, "there is phi or push");
+  refused(
+      "[failure]",
+      "[[vary]]\nkey = \"stage.go.duration\"\nvalues = [\"0.1 s\", \"0.2 s\"]\n[[vary]]\nname = \"other\"\n"
+      "key = \"stage.1.duration\"\nvalues = [\"0.3 s\", \"0.4 s\"]\n[failure]",
+      3, "changes nothing");
+  // a folder with a study file of one's own, and nothing else, is none of a study
+  std::filesystem::create_directories(folder / "mine");
+  write(folder, "mine/study.toml", "# mine\n");
+  CHECK(shell(folder, "$talus study study.toml -o mine").code == 4);
+  CHECK(content(folder / "mine/study.toml") == "# mine\n");
+  // a long list is one value
+  write(
+      folder, "long.toml",
+      "talus_study = 1\nmodel = \"model.toml\"\n[[vary]]\nkey = \"block.floor.polygon\"\n"
+      "values = [[[-5, -1], [50, -1], [50, 0], [40, 0], [30, 0], [20, 0], [10, 0], [5, 0], [-5, 0]], [[-5, -1], [51, -1], [51, 0], [-5, 0]]]\n");
+  CHECK(shell(folder, "$talus study long.toml -o no --dry-run").code == 0);
   CHECK(shell(folder, "$talus study study.toml").code == 2);
   CHECK(shell(folder, "$talus study study.toml -q -o out").code == 0);
   write(folder, "model.toml", kModel + "# changed\n");

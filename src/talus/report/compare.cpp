@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include <tuple>
 
 #include "talus/base/error.h"
+#include "talus/base/text.h"
 #include "talus/model/model_keys.h"
 #include "talus/model/schema.h"
 #include "talus/model/units.h"
@@ -317,16 +319,34 @@ bool same_cell(const std::string& a, const std::string& b) {
          std::abs(x - y) <= 1e-9 * (1 + std::abs(x));
 }
 
-// "30 deg" and 0.5235987755982988, "500 ms" and 0.5; a text with quotes and without.
+// The values of a list of any depth, or the one that is none; quotes left away.
+std::vector<std::string> values_in(const std::string& text) {
+  std::vector<std::string> out;
+  if (text.empty() || text.front() != '[') {
+    const bool quoted = text.size() > 1 && (text.front() == '"' || text.front() == '\'');
+    return {quoted ? text.substr(1, text.size() - 2) : text};
+  }
+  size_t from = 0;
+  for (size_t i = 0; i <= text.size(); ++i) {
+    const bool ends = i == text.size() || std::strchr("[],", text[i]);
+    if (!ends) continue;
+    if (const std::string_view one = trimmed(std::string_view(text).substr(from, i - from)); !one.empty())
+      out.push_back(values_in(std::string(one))[0]);
+    if (i < text.size() && text[i] != ',') out.emplace_back(1, text[i]);
+    from = i + 1;
+  }
+  return out;
+}
+
+// "30 deg" and 0.5235987755982988, "500 ms" and 0.5, [0, 1] and ["0 m", 1.0].
 bool same_value(const std::string& a, const std::string& b) {
-  const auto bare = [](const std::string& text) {
-    return text.size() > 1 && (text.front() == '"' || text.front() == '\'') ? text.substr(1, text.size() - 2)
-                                                                            : text;
-  };
   constexpr double kRounded = 1e-12;
-  const std::string one = bare(a), other = bare(b);
-  const auto x = parse_any_quantity(one), y = parse_any_quantity(other);
-  return one == other || (x && y && std::abs(x->value - y->value) <= kRounded * std::abs(x->value));
+  const auto same = [](const std::string& one, const std::string& other) {
+    const auto x = parse_any_quantity(one), y = parse_any_quantity(other);
+    return one == other || (x && y && std::abs(x->value - y->value) <= kRounded * std::abs(x->value));
+  };
+  const auto of_a = values_in(a), of_b = values_in(b);
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), same);
 }
 
 // What a key is where it is not given; "" where nothing is.

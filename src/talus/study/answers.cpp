@@ -57,11 +57,26 @@ std::vector<std::string> parts_between(const std::string& formula,
   return out;
 }
 
+// What stands in parentheses, outside of others: of a function each argument.
+std::vector<std::string> in_parentheses(const std::string& formula) {
+  std::vector<std::string> out;
+  int depth = 0;
+  size_t from = 0;
+  for (size_t i = 0; i < formula.size(); ++i) {
+    if (formula[i] == '(' && depth++ == 0) from = i + 1;
+    if (formula[i] == ')' && --depth == 0)
+      for (std::string& part : parts_between(formula.substr(from, i - from), {","}))
+        out.push_back(std::move(part));
+  }
+  return out;
+}
+
 // Whether a comparison that the formula hangs on is of a number that is not finite: it would be false, and told as an answer.
-// What follows a part that decides (false && ..., true || ...) is not asked; of a ? b : c all is as muParser has it.
-bool compares_no_number(std::string formula, const Numbers& numbers) {
+// What follows a part that decides (false && ..., true || ...) is not asked, nor what a ? chooses from.
+bool compares_no_number(const std::string& formula, const Numbers& numbers) {
   std::string trouble;
-  if (formula.find('?') != std::string::npos) return false;
+  if (const auto choice = parts_between(formula, {"?"}); choice.size() > 1)
+    return compares_no_number(choice[0], numbers);
   for (const char* join : {"||", "&&"}) {
     const auto parts = parts_between(formula, {join});
     if (parts.size() == 1) continue;
@@ -71,14 +86,14 @@ bool compares_no_number(std::string formula, const Numbers& numbers) {
     }
     return false;
   }
+  const auto asked = [&](const std::string& part) { return compares_no_number(part, numbers); };
   const auto sides = parts_between(formula, {"<=", ">=", "==", "!=", "<", ">"});
   if (sides.size() > 1)
     return std::any_of(sides.begin(), sides.end(), [&](const std::string& side) {
-      return !std::isfinite(evaluate(side, numbers, trouble));
+      return !std::isfinite(evaluate(side, numbers, trouble)) || asked(side);
     });
-  const std::string_view inner = trimmed(formula);
-  return inner.size() > 2 && inner.front() == '(' && inner.back() == ')' &&
-         compares_no_number(std::string(inner.substr(1, inner.size() - 2)), numbers);
+  const auto inner = in_parentheses(formula);
+  return std::any_of(inner.begin(), inner.end(), asked);
 }
 
 void add_leaves(const std::string& prefix, const json& j, Numbers& out) {

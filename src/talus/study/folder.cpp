@@ -41,7 +41,12 @@ std::optional<ordered_json> json_of(const fs::path& file) {
   return j.is_object() ? std::optional(std::move(j)) : std::nullopt;
 }
 
-std::string absolute_text(const fs::path& path) { return fs::absolute(path).lexically_normal().string(); }
+// One name of a file, whatever links lead to it.
+std::string absolute_text(const fs::path& path) {
+  std::error_code ec;
+  const fs::path found = fs::weakly_canonical(path, ec);
+  return (ec ? fs::absolute(path).lexically_normal() : found).string();
+}
 
 // A line a run, and one with the digest of all: what is torn is known as such.
 std::string plan_text(const std::vector<StudyFolder::Task>& tasks) {
@@ -86,6 +91,12 @@ std::string new_id(const fs::path& folder) {
       fmt::format("{} {} {} {} {}", absolute_text(folder), this_host(), getpid(), now.tv_sec, now.tv_nsec));
 }
 
+// The keys of a run in any order: no two are the same.
+std::vector<std::string> sorted(std::vector<std::string> overrides) {
+  std::sort(overrides.begin(), overrides.end());
+  return overrides;
+}
+
 std::string key_values(const std::vector<std::string>& overrides) {
   std::string out;
   for (const std::string& item : overrides) out += (out.empty() ? "" : ", ") + item;
@@ -93,10 +104,14 @@ std::string key_values(const std::vector<std::string>& overrides) {
 }
 
 // What a folder holds before its study.json is written: a study that was being begun.
-bool is_only_begun(const fs::path& folder) {
+bool is_only_begun(const fs::path& folder, const std::string& study) {
   std::error_code ec;
   fs::directory_iterator entries(folder, ec);
   if (ec) return false;
+  // a study file without a plan is somebody's, unless it is this one
+  if (!is_there(folder / "plan.jsonl") && is_there(folder / "study.toml") &&
+      read_text_file(folder / "study.toml") != study)
+    return false;
   for (const auto& entry : entries) {
     const std::string name = entry.path().filename().string();
     const bool empty =
@@ -136,7 +151,7 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
   std::vector<Task> known;
   Description now{new_id(path_), program, absolute_text(study.file), absolute_text(study.model),
                   sharing.until, {}};
-  if (is_there(path_ / "study.json") && !is_only_begun(path_)) {
+  if (is_there(path_ / "study.json") && !is_only_begun(path_, study.text)) {
     const Description before = description();
     if (now.model != before.model)
       throw InputError(
@@ -144,11 +159,11 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
                       "study: take another folder\n",
                       path_.string(), before.model, now.model));
     check_files(before, program);
-    now.id = before.id, now.study_file = before.study_file, now.files = before.files;
+    now.id = before.id, now.files = before.files;
     if (now.until.empty()) now.until = before.until;
     known = plan_of(path_ / "plan.jsonl").value_or(std::vector<Task>());
     if (known.empty()) known = tasks_by_runs();
-  } else if (fs::exists(path_, ec) && !is_only_begun(path_)) {
+  } else if (fs::exists(path_, ec) && !is_only_begun(path_, study.text)) {
     throw FileError(fmt::format("{}: is not empty, and holds no study. Take another folder", path_.string()));
   }
   for (const std::string& file : files) {
@@ -159,13 +174,13 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
   std::vector<bool> planned;
   size_t free = 0;  // numbers that no record tells of, where the plan was lost
   for (const Task& task : known) {
-    if (!task.overrides.empty()) number.emplace(task.overrides, planned.size());
+    if (!task.overrides.empty()) number.emplace(sorted(task.overrides), planned.size());
     planned.push_back(task.overrides.empty());
   }
   const size_t before = known.size();
   for (size_t k = 0; k < plan.size(); ++k) {
     while (free < known.size() && !known[free].overrides.empty()) ++free;
-    const auto [at, added] = number.emplace(plan[k].overrides, free);
+    const auto [at, added] = number.emplace(sorted(plan[k].overrides), free);
     if (added) {
       if (free == known.size()) known.emplace_back();
       Task& task = known[free];
@@ -237,24 +252,25 @@ void StudyFolder::check_files(const Description& d, const std::string& program) 
   }
 }
 
-void StudyFolder::number(const Study& study, std::vector<PlannedRun>& plan) const {
+int StudyFolder::number(const Study& study, std::vector<PlannedRun>& plan) const {
   if (absolute_text(study.model) != model())
     throw InputError(fmt::format("{}: error: names another model, {}: the runs are of {}\n",
                                  study_file().string(), absolute_text(study.model), model()));
   std::map<std::vector<std::string>, int> numbers;
-  for (const Task& task : tasks()) numbers.emplace(task.overrides, static_cast<int>(numbers.size()));
+  for (const Task& task : tasks()) numbers.emplace(sorted(task.overrides), static_cast<int>(numbers.size()));
+  size_t known = 0;
   for (PlannedRun& run : plan) {
-    const auto at = numbers.find(run.overrides);
-    if (at == numbers.end())
-      throw InputError(fmt::format(
-          "{}: error: plans a run that the folder does not hold ({}): talus study {} -o {} adds it\n",
-          study_file().string(), key_values(run.overrides), study_origin(), path_.string()));
-    run.number = at->second;
+    const auto at = numbers.find(sorted(run.overrides));
+    run.number = at == numbers.end() ? -1 : at->second;
+    known += at != numbers.end();
   }
-  if (plan.size() < numbers.size())
+  const size_t unknown = plan.size() - known;
+  std::erase_if(plan, [](const PlannedRun& run) { return run.number < 0; });
+  if (known < numbers.size())
     throw InputError(
         fmt::format("{}: error: plans {} runs, and the folder holds {}: put back what was taken away\n",
                     study_file().string(), plan.size(), numbers.size()));
+  return static_cast<int>(unknown);
 }
 
 const StudyFolder::Description& StudyFolder::description() const {
@@ -292,11 +308,14 @@ std::vector<StudyFolder::Task> StudyFolder::tasks_by_runs() const {
   std::error_code ec;
   for (const auto& entry : fs::directory_iterator(path_ / "runs", ec)) {
     const auto j = json_of(entry.path() / "run.json");
-    if (!j || !j->contains("run") || !j->contains("set") || !(*j)["run"].is_number_unsigned()) continue;
+    if (!j || !j->contains("run") || !j->contains("set") || !(*j)["run"].is_number_unsigned() ||
+        !(*j)["set"].is_array())
+      continue;
     const size_t k = (*j)["run"];
     if (run_folder(static_cast<int>(k)).filename() != entry.path().filename()) continue;
     if (k >= found.size()) found.resize(k + 1);
-    found[k].overrides = (*j)["set"].get<std::vector<std::string>>();
+    for (const auto& item : (*j)["set"])
+      if (item.is_string()) found[k].overrides.push_back(item.get<std::string>());
   }
   return found;
 }

@@ -60,8 +60,9 @@ class StudyFolder {
   void check(const std::string& program) const;
   /// Grows whenever check() meets a file that has been written since it looked at it last.
   int64_t writings() const { return writings_; }
-  /// Numbers of the runs of this plan. Throws InputError when it holds runs that the folder does not, or the other way.
-  void number(const Study& study, std::vector<PlannedRun>& plan) const;
+  /// Numbers of the runs of this plan; those that the folder does not hold yet are taken out of it, and counted. Throws
+  /// InputError when the folder holds runs that the plan does not, or of another model.
+  int number(const Study& study, std::vector<PlannedRun>& plan) const;
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path study_file() const { return path_ / "study.toml"; }

@@ -123,6 +123,12 @@ std::optional<AnyQuantity> quantity_of(const toml::node& node) {
   return q && std::isfinite(q->number) ? q : std::nullopt;
 }
 
+// An override is a line: long lists are written in several.
+std::string in_one_line(std::string text, const std::string& instead) {
+  for (size_t at; (at = text.find('\n')) != std::string::npos;) text.replace(at, 1, instead);
+  return text;
+}
+
 std::string digits(double v) {
   return v == std::floor(v) && std::abs(v) < 1e15 ? fmt::format("{}", static_cast<int64_t>(v))
                                                   : fmt::format("{}", v);
@@ -285,9 +291,10 @@ class StudyReader {
       } else {
         std::ostringstream out;
         if (const auto text = item.value_exact<std::string>())
-          value.shown = *text, value.toml = in_quotes(*text);
+          value.shown = *text, value.toml = in_one_line(in_quotes(*text), "\\n");
         else
-          item.visit([&out](const auto& n) { out << n; }), value.shown = value.toml = out.str();
+          item.visit([&out](const auto& n) { out << n; }),
+              value.shown = value.toml = in_one_line(out.str(), " ");
       }
       axis.values.push_back(value);
     }
@@ -379,8 +386,7 @@ class StudyReader {
       std::error_code ec;
       if (!fs::is_regular_file(file, ec)) continue;
       axis.paths.push_back(file);
-      axis.values.push_back(
-          {in_quotes(fs::absolute(file).lexically_normal().string()), name_of_match(file, pattern)});
+      axis.values.push_back({in_quotes(fs::weakly_canonical(file).string()), name_of_match(file, pattern)});
     }
     std::set<std::string> names;
     for (const AxisValue& v : axis.values) names.insert(v.shown);

@@ -575,6 +575,12 @@ TEST_CASE("study: what is no number within a comparison decides nothing") {
   CHECK(damaged("x < 0 || (ln(x) > 1)", -1) == 1);
   CHECK(damaged("(ln(x) > 1) || x < 0", -1) == -1);
   CHECK(damaged("x > 0 ? ln(x) > 1 : 0", -1) == 0);
+  CHECK(damaged("ln(x) > 1 ? 1 : 0", -1) == -1);
+  CHECK(damaged("(x > 0.05) * (x < 3)", 1) == 1);
+  CHECK(damaged("(x > 0.05) + (x > 3)", 0) == 0);
+  CHECK(damaged("max(ln(x) > 1, x > 5)", -1) == -1);
+  CHECK(damaged("(ln(x) > 1) * 1", -1) == -1);
+  CHECK(damaged("(ln(x) > 1) == 0", -1) == -1);
 }
 
 TEST_CASE("study: values and keys that would count twice, and intensities without a logarithm, are refused") {

@@ -55,7 +55,8 @@ class MeshReader : private SectionReader {
       mesh = read_msh(path.string(), text);
       return true;
     } catch (const FileError& e) {
-      if (std::error_code ec; std::filesystem::is_regular_file(path, ec)) throw;  // there, and not to be read now
+      if (std::error_code ec; std::filesystem::is_regular_file(path, ec))
+        throw;  // there, and not to be read now
       findings_.error(f.where("file"), f.path_of("file"), e.what(),
                       "the path counts from the folder of the model file");
     } catch (const InputError& e) {

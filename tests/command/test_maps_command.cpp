@@ -246,7 +246,7 @@ TEST_CASE("import: what cannot be read or is not there is told, and nothing is w
   refused("empty.geojson --as A=joints", 3, "empty.geojson");
 }
 
-TEST_CASE("import: a spline given by fit points alone is left out, and said; the rest is read") {
+TEST_CASE("import: a spline given by fit points alone is left out, and said, the rest is read") {
   if (!has_module()) return;
   const Folder folder;
   const Outcome o = shell(folder, "$talus import " + kMaps + "fit_spline.dxf -o out.toml");
@@ -257,7 +257,7 @@ TEST_CASE("import: a spline given by fit points alone is left out, and said; the
   CHECK(model_of(read_text_file(folder / "out.toml")).traces.size() == 1);
 }
 
-TEST_CASE("cut: maps in a model become sections; run refuses them and takes the model that cut writes") {
+TEST_CASE("cut: maps in a model become sections, run refuses them and takes the model that cut writes") {
   if (!has_module()) return;
   const Folder folder;
   shell(folder, "cp " + kMaps +

@@ -438,7 +438,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "path: bricks under a growing share of their weight sideways go at the limit load; a hand slides their top course") {
+    "path: bricks under a growing share of their weight sideways go at the limit load, a hand slides their top course") {
   const std::string wall = read_text_file(source_file("examples/pushed_wall/pushed_wall.toml"));
   const std::string path =
       "[[stage]]\nname = \"push\"\nkind = \"static\"\npath = 1\nduration = 60\nincrements = {}\n[history.way]\ntime = "

@@ -61,7 +61,7 @@ TEST_CASE("a square of 64 x 64 falls into rectangles of 8 x 16") {
   }
 }
 
-TEST_CASE("sizes differ by one at most; the order of the places does not matter") {
+TEST_CASE("sizes differ by one at most, the order of the places does not matter") {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> number(-3, 40);
   std::vector<Vec2> places(1234);

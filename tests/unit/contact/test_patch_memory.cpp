@@ -240,7 +240,7 @@ std::vector<Pose> rocked(const PutBlocks& blocks, double turn, double way) {
 
 }  // namespace
 
-TEST_CASE("patch memory: what opens loses its share of the shear, for good; what stays closed keeps it") {
+TEST_CASE("patch memory: what opens loses its share of the shear, for good, what stays closed keeps it") {
   PutBlocks blocks(block_on_floor());
   constexpr double kSheared = 0.05;  // of the closure: the toe's end bears little
   shear(blocks, kSheared);

@@ -104,7 +104,7 @@ TEST_CASE("a step higher than the closure stops a corner") {
                     [&](const Contact& c) { return bears_sideways(scene, state, c); }));
 }
 
-TEST_CASE("what bore a force stays on its side; covered, it goes where it is free") {
+TEST_CASE("what bore a force stays on its side, covered, it goes where it is free") {
   const Scene scene = crossing();
   State state = start_state(scene);
   state.displacement[0].x = -0.05;  // the joint below is wide open: the corner falls in and bears on the side

@@ -274,7 +274,7 @@ TEST_CASE("`reuse` is never more than a quarter of the margin") {
   }
 }
 
-TEST_CASE("memory goes with the key; a corner that passes to the next edge keeps its force, not its anchor") {
+TEST_CASE("memory goes with the key, a corner that passes to the next edge keeps its force, not its anchor") {
   // a wedge with its tip on a floor of two edges that meet at a slight angle
   const Polygon floor{{-3, -1}, {3, -1}, {3, -0.02}, {0, 0}, {-3, -0.02}},
       wedge{{0.1, 0.002}, {0.6, 1}, {-0.4, 1}};

@@ -274,7 +274,7 @@ TEST_CASE("other blocks keep their names whether an opening is kept or removed")
   CHECK(kept.blocks.size() == removed.blocks.size() + static_cast<size_t>(removed.taken_out));
 }
 
-TEST_CASE("of two openings the later holds where both are; one outside all regions is an error") {
+TEST_CASE("of two openings the later holds where both are, one outside all regions is an error") {
   Model model = rock_model(box_polygon(0, 0, 10, 10));
   add_opening(model, box_polygon(1, 1, 4, 4), true);
   add_opening(model, box_polygon(3, 3, 6, 6), true);

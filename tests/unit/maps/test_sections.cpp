@@ -160,7 +160,7 @@ TEST_CASE("maps: wrong ones are told") {
   CHECK(told.find("is not closed: its ends are 6 m apart") != std::string::npos);
 }
 
-TEST_CASE("maps: areas are outlines, openings or stones, of any kind; as joints they warn") {
+TEST_CASE("maps: areas are outlines, openings or stones, of any kind, as joints they warn") {
   Drawing d = drawing(1, {0, 0});
   const auto area = [&d](const std::string& layer, const Polyline& ring, bool is_hole = false) {
     Feature f = line(layer, ring);

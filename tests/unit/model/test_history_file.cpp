@@ -57,7 +57,7 @@ const std::string kTable =
 
 }  // namespace
 
-TEST_CASE("history file: columns by title, name and quantity become SI; steps may be uneven") {
+TEST_CASE("history file: columns by title, name and quantity become SI, steps may be uneven") {
   Case c;
   c.write("m.csv", kTable);
   const Model model = c.read("file = \"m.csv\"\ncolumn = \"acceleration\"\n");

@@ -94,7 +94,7 @@ TEST_CASE("rotate turns about the centroid when no point is given, and about the
   CHECK(norm(g.blocks[0].polygon[0] - Vec2{3, -1}) < 1e-12);
 }
 
-TEST_CASE("what is not turned keeps its bits; a point to turn about alone is refused") {
+TEST_CASE("what is not turned keeps its bits, a point to turn about alone is refused") {
   const std::string block =
       "[[block]]\nname = \"b\"\nmaterial = \"rock\"\npolygon = [[0.1, 0.7], [3, 0], [0, 3]]\n";
   const Layout a = laid_out(block), b = laid_out(block + "rotate = \"0 deg\"\nmove = [0, 0]\n");

@@ -218,7 +218,7 @@ TEST_CASE("wrong loads") {
   });
 }
 
-TEST_CASE("use = false leaves a boundary out, an override brings it back; its keys are read all the same") {
+TEST_CASE("use = false leaves a boundary out, an override brings it back, its keys are read all the same") {
   const auto boundaries = [](const std::string& text, const std::vector<std::string>& overrides) {
     Findings findings("model.toml", text);
     return prepare_run("model.toml", text, overrides, findings).scene.model.boundaries.size();

@@ -270,7 +270,7 @@ TEST_CASE(
   CHECK(damping_text(falls).empty());
 }
 
-TEST_CASE("resolution: every way to shake or push is seen, once per history; rigid blocks carry no waves") {
+TEST_CASE("resolution: every way to shake or push is seen, once per history, rigid blocks carry no waves") {
   std::string text = row_of(3);
   const size_t formula = text.find("expression"), line_end = text.find('\n', formula);
   text.replace(formula, line_end - formula, "expression = \"t < 1 ? 1e-3*(1-cos(2*_pi*t)) : 0\"");

@@ -264,7 +264,7 @@ TEST_CASE("rigid blocks and blocks in free fall are not touched by implicit elas
 }
 
 TEST_CASE(
-    "a block that flies ten times its radius in a step ends the run; one that is held against as much does not") {
+    "a block that flies ten times its radius in a step ends the run, one that is held against as much does not") {
   Scene scene = scene_of({{box_polygon(0, 0, 1, 1), BlockKind::kRigid}}, 0.2);
   March march(scene, true);
   march.state.rate[0].a = {0, 1500};

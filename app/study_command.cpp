@@ -212,7 +212,7 @@ int gather(const study::StudyFolder& folder, const study::Study& s, bool quiet) 
   if (!quiet)
     show("{}written to {}: results.csv, study.html, figures/\n", study::gathered_text(s, found),
          folder.path().string());
-  return found.not_done > 0 ? kExitUnfinished : kExitOk;
+  return found.of(study::Outcome::kNotDone) > 0 ? kExitUnfinished : kExitOk;
 }
 
 // What a program prints; "" when it cannot be run.

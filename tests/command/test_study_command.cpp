@@ -288,7 +288,8 @@ TEST_CASE("command study: answers have units, and what a script of Slurm cannot 
   write(folder, "study.toml", kStudy);
   CHECK(shell(folder, "PATH=$PWD/bin:$PATH $talus study study.toml -o 'a b%c' --on slurm").code == 0);
   has(content(folder / "bin/script"), "#SBATCH --output=\"");
-  has(content(folder / "bin/script"), "/a b%%c/work/slurm-%A_%a.txt\"\n");
+  has(content(folder / "bin/script"), "/a b%%c/");
+  has(content(folder / "bin/script"), "/slurm-%A_%a.txt\"\n");
   const Outcome name = shell(folder, "PATH=$PWD/bin:$PATH $talus study study.toml -o 'a\"b' --on slurm");
   CHECK(name.code == 4);
   has(name.text, "cannot name it");

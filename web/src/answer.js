@@ -13,7 +13,7 @@ export function verdictsOf(run) {
     if (slipped > 0) {
       const at = j["residual_slip_largest_at"], open = j["residual_slip_largest_while_open [m]"] ?? 0;
       const left = j["residual_slip_largest [m]"] !== undefined
-        ? `residual slip at most ${withUnit(j["residual_slip_largest [m]"], "m")}${open > 0.01 * j["residual_slip_largest [m]"] ? ` (${withUnit(open, "m")} of it while the joint was open)` : ""}${at ? ` between ${at.blocks.join(" and ")}${at.set ? ` along "${at.set}"` : ""}` : ""}, ` : "";
+        ? `residual slip at most ${withUnit(j["residual_slip_largest [m]"], "m")}${number(j["residual_slip_largest [m]"] - open, 3) !== number(j["residual_slip_largest [m]"], 3) ? ` (${withUnit(open, "m")} of it while the joint was open)` : ""}${at ? ` between ${at.blocks.join(" and ")}${at.set ? ` along "${at.set}"` : ""}` : ""}, ` : "";
       out.push(["joints", `${count(slipped, "joint")} slipped: ${left}accumulated slip at most ${withUnit(j["slip_largest [m]"], "m")}`]);
     } else out.push(["joints", "no joint slipped"]);
     const broken = j["broken_length [m]"], open = j["opening_largest [m]"], more = [];

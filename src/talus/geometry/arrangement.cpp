@@ -26,9 +26,6 @@ constexpr double kMoved = 1.5, kMovedTwice = 16;
 // in cells of the grid.
 constexpr double kLeastPiece = 0.25, kNearCorner = 64;
 
-// An index of lines has at most so many places for each edge and line: its memory stays in proportion. Fewer are slower.
-constexpr double kLeastCells = 1.0 / 64;
-
 using Node = std::array<int64_t, 2>;  // in cells of the grid
 
 struct NodeHash {
@@ -323,13 +320,14 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
     out.face.push_back(std::move(face));
   }
 
-  // the line along each edge; lines of which nothing was left, thinner than the grid, are long and have no edges
+  // the line along each edge; an index with no more places than edges and lines: of lines thinner than the grid nothing may
+  // be left but their length
   double length = 0;
   for (const Polyline& line : local)
     for (size_t k = 0; k + 1 < line.size(); ++k) length += norm(line[k + 1] - line[k]);
   const auto edges = static_cast<double>(std::max<size_t>(out.edge.size(), 1)),
              all = edges + static_cast<double>(local.size());
-  const double cell = std::max({total / edges, kLeastCells * length / all, 4 * grid});
+  const double cell = std::max({total / edges, length / all, 4 * grid});
   const LineIndex index(local, cell, kMovedTwice * grid);
   for (const auto& [a, b] : out.edge) {
     const Vec2 p = out.point[static_cast<size_t>(a)], q = out.point[static_cast<size_t>(b)];

@@ -340,7 +340,8 @@ std::vector<std::string> values_in(const std::string& text) {
 
 // "30 deg" and 0.5235987755982988, "500 ms" and 0.5, [0, 1] and ["0 m", 1.0].
 bool same_value(const std::string& a, const std::string& b) {
-  constexpr double kRounded = 1e-12;
+  constexpr double kRounded =
+      1e-12;  // a unit is converted to some 1e-16; nobody writes a 13th digit to mean another value
   const auto same = [](const std::string& one, const std::string& other) {
     const auto x = parse_any_quantity(one), y = parse_any_quantity(other);
     return one == other || (x && y && std::abs(x->value - y->value) <= kRounded * std::abs(x->value));

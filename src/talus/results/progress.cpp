@@ -136,11 +136,11 @@ void Progress::finish() {
 
 namespace {
 
-// Of residual slip that is more than was slid: the rest came while the joint was open.
+// Of residual slip that is more than was slid, as far as the digits show it: the rest came while the joint was open.
 std::string open_text(const JointPoint& p) {
-  constexpr double kWorthAWord = 0.01;
-  return p.slip_while_open() > kWorthAWord * p.residual_slip()
-             ? fmt::format(" ({:.3g} m of it while the joint was open)", p.slip_while_open())
+  const double went = p.slip_while_open(), left = p.residual_slip();
+  return fmt::format("{:.3g}", left) != fmt::format("{:.3g}", left - went)
+             ? fmt::format(" ({:.3g} m of it while the joint was open)", went)
              : "";
 }
 

@@ -80,7 +80,8 @@ RunNotes notes_of(const std::vector<std::string>& overrides, const Findings& fin
 
 std::vector<std::pair<std::string, std::string>> warnings_of(const Scene& scene, const RunResult& r,
                                                              const JointSummary& joints, bool audited) {
-  constexpr double kMostClosed = 0.05;  // of a block's thickness
+  // of a block's thickness: its joints have taken more room than their thickness in any drawing; a fifth of what ends a run
+  constexpr double kWorthAWarning = 0.05;
   std::vector<std::pair<std::string, std::string>> out;
   if (r.ringing_steps > 0)
     out.emplace_back(
@@ -90,7 +91,7 @@ std::vector<std::pair<std::string, std::string>> warnings_of(const Scene& scene,
             "contact.alpha damps what they ring by then. Where they knock for long, how far they slip and rock "
             "hangs on the step, and far less with a joint of restitution = 0, or as rigid blocks",
             r.ringing_steps, r.steps));
-  if (r.closed_share > kMostClosed)
+  if (r.closed_share > kWorthAWarning)
     out.emplace_back("WARNING", fmt::format("{} (t = {:.4g} s)", r.closed_row, r.closed_time));
   if (const std::string jolt = jolt_text(scene, r); !jolt.empty()) out.emplace_back("WARNING", jolt);
   if (!audited)

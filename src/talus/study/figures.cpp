@@ -84,14 +84,12 @@ class Figures {
     figure.y_min = -0.02, figure.y_max = 1.02, figure.x_min = 0;  // marks at 0 and 1 are seen whole
     double most = 0;
     for (const StateCurves& c : found_.states)
-      for (const FragilityPoint& p : c.points[static_cast<size_t>(NotValidAs::kSound)])
-        most = std::max(most, p.intensity);
+      for (const FragilityPoint& p : c.points_of(NotValidAs::kSound)) most = std::max(most, p.intensity);
     if (most == 0) return;
     most *= 1.1;
     figure.x_max = most;
     for (size_t s = 0; s < found_.states.size(); ++s)
-      for (const NotValidAs as : {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut})
-        if (found_.states[s].not_valid > 0 || as == NotValidAs::kLeftOut) state_curve(figure, s, as, most);
+      for (const NotValidAs as : found_.states[s].ways()) state_curve(figure, s, as, most);
     keep(figure, "fragility");
   }
 
@@ -125,7 +123,7 @@ class Figures {
     }
     if (as != NotValidAs::kLeftOut && f.found()) return;  // marks are of what is known
     std::vector<double> px, py;
-    for (const FragilityPoint& p : c.points[static_cast<size_t>(as)])
+    for (const FragilityPoint& p : c.points_of(as))
       px.push_back(p.intensity), py.push_back(static_cast<double>(p.damaged) / p.runs);
     plot::Curve marks = crosses(f.found() ? "" : name + ": no curve", px, py, most, 1, color);
     marks.in_legend = !f.found();
@@ -336,18 +334,16 @@ std::string fragility_part(const Study& study, const Gathered& found) {
   out +=
       "<div class=\"scroll\"><table><tr><th class=\"text\">state</th><th class=\"text\">not valid as</th><th>median</th><th>beta</th><th>runs</th><th>damaged</th><th>not valid</th><th>not finite</th></tr>\n";
   for (size_t s = 0; s < found.states.size(); ++s)
-    for (const NotValidAs as : {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut}) {
+    for (const NotValidAs as : found.states[s].ways()) {
       const StateCurves& c = found.states[s];
-      if (c.not_valid == 0 && as != NotValidAs::kLeftOut) continue;
       const Fragility& f = c.of(as);
-      int runs = 0, damaged = 0;
-      for (const FragilityPoint& p : c.points[static_cast<size_t>(as)]) runs += p.runs, damaged += p.damaged;
+      const FragilityPoint sum = c.sum(as);
       out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"text\">{}</td>",
                          in_markup(study.states[s].name), c.not_valid > 0 ? name_of(as) : "");
       out += f.found() ? fmt::format("<td>{:.4g}</td><td>{:.3f}</td>", f.median, f.beta)
                        : fmt::format("<td colspan=\"2\" class=\"long\">{}</td>", in_markup(f.trouble));
-      out += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", runs, damaged, c.not_valid,
-                         c.not_finite);
+      out += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", sum.runs, sum.damaged,
+                         c.not_valid, c.not_finite);
     }
   return out + "</table></div>\n";
 }
@@ -382,10 +378,10 @@ std::string study_page(const Study& study, const Gathered& found, const std::vec
       "<p>{3}, of <code>{4}</code>.</p>\n",
       in_markup(title), kPageStyle, kStyle, in_markup(found.counts()),
       in_markup(study.model.filename().string()));
-  if (found.not_done > 0)
+  if (const int not_done = found.of(Outcome::kNotDone); not_done > 0)
     out += fmt::format(
         "<p><b>{} runs are not done, and count nowhere: the command that began the study makes them.</b></p>\n",
-        found.not_done);
+        not_done);
   for (const std::string& trouble : found.troubles) out += "<p><b>" + in_markup(trouble) + "</b></p>\n";
   out += fragility_part(study, found) + findings_part(found);
   if (!study.states.empty() && found.states.empty()) {

@@ -123,6 +123,50 @@ bool is_only_begun(const fs::path& folder, const std::string& study) {
   return true;
 }
 
+// Numbers of the planned runs: those that are known keep theirs, the others are added. Throws InputError, FileError where
+// the folder has runs that are not planned.
+void take_in(const Study& study, std::vector<PlannedRun>& plan, const StudyFolder::Sharing& sharing,
+             std::vector<StudyFolder::Task>& known, const fs::path& folder) {
+  std::map<std::vector<std::string>, size_t> number;
+  std::vector<bool> planned;
+  size_t free = 0;  // numbers that no record tells of, where the plan was lost
+  for (const StudyFolder::Task& task : known) {
+    if (!task.overrides.empty()) number.emplace(sorted(task.overrides), planned.size());
+    planned.push_back(task.overrides.empty());
+  }
+  for (size_t k = 0; k < plan.size(); ++k) {
+    while (free < known.size() && !known[free].overrides.empty()) ++free;
+    const auto [at, added] = number.emplace(sorted(plan[k].overrides), free);
+    if (added) {
+      if (free == known.size()) known.emplace_back();
+      StudyFolder::Task& task = known[free];
+      task.overrides = plan[k].overrides;
+      if (k < sharing.group.size() && !sharing.group[k].empty())
+        task.group = sharing.group[k], task.group_overrides = sharing.group_overrides[k];
+    } else if (at->second < planned.size()) {
+      planned[at->second] = true;
+    }
+    plan[k].number = static_cast<int>(at->second);
+  }
+  const auto gone = static_cast<size_t>(std::find(planned.begin(), planned.end(), false) - planned.begin());
+  if (gone < planned.size()) {
+    const bool squares = study.latin_hypercube && std::any_of(study.axes.begin(), study.axes.end(),
+                                                              [](const Axis& a) { return a.sampled; });
+    throw InputError(fmt::format(
+        "{}: error: run {} of this folder ({}) is no run of the study file any more: runs can be added, and none "
+        "taken away. {}\n",
+        folder.string(), gone, key_values(known[gone].overrides),
+        squares ? "Another number of samples of a Latin hypercube is another hypercube, with other samples: "
+                  "method = \"random\" can be extended"
+                : "Put its values back, or take another folder (answers, failure and fragility may change)"));
+  }
+  if (!std::all_of(known.begin(), known.end(), [](const auto& task) { return !task.overrides.empty(); }))
+    throw FileError(
+        fmt::format("{}: is missing or torn, and runs/ holds runs that the study file does not plan: "
+                    "take another folder",
+                    (folder / "plan.jsonl").string()));
+}
+
 }  // namespace
 
 const char* name_of(Outcome outcome) { return kOutcomeName[static_cast<size_t>(outcome)]; }
@@ -151,7 +195,9 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
   std::vector<Task> known;
   Description now{new_id(path_), program, absolute_text(study.file), absolute_text(study.model),
                   sharing.until, {}};
-  if (is_there(path_ / "study.json") && !is_only_begun(path_, study.text)) {
+  // one that is torn was never begun, where there is nothing else
+  if (json_of(path_ / "study.json") ||
+      (is_there(path_ / "study.json") && !is_only_begun(path_, study.text))) {
     const Description before = description();
     if (now.model != before.model)
       throw InputError(
@@ -170,50 +216,12 @@ void StudyFolder::begin(const Study& study, std::vector<PlannedRun>& plan, const
     const std::string path = absolute_text(file);
     if (!now.files.count(path)) now.files[path] = file_hash(path);
   }
-  std::map<std::vector<std::string>, size_t> number;
-  std::vector<bool> planned;
-  size_t free = 0;  // numbers that no record tells of, where the plan was lost
-  for (const Task& task : known) {
-    if (!task.overrides.empty()) number.emplace(sorted(task.overrides), planned.size());
-    planned.push_back(task.overrides.empty());
-  }
-  const size_t before = known.size();
-  for (size_t k = 0; k < plan.size(); ++k) {
-    while (free < known.size() && !known[free].overrides.empty()) ++free;
-    const auto [at, added] = number.emplace(sorted(plan[k].overrides), free);
-    if (added) {
-      if (free == known.size()) known.emplace_back();
-      Task& task = known[free];
-      task.overrides = plan[k].overrides;
-      if (k < sharing.group.size() && !sharing.group[k].empty())
-        task.group = sharing.group[k], task.group_overrides = sharing.group_overrides[k];
-    } else if (at->second < before) {
-      planned[at->second] = true;
-    }
-    plan[k].number = static_cast<int>(at->second);
-  }
-  if (const auto gone = std::find(planned.begin(), planned.end(), false); gone != planned.end()) {
-    const bool squares = study.latin_hypercube && std::any_of(study.axes.begin(), study.axes.end(),
-                                                              [](const Axis& a) { return a.sampled; });
-    throw InputError(fmt::format(
-        "{}: error: run {} of this folder ({}) is no run of the study file any more: runs can be added, and none "
-        "taken away. {}\n",
-        path_.string(), gone - planned.begin(),
-        key_values(known[static_cast<size_t>(gone - planned.begin())].overrides),
-        squares ? "Another number of samples of a Latin hypercube is another hypercube, with other samples: "
-                  "method = \"random\" can be extended"
-                : "Put its values back, or take another folder (answers, failure and fragility may change)"));
-  }
+  take_in(study, plan, sharing, known, path_);
   for (const char* name : {"", "work", "runs", "parents"}) {
     fs::create_directories(path_ / name, ec);
     if (ec) fail_file(path_ / name, "made", ec.value());
   }
   write_file(study_file(), study.text);  // answers may have changed
-  if (!std::all_of(known.begin(), known.end(), [](const Task& t) { return !t.overrides.empty(); }))
-    throw FileError(
-        fmt::format("{}: is missing or torn, and runs/ holds runs that the study file does not plan: "
-                    "take another folder",
-                    (path_ / "plan.jsonl").string()));
   const std::string lines = plan_text(known);
   if (!is_there(path_ / "plan.jsonl") || read_text_file(path_ / "plan.jsonl") != lines)
     write_file(path_ / "plan.jsonl", lines, Reach::kDisk);

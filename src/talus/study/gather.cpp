@@ -139,6 +139,17 @@ const char* name_of(NotValidAs as) {
   return as == NotValidAs::kDamaged ? "damaged" : as == NotValidAs::kSound ? "sound" : "left out";
 }
 
+std::vector<NotValidAs> StateCurves::ways() const {
+  if (not_valid == 0) return {NotValidAs::kLeftOut};
+  return {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut};
+}
+
+FragilityPoint StateCurves::sum(NotValidAs as) const {
+  FragilityPoint all;
+  for (const FragilityPoint& p : points_of(as)) all.runs += p.runs, all.damaged += p.damaged;
+  return all;
+}
+
 bool StateCurves::has_single() const { return not_valid <= kMostNotValid * (runs + not_valid); }
 
 std::string StateCurves::headline(NotValidAs asked) const {
@@ -183,7 +194,6 @@ Gathered gather(const Study& study, const std::vector<PlannedRun>& plan, const S
     troubles.insert(fmt::format(
         "the hosts that made these runs have {} mathematics libraries: the last digits of runs are those of their host",
         arithmetics.size()));
-  out.not_done = out.of(Outcome::kNotDone);
   out.troubles.assign(troubles.begin(), troubles.end());
   size_t over = 0;
   while (over < study.axes.size() && study.axes[over].name != study.over) ++over;
@@ -219,19 +229,17 @@ std::string fragility_csv(const Study& study, const Gathered& found) {
       "state,over,not_valid_as,median,beta,error_of_ln_median,error_of_beta,runs,damaged,not_valid,not_finite,"
       "refused,not_done,trouble\n";
   for (size_t s = 0; s < found.states.size(); ++s)
-    for (const NotValidAs as : {NotValidAs::kDamaged, NotValidAs::kSound, NotValidAs::kLeftOut}) {
+    for (const NotValidAs as : found.states[s].ways()) {
       const StateCurves& c = found.states[s];
-      if (c.not_valid == 0 && as != NotValidAs::kLeftOut) continue;
       const Fragility& f = c.of(as);
-      int runs = 0, damaged = 0;
-      for (const FragilityPoint& p : c.points[static_cast<size_t>(as)]) runs += p.runs, damaged += p.damaged;
+      const FragilityPoint sum = c.sum(as);
       out += fmt::format("{},{},{},", table_cell(outside_text(study.states[s].name)), table_cell(study.over),
                          name_of(as));
       out += f.found()
                  ? fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", f.median, f.beta, f.median_error, f.beta_error)
                  : ",,,";
-      out += fmt::format(",{},{},{},{},{},{},{}\n", runs, damaged, c.not_valid, c.not_finite,
-                         found.of(Outcome::kRefused), found.not_done, table_cell(f.trouble));
+      out += fmt::format(",{},{},{},{},{},{},{}\n", sum.runs, sum.damaged, c.not_valid, c.not_finite,
+                         found.of(Outcome::kRefused), found.of(Outcome::kNotDone), table_cell(f.trouble));
     }
   return out;
 }

@@ -51,6 +51,13 @@ struct StateCurves {
   int runs = 0, damaged = 0, not_valid = 0, not_finite = 0;  // of those at an intensity > 0 that ended
 
   const Fragility& of(NotValidAs as) const { return fit[static_cast<size_t>(as)]; }
+  const std::vector<FragilityPoint>& points_of(NotValidAs as) const {
+    return points[static_cast<size_t>(as)];
+  }
+  /// Ways of counting that differ: one where all runs are valid.
+  std::vector<NotValidAs> ways() const;
+  /// All points of one way together.
+  FragilityPoint sum(NotValidAs as) const;
   /// Whether so few are not valid that a single median may be told.
   bool has_single() const;
   /// "median 0.98 (68 %: 0.89 to 1.07), beta 0.22"; of runs that are not valid the interval of medians; or why there is none.
@@ -63,7 +70,6 @@ struct Gathered {
   std::vector<std::string> units;     // of each answer, "" where none is known
   std::vector<std::string> troubles;  // of formulas
   std::array<int, 5> count{};         // of each outcome
-  int not_done = 0;
 
   int of(Outcome outcome) const { return count[static_cast<size_t>(outcome)]; }
   /// "20 runs: 16 finished, 4 not valid"

@@ -58,7 +58,7 @@ const std::string kHead = "talus_study = 1\nmodel = \"m.toml\"\n";
 }  // namespace
 
 TEST_CASE(
-    "study: listed keys make every combination, the last one fastest; sampled ones are drawn for each") {
+    "study: listed keys make every combination, the last one fastest, sampled ones are drawn for each") {
   const Study s =
       read(kHead +
            "set = [\"solver.tolerance=1e-7\"]\n"

@@ -160,7 +160,9 @@ class Search {
     // the same by longer strides, beside it where a processor has nothing to do; its trials are not told
     SafetySettings quiet;
     quiet.jobs = settings_.jobs;
-    const bool beside = processors() > std::max(workers_.threads(), settings_.jobs);
+    // never where states are read: that is done in a copy of this process, which may have no other thread
+    const bool beside =
+        settings_.known.empty() && processors() > std::max(workers_.threads(), settings_.jobs);
     const Workers alone(1);
     Search coarse(prepared_, beside ? alone : workers_, quiet, stood, begun);
     const auto by_longer = [&coarse] {
@@ -235,11 +237,12 @@ class Search {
   // Tries factors, rising, side by side, and takes over what they say; whether the first stands.
   bool round(const std::vector<double>& factors) {
     const std::shared_ptr<const Base> from = base_;
-    std::vector<Tried> tried(factors.size());
+    std::vector<std::optional<Tried>> tried(factors.size());
+    for (size_t k = 0; k < factors.size(); ++k) tried[k] = as_known(factors[k]);
     std::vector<std::exception_ptr> wrong(factors.size());
     const auto one = [&](size_t k, const Workers& workers) {
       try {
-        tried[k] = attempt(factors[k], workers);
+        if (!tried[k]) tried[k] = attempt(factors[k], workers);
       } catch (...) {
         wrong[k] = std::current_exception();
       }
@@ -254,20 +257,22 @@ class Search {
     bool all_stand = true;
     for (size_t k = 0; k < factors.size(); ++k) {
       if (wrong[k]) std::rethrow_exception(wrong[k]);
-      result_.trials.push_back(tried[k].trial);
-      if (tried[k].after) save(tried[k].trial, *tried[k].after);
-      if (settings_.told) settings_.told(tried[k].trial);
+      const SafetyTrial& trial = tried[k]->trial;
+      std::unique_ptr<Base>& after = tried[k]->after;
+      result_.trials.push_back(trial);
+      if (after) save(trial, *after);
+      if (settings_.told) settings_.told(trial);
       // of several that were tried at once the first that fails ends it: what lies above is not asked
-      if (tried[k].trial.stands && all_stand) {
+      if (trial.stands && all_stand) {
         result_.stands = factors[k];
-        if (tried[k].after) before_ = from, base_ = std::move(tried[k].after);
-      } else if (!tried[k].trial.stands && all_stand) {
+        if (after) before_ = from, base_ = std::move(after);
+      } else if (!trial.stands && all_stand) {
         result_.fails = factors[k];
         failed_from_ = from;
         all_stand = false;
       }
     }
-    return tried[0].trial.stands;
+    return tried[0]->trial.stands;
   }
 
   // The stages without the action, once.
@@ -349,11 +354,12 @@ class Search {
       state.energy_start -= scene.blocks.mass[k] * dot(model.gravity - was, state.displacement[k]);
   }
 
-  Tried attempt(double factor, const Workers& workers) const {
+  // What a search that was broken off has told of it; nothing where it has to be run.
+  std::optional<Tried> as_known(double factor) const {
     const bool needs_no_state = input_.by == SafetyBy::kStrength && input_.from_start;
     for (const SafetyTrial& k : settings_.known) {
       if (k.factor != factor || k.from != (base_ ? base_->factor : 0)) continue;
-      if (!k.stands || needs_no_state) return {k, nullptr};
+      if (!k.stands || needs_no_state) return Tried{k, nullptr};
       auto after = std::make_unique<Base>(base_ ? *base_ : beginning(factor));
       if (base_) raise(after->scene, after->state, factor);
       if (!(base_ ? take_saved(k, *after) : take_saved_stages(k, *after))) break;
@@ -361,8 +367,12 @@ class Search {
         after->factor = factor;
       else
         count_from_here(*after, factor);
-      return {k, std::move(after)};
+      return Tried{k, std::move(after)};
     }
+    return std::nullopt;
+  }
+
+  Tried attempt(double factor, const Workers& workers) const {
     return base_ ? of_action(factor, *base_, workers, nullptr) : of_start(factor, workers, nullptr);
   }
 

@@ -54,7 +54,8 @@ struct SafetySettings {
   std::function<void(Observer& keeper, const RunResult& result)> kept;
   std::vector<SafetyTrial> known;  // of a search that was broken off: what they say is taken over
   /// Keeps the state of a trial that stood, before it is told, and has it again for a search that goes on: where there is
-  /// none the trial is run again. Factor 0: the stages before anything is raised.
+  /// none the trial is run again. Factor 0: the stages before anything is raised. `saved` is called while no trial is at
+  /// work.
   std::function<void(const SafetyTrial& trial, const Archive& state)> save;
   std::function<std::optional<Archive>(const SafetyTrial& trial)> saved;
 };

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 
 #include "talus/run/safety.h"
@@ -46,21 +47,28 @@ std::string row_of_two(const std::string& integration, const std::string& safety
 
 struct Kept {
   std::vector<SafetyTrial> told;
-  std::map<std::pair<double, double>, Archive> states;
+  std::map<std::pair<double, double>, std::string> states;  // as files of them are
 };
 
-SafetyResult search(const PreparedRun& prepared, Kept& kept, const Kept* before, int& taken) {
+int threads() {
+  int n = 0;
+  for ([[maybe_unused]] const auto& task : std::filesystem::directory_iterator("/proc/self/task")) ++n;
+  return n;
+}
+
+SafetyResult search(const PreparedRun& prepared, int jobs, Kept& kept, const Kept* before, int& taken) {
   SafetySettings settings;
+  settings.jobs = jobs;
   settings.told = [&kept](const SafetyTrial& t) { kept.told.push_back(t); };
   settings.save = [&kept](const SafetyTrial& t, const Archive& a) {
-    // as a file gives it back
-    kept.states.insert_or_assign({t.factor, t.from}, parse_archive("state", archive_bytes(a)));
+    kept.states.insert_or_assign({t.factor, t.from}, archive_bytes(a));
   };
   if (before) settings.known = before->told;
   settings.saved = [before, &taken](const SafetyTrial& t) -> std::optional<Archive> {
     if (!before || before->states.count({t.factor, t.from}) == 0) return std::nullopt;
+    CHECK(threads() == 1);  // or the copy of this process that reads a state waits for what another one held
     ++taken;
-    return before->states.at({t.factor, t.from});
+    return parse_archive("state", before->states.at({t.factor, t.from}));
   };
   return seek_safety(prepared, Workers(), settings);
 }
@@ -71,19 +79,20 @@ TEST_CASE("safety resumed: the answer and every trial have the bits of a search 
   const std::string by_rest,
       by_motion = "integration = \"dynamic\"\ntime_step = \"2 ms\"\nunbalanced = 1e-4\n";
   const std::string lower = "joints = [\"lower\"]\ntolerance = 0.1\n";
-  for (const auto& [safety, integration] :
-       {std::pair(lower, by_rest), std::pair(lower, by_motion),
-        std::pair(std::string("tolerance = 0.1\nlowest = 0.2\n"), by_rest),
-        std::pair(std::string("by = \"tilt\"\ntolerance = 1\n"), by_rest),
-        std::pair(std::string("by = \"acceleration\"\ntolerance = 0.05\n"), by_motion)}) {
+  for (const auto& [safety, integration, jobs] :
+       {std::tuple(lower, by_rest, 1), std::tuple(lower, by_rest, 3), std::tuple(lower, by_motion, 1),
+        std::tuple(std::string("tolerance = 0.1\nlowest = 0.2\n"), by_rest, 1),
+        std::tuple(std::string("by = \"tilt\"\ntolerance = 1\n"), by_rest, 1),
+        std::tuple(std::string("by = \"acceleration\"\ntolerance = 0.05\n"), by_motion, 1)}) {
     CAPTURE(safety);
     CAPTURE(integration);
+    CAPTURE(jobs);
     const std::string text = row_of_two(integration, safety);
     Findings findings("case.toml", text);
     const PreparedRun prepared = prepare_run("case.toml", text, {}, findings);
     Kept whole;
     int taken = 0;
-    const SafetyResult all = search(prepared, whole, nullptr, taken);
+    const SafetyResult all = search(prepared, jobs, whole, nullptr, taken);
     CHECK(all.status == SafetyStatus::kFound);
     REQUIRE(whole.told.size() > 3);
     const std::string csv = safety_csv(all);
@@ -95,7 +104,7 @@ TEST_CASE("safety resumed: the answer and every trial have the bits of a search 
       for (SafetyTrial& t : cut.told) t.steps = -1, stood += t.stands;
       REQUIRE(stood > 0);
       taken = 0;
-      SafetyResult resumed = search(prepared, again, &cut, taken);
+      SafetyResult resumed = search(prepared, jobs, again, &cut, taken);
       CHECK(taken >= stood);
       REQUIRE(resumed.trials.size() == all.trials.size());
       for (size_t k = 0; k < all.trials.size(); ++k) {

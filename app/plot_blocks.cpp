@@ -93,7 +93,7 @@ Against against_of(const fs::path& folder, const plot::BlockPicture& picture, co
       throw FileError(
           fmt::format("{}: has no columns id, name, group and area", (folder / "blocks.csv").string()));
     for (const auto& row : table.rows) {
-      const auto cell = [&row](int c) -> const std::string& { return row[static_cast<size_t>(c)]; };
+      const auto cell = [&row](int c) -> const std::string& { return row[c]; };
       if (!cell(group).empty()) groups.insert(cell(group));
       if (cell(block) != name && cell(group) != name) continue;
       int number = 0;
@@ -162,7 +162,7 @@ void animate_blocks(const fs::path& folder, const BlockPlotArguments& args, cons
   check_no_result(path);
   const Series series = series_of(folder);
   const std::string title = args.title.empty() ? title_of(folder) : args.title;
-  const std::vector<size_t> frames = spread(series.blocks.size(), static_cast<size_t>(args.frames));
+  const std::vector<size_t> frames = spread(series.blocks.size(), args.frames);
   const auto make = [&](size_t k) {
     plot::BlockPicture picture = picture_of(series, frames[k], title);
     dress(folder, args, picture);

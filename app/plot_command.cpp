@@ -46,7 +46,7 @@ std::vector<double> in_unit(std::vector<double> t, double scale) {
 
 std::string full_title(const CsvTable& table, const std::string& column) {
   const auto* values = &table.column(column);
-  return table.columns[static_cast<size_t>(values - table.values.data())];
+  return table.columns[values - table.values.data()];
 }
 
 // Rows of one stage, times from its beginning. The row of the beginning itself, which counts displacements

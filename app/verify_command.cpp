@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/program.h"
 
 namespace talus::app {
@@ -65,7 +66,7 @@ template <class Take, class Rest>
 int read_lines(std::FILE* pipe, const Take& take, const Rest& rest) {
   std::string text;
   std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe)) {
+  while (std::fgets(buffer.data(), count_of(buffer), pipe)) {
     text += buffer.data();
     if (text.back() != '\n') continue;  // a reason may be long
     const bool ours = text.rfind("residual | ", 0) == 0 || text.rfind("not computed | ", 0) == 0 ||

@@ -14,6 +14,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "talus/base/index.h"
 #include "talus/geometry/polygon.h"
 
 namespace talus::bench {
@@ -42,15 +43,15 @@ bool near(const Box& a, const Box& b, double distance) {
 std::vector<std::pair<int, int>> near_pairs(const std::vector<BenchBlock>& blocks, double distance) {
   std::vector<Box> boxes;
   std::vector<int> moving, fixed;
-  for (size_t i = 0; i < blocks.size(); ++i) {
-    (blocks[i].fixed ? fixed : moving).push_back(static_cast<int>(i));
+  for (int i = 0; i < count_of(blocks); ++i) {
+    (blocks[i].fixed ? fixed : moving).push_back(i);
     if (!blocks[i].fixed) boxes.push_back(bounding_box(blocks[i].corners));
   }
   std::vector<std::pair<int, int>> pairs = close_pairs(boxes, distance);
-  for (auto& [i, j] : pairs) i = moving[static_cast<size_t>(i)], j = moving[static_cast<size_t>(j)];
+  for (auto& [i, j] : pairs) i = moving[i], j = moving[j];
   // fixed blocks are few and large: they would spoil the grid that finds the other pairs
   for (const int i : fixed) {
-    const Box box = bounding_box(blocks[static_cast<size_t>(i)].corners);
+    const Box box = bounding_box(blocks[i].corners);
     for (size_t k = 0; k < moving.size(); ++k)
       if (near(box, boxes[k], distance)) pairs.push_back({i, moving[k]});
   }
@@ -74,8 +75,7 @@ Overlap measure_overlap(const std::vector<BenchBlock>& blocks, double touching) 
     ++result.overlapping;
     sum += depth;
   };
-  for (const auto& [i, j] : near_pairs(blocks, touching))
-    compare(static_cast<size_t>(i), static_cast<size_t>(j));
+  for (const auto& [i, j] : near_pairs(blocks, touching)) compare(i, j);
   if (result.overlapping > 0) result.mean = sum / result.overlapping;
   return result;
 }
@@ -99,8 +99,8 @@ LawError measure_law(const BenchScene& scene, const std::vector<BenchContact>& c
   for (const BenchContact& c : contacts) {
     const Vec2 tangent = turn_left(c.normal);
     const Vec2 on_b = c.normal_impulse * c.normal + c.tangent_impulse * tangent;
-    impulse[static_cast<size_t>(c.b)] += on_b;
-    impulse[static_cast<size_t>(c.a)] -= on_b;
+    impulse[c.b] += on_b;
+    impulse[c.a] -= on_b;
     const double bound = mu * c.normal_impulse, friction = std::abs(c.tangent_impulse);
     if (mean_impulse > 0) error.coulomb_max = std::max(error.coulomb_max, (friction - bound) / mean_impulse);
     if (!(c.normal_impulse > kLoaded * mean_impulse)) continue;
@@ -283,7 +283,7 @@ class PhaseClock {
 
   void fill(double dt, BenchRow& row) const {
     row.ms_step = spread(milliseconds_);
-    row.steps = static_cast<int>(milliseconds_.size());
+    row.steps = count_of(milliseconds_);
     row.contact_points = counts_ > 0 ? points_ / counts_ : 0;
     row.cpu_per_simulated = cpu_ / (dt * std::max(1, row.steps));
   }
@@ -305,7 +305,7 @@ class Along {
   }
   LawAlong result() const {
     const Spread slip = spread(slip_), un = spread(un_);
-    return {static_cast<int>(slip_.size()), slip.median, slip.max, un.median, un.max, overlap_};
+    return {count_of(slip_), slip.median, slip.max, un.median, un.max, overlap_};
   }
 
  private:

@@ -104,8 +104,7 @@ Jacobian26 directions(Vec2 normal, const Jacobian26& velocity) {
 std::vector<OneStepPoint> find_points(const BenchScene& scene, const std::vector<Vec2>& centroid) {
   std::vector<OneStepPoint> points;
   for (const auto& [i, j] : near_pairs(scene.blocks, kTouching)) {
-    const Corners &p = scene.blocks[static_cast<size_t>(i)].corners,
-                  &q = scene.blocks[static_cast<size_t>(j)].corners;
+    const Corners &p = scene.blocks[i].corners, &q = scene.blocks[j].corners;
     const EdgeGap of_p = widest_gap(p, q), of_q = widest_gap(q, p);
     if (std::max(of_p.gap, of_q.gap) > kTouching) continue;
     const bool p_owns = !(of_q.gap > of_p.gap + 1e-9);
@@ -113,8 +112,8 @@ std::vector<OneStepPoint> find_points(const BenchScene& scene, const std::vector
     const auto touching = p_owns ? touching_points(p, of_p.edge, q) : touching_points(q, of_q.edge, p);
     for (const TouchingPoint& touch : touching) {
       const auto jacobian = [&](int block) -> Jacobian26 {
-        if (scene.blocks[static_cast<size_t>(block)].fixed) return Jacobian26::Zero();
-        return directions(touch.normal, velocity_at(touch.point - centroid[static_cast<size_t>(block)]));
+        if (scene.blocks[block].fixed) return Jacobian26::Zero();
+        return directions(touch.normal, velocity_at(touch.point - centroid[block]));
       };
       points.push_back({a, b, touch.point, touch.normal, -jacobian(a), jacobian(b)});
     }
@@ -161,15 +160,14 @@ std::vector<Vec2> point_velocities(const OneStepProblem& problem, const std::vec
   for (size_t k = 0; k < problem.points.size(); ++k) {
     const OneStepPoint& p = problem.points[k];
     const Eigen::Vector2d r(impulse[k].x, impulse[k].y);
-    force[static_cast<size_t>(p.a)] += p.jacobian_a.transpose() * r;
-    force[static_cast<size_t>(p.b)] += p.jacobian_b.transpose() * r;
+    force[p.a] += p.jacobian_a.transpose() * r;
+    force[p.b] += p.jacobian_b.transpose() * r;
   }
   std::vector<Vector6> velocity = problem.velocity;
   for (size_t i = 0; i < velocity.size(); ++i) velocity[i] += problem.inverse[i] * force[i];
   std::vector<Vec2> result;
   for (const OneStepPoint& p : problem.points) {
-    const Eigen::Vector2d u =
-        p.jacobian_a * velocity[static_cast<size_t>(p.a)] + p.jacobian_b * velocity[static_cast<size_t>(p.b)];
+    const Eigen::Vector2d u = p.jacobian_a * velocity[p.a] + p.jacobian_b * velocity[p.b];
     result.push_back({u(0), u(1)});
   }
   return result;

@@ -10,6 +10,8 @@
 #include "command_line.h"
 #include "talus_engine.h"
 
+#include "talus/base/index.h"
+
 namespace {
 
 using namespace talus;
@@ -20,8 +22,7 @@ double take(std::vector<char*>& arguments, const std::string& name, double other
   for (size_t i = 1; i + 1 < arguments.size(); ++i) {
     if (name != arguments[i]) continue;
     otherwise = std::strtod(arguments[i + 1], nullptr);
-    arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i),
-                    arguments.begin() + static_cast<std::ptrdiff_t>(i) + 2);
+    arguments.erase(arguments.begin() + i, arguments.begin() + i + 2);
     break;
   }
   return otherwise;
@@ -34,7 +35,7 @@ int run(int argc, char** argv) {
   own.implicit = take(arguments, "--explicit", 0) == 0;
   own.tolerance = take(arguments, "--tolerance", own.tolerance);
   const bool profile = take(arguments, "--profile", 0) != 0;
-  const BenchOptions options = read_options(static_cast<int>(arguments.size()), arguments.data());
+  const BenchOptions options = read_options(count_of(arguments), arguments.data());
   if (options.sweeps > 0) own.sweeps = options.sweeps;
   own.threads = options.threads;
   const BenchScene scene = named_scene(options.scene);

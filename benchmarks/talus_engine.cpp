@@ -56,10 +56,9 @@ void TalusEngine::step(double dt) {
 std::vector<BenchBlock> TalusEngine::blocks() const {
   std::vector<BenchBlock> list;
   for (int i = 0; i < scene_.blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     BenchBlock b{!scene_.blocks.moves_freely(i), {}};
     for (int v = 0; v < scene_.blocks.vertex_count(i); ++v)
-      b.corners.push_back(scene_.blocks.centroid[k] + offset_now(state_, k, scene_.blocks.corner({i, v})));
+      b.corners.push_back(scene_.blocks.centroid[i] + offset_now(state_, i, scene_.blocks.corner({i, v})));
     list.push_back(std::move(b));
   }
   return list;
@@ -70,7 +69,7 @@ std::vector<BenchContact> TalusEngine::contacts() const {
   const RowRange range = work_.rows.range(Family::kContact);
   for (size_t r = range.begin; r < range.end; ++r) {
     const PointRows& p = work_.rows.points[r];
-    const auto a = static_cast<size_t>(p.block_a);
+    const int a = p.block_a;
     const auto u = relative_velocity(p, state_.rate);
     BenchContact c;
     c.a = p.block_b, c.b = p.block_a;

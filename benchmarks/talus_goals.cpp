@@ -97,10 +97,9 @@ void rest(const std::string& name, int threads) {
   for (size_t i = 0; i < engine.state().contacts.size(); ++i) {
     const PointRows& p = w.rows.points[w.rows.range(Family::kContact).begin + i];
     const Impulse& impulse = w.rows.impulse[w.rows.range(Family::kContact).begin + i];
-    const double size = std::min(s.blocks.size[static_cast<size_t>(p.block_a)],
-                                 s.blocks.size[static_cast<size_t>(p.block_b)]);
+    const double size = std::min(s.blocks.size[p.block_a], s.blocks.size[p.block_b]);
     double closure = p.row[0].compliance * impulse[0];
-    if (p.partner >= 0) closure += p.cross(0) * w.rows.impulse[static_cast<size_t>(p.partner)][0];
+    if (p.partner >= 0) closure += p.cross(0) * w.rows.impulse[p.partner][0];
     closure *= kDt / StepClock{.alpha = s.model.contact.alpha}.position_factor();
     const double slop = p.row[0].compliance > 0 ? 0 : s.model.contact.slop * size;
     beyond = std::max(beyond, (-w.gaps[i] - closure - slop) / size);

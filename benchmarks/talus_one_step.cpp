@@ -25,8 +25,8 @@ Solvable solvable(const BenchScene& scene, const OneStepProblem& problem) {
   Scene talus = talus_scene(scene, {});
   const PlaneModuli moduli = plane_moduli(5e9, 0.29, Plane::kStress);
   Solvable s;
-  for (size_t i = 0; i < static_cast<size_t>(talus.blocks.count); ++i) {
-    const bool moves = talus.blocks.moves_freely(static_cast<int>(i));
+  for (int i = 0; i < talus.blocks.count; ++i) {
+    const bool moves = talus.blocks.moves_freely(i);
     talus.blocks.moduli[i] = moduli;
     s.mobility.push_back(moves ? mobility_implicit(talus.blocks, i, {1, 0}, 1, problem.dt * problem.dt)
                                : Mobility{});
@@ -36,8 +36,8 @@ Solvable solvable(const BenchScene& scene, const OneStepProblem& problem) {
     PointRows p;
     // impulses act on talus's block a, which is b of the problem
     p.block_a = point.b, p.block_b = point.a;
-    p.arm_a = point.point - talus.blocks.centroid[static_cast<size_t>(point.b)];
-    p.arm_b = point.point - talus.blocks.centroid[static_cast<size_t>(point.a)];
+    p.arm_a = point.point - talus.blocks.centroid[point.b];
+    p.arm_b = point.point - talus.blocks.centroid[point.a];
     p.normal = point.normal;
     p.lower = 0, p.cohesion = 0;
     p.friction = problem.friction;

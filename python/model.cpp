@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "errors.h"
+#include "talus/base/index.h"
 #include "talus/plot/cut_picture.h"
 #include "talus/results/check_report.h"
 #include "talus/results/cut_model.h"
@@ -101,7 +102,7 @@ std::string PyModel::check() {
   Cut cut;
   const PreparedRun run = prepare(&cut);
   py::gil_scoped_release free;
-  return check_report(file, static_cast<int>(notes.warnings.size()), run, cut);
+  return check_report(file, count_of(notes.warnings), run, cut);
 }
 
 void PyModel::picture(const std::string& stem) {
@@ -144,7 +145,7 @@ void bind_models(py::module_& m) {
       .def_property_readonly("materials",
                              [](const PyCut& c) {
                                return c.of_blocks([&](const BlockShape& b) {
-                                 return py::str(c.cut.model.materials[static_cast<size_t>(b.material)].name);
+                                 return py::str(c.cut.model.materials[b.material].name);
                                });
                              })
       .def("write", &PyCut::write, py::arg("folder"), py::arg("force"))

@@ -99,7 +99,7 @@ class Box2d3Engine : public BenchEngine {
   void for_each_contact(F f) const {
     std::vector<b2ContactData> data;
     for (const b2BodyId body : bodies_) {
-      data.resize(static_cast<size_t>(b2Body_GetContactCapacity(body)));
+      data.resize(b2Body_GetContactCapacity(body));
       const int count = b2Body_GetContactData(body, data.data(), static_cast<int>(data.size()));
       for (int k = 0; k < count; ++k) {
         const b2ContactData& c = data[static_cast<size_t>(k)];

@@ -69,7 +69,7 @@ double largest_load(const PathForces& forces) {
 
 double median(std::vector<double> list) {
   if (list.empty()) return 0;
-  const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
+  const auto middle = list.begin() + (list.size() / 2);
   std::nth_element(list.begin(), middle, list.end());
   return *middle;
 }

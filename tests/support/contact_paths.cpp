@@ -293,7 +293,7 @@ Polygon random_convex(Draw& draw, int corners, double radius) {
 Polygon random_notched(Draw& draw, int corners, double radius) {
   Polygon out = random_convex(draw, corners, radius);
   const Vec2 middle = centroid_of(out);
-  const auto n = static_cast<size_t>(corners), k = static_cast<size_t>(draw.below(corners));
+  const int n = corners, k = draw.below(corners);
   const Vec2 mouth = 0.5 * (out[(k + n - 1) % n] + out[(k + 1) % n]);
   out[k] = mouth + draw.between(0.1, 0.6) * (middle - mouth);
   return out;

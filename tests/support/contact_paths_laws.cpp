@@ -31,16 +31,15 @@ double yielding(const Row& row, double by_partner, Bounds bounds) {
 // Row k of a point, and of its partner where it has one.
 void solve_couple(int k, size_t first, RowSet& rows) {
   const PointRows& p = rows.points[first];
-  const auto row = static_cast<size_t>(k);
-  double& here = rows.impulse[first][row];
+  double& here = rows.impulse[first][k];
   here = 0;
   if (p.partner < 0) {
     here = yielding(p.row[k], 0, bounds_of(p, k, rows.impulse[first][0]));
     return;
   }
-  const auto second = static_cast<size_t>(p.partner);
+  const int second = p.partner;
   const PointRows& q = rows.points[second];
-  double& there = rows.impulse[second][row];
+  double& there = rows.impulse[second][k];
   there = 0;
   constexpr int kSweeps = 30;  // each leaves a quarter of the error
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -124,7 +123,7 @@ class PatchForces : public ContactForces {
       const Vec2 normal = size * p.normal;
       const Vec2 whole = normal + rows_.impulse[i][1] * per * turn_right(p.normal);
       for (const bool on_b : {false, true}) {
-        const auto block = static_cast<size_t>(on_b ? p.block_b : p.block_a);
+        const int block = on_b ? p.block_b : p.block_a;
         const Vec2 arm = on_b ? p.arm_b : p.arm_a;
         const double sign = on_b ? -1 : 1;
         add(sign * normal, arm, out.normal[block]), add(sign * whole, arm, out.whole[block]);

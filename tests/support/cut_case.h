@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/box_polygon.h"
+#include "talus/base/index.h"
 #include "talus/cut/cut.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/model/read_model.h"
@@ -157,7 +158,7 @@ class CellCut {
 
   CellRing ring(const CutBlock& b) const {
     CellRing out;
-    for (const int p : b.point) out.push_back(cells_[static_cast<size_t>(p)]);
+    for (const int p : b.point) out.push_back(cells_[p]);
     return out;
   }
 
@@ -175,7 +176,7 @@ class CellCut {
   /// What is wrong with `blocks` as a set of blocks, "" when nothing is. On return `uses` holds their edges.
   std::string block_defect(const std::vector<CutBlock>& blocks, Uses& uses) const {
     if (!on_grid_) return "a corner lies off the grid";
-    for (size_t i = 0; i < blocks.size(); ++i) {
+    for (int i = 0; i < count_of(blocks); ++i) {
       const CutBlock& b = blocks[i];
       const std::string name = cut_.name(b);
       const CellRing r = ring(b);
@@ -183,12 +184,12 @@ class CellCut {
       if (!is_simple(r)) return name + " is not simple";
       if (twice_area(r) <= 0) return name + " is not counter-clockwise";
       for (size_t k = 0; k < r.size(); ++k) {
-        const auto& ends = cut_.edge[static_cast<size_t>(b.edge[k])];
+        const auto& ends = cut_.edge[b.edge[k]];
         const int p = b.point[k], q = b.point[(k + 1) % r.size()];
         if (std::minmax(ends[0], ends[1]) != std::minmax(p, q))
           return name + " has an edge between other corners";
-        const int origin = cut_.edge_origin[static_cast<size_t>(b.edge[k])];
-        if (!uses.insert({{r[k], r[(k + 1) % r.size()]}, {static_cast<int>(i), origin}}).second)
+        const int origin = cut_.edge_origin[b.edge[k]];
+        if (!uses.insert({{r[k], r[(k + 1) % r.size()]}, {i, origin}}).second)
           return name + " lies on one side of an edge with another block";
       }
     }
@@ -206,9 +207,8 @@ class CellCut {
         if (other->second.origin != use.origin) defect = "an edge has two origins";
         continue;
       }
-      if (!may_end_rock(cut_.origins[static_cast<size_t>(use.origin)].kind))
-        defect = fmt::format("an edge of {} has no block on its other side",
-                             cut_.origins[static_cast<size_t>(use.origin)].name);
+      if (!may_end_rock(cut_.origins[use.origin].kind))
+        defect = fmt::format("an edge of {} has no block on its other side", cut_.origins[use.origin].name);
       sum += cross(uses.begin()->first.first, a, b);
       ++balance[a], --balance[b];
     }
@@ -264,8 +264,8 @@ inline int real_corners(const Cut& cut, const CutBlock& block) {
 
 /// The block of a list that holds the point, -1: none.
 inline int block_at(const Cut& cut, const std::vector<CutBlock>& blocks, Vec2 point) {
-  for (size_t i = 0; i < blocks.size(); ++i)
-    if (contains(cut.polygon(blocks[i]), point)) return static_cast<int>(i);
+  for (int i = 0; i < count_of(blocks); ++i)
+    if (contains(cut.polygon(blocks[i]), point)) return i;
   return -1;
 }
 

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/base/random.h"
 #include "talus/cut/check_places.h"
 #include "talus/cut/cut.h"
@@ -60,13 +61,12 @@ struct Problem {
 // --- originals
 
 inline void name_own_bodies(Problem& p) {
-  p.bodies = static_cast<int>(p.layout.blocks.size());
+  p.bodies = count_of(p.layout.blocks);
   p.body.clear(), p.side.clear();
   for (int i = 0; i < p.bodies; ++i) {
     p.body.push_back(i);
     std::vector<int> side;
-    for (size_t k = 0; k < p.layout.blocks[static_cast<size_t>(i)].polygon.size(); ++k)
-      side.push_back(static_cast<int>(k));
+    for (int k = 0; k < count_of(p.layout.blocks[i].polygon); ++k) side.push_back(k);
     p.side.push_back(side);
   }
 }
@@ -120,15 +120,15 @@ inline void name_bodies(const Problem& original, Problem& p) {
     const int body = found.empty() ? -1 : found.front();
     std::vector<int> sides(b.polygon.size(), -1);
     if (body >= 0) {
-      const Polygon& own = original.layout.blocks[static_cast<size_t>(body)].polygon;
+      const Polygon& own = original.layout.blocks[body].polygon;
       const Box box = bounding_box(own);
       const double near = 1e-4 * norm(box.max - box.min);
       for (size_t k = 0; k < sides.size(); ++k) {
         const Vec2 from = at_home[k], to = at_home[(k + 1) % at_home.size()];
-        for (size_t s = 0; s < own.size(); ++s)
+        for (int s = 0; s < count_of(own); ++s)
           if (turning * dot(normal_of(own, s), normal_of(at_home, k)) > 0.999 &&
               distance_to_segment(0.5 * (from + to), own[s], own[(s + 1) % own.size()]) < near)
-            sides[k] = static_cast<int>(s);
+            sides[k] = s;
       }
     }
     p.body.push_back(body), p.side.push_back(sides);
@@ -256,8 +256,8 @@ inline Problem with_pebble(const Problem& original) {
   const auto add = [&](const std::string& name, Vec2 from, Vec2 to, BlockKind kind) {
     BlockShape b;
     b.name = name;
-    b.id = static_cast<int>(p.layout.blocks.size());
-    b.group = static_cast<int>(p.layout.groups.size());
+    b.id = count_of(p.layout.blocks);
+    b.group = count_of(p.layout.groups);
     b.polygon = {from, {to.x, from.y}, to, {from.x, to.y}};
     b.kind = kind;
     p.layout.groups.push_back(name), p.layout.group_where.emplace_back();
@@ -274,7 +274,7 @@ inline Problem with_pebble(const Problem& original) {
 /// (k = 0, and of all others).
 inline Problem divided(const Problem& original, int k) {
   Problem p = original;
-  const int glue = static_cast<int>(p.model.joints.size());
+  const int glue = count_of(p.model.joints);
   JointProperty bond;
   bond.name = "inside", bond.bonded = true;
   p.model.joints.push_back(bond);
@@ -296,10 +296,9 @@ inline Problem divided(const Problem& original, int k) {
       part.polygon = polygon;
       part.edge_joint.clear(), part.edge_origin.clear();
       for (const int e : of_edge) {
-        part.edge_joint.push_back(e < 0 ? glue : joint(static_cast<size_t>(e)));
+        part.edge_joint.push_back(e < 0 ? glue : joint(e));
         // an edge inside is along nothing that a support or a load can name
-        part.edge_origin.push_back(e < 0 ? static_cast<int>(p.layout.origins.size())
-                                         : origin(static_cast<size_t>(e)));
+        part.edge_origin.push_back(e < 0 ? count_of(p.layout.origins) : origin(e));
       }
       p.layout.blocks.push_back(part);
     };
@@ -316,8 +315,7 @@ inline Problem divided(const Problem& original, int k) {
     } else {
       Vec2 middle;
       for (const Vec2 v : c) middle += (1.0 / static_cast<double>(c.size())) * v;
-      for (size_t e = 0; e < c.size(); ++e)
-        add({c[e], c[(e + 1) % c.size()], middle}, {static_cast<int>(e), -1, -1}, number++);
+      for (int e = 0; e < count_of(c); ++e) add({c[e], c[(e + 1) % c.size()], middle}, {e, -1, -1}, number++);
     }
   }
   p.layout.origins.push_back("inside of a block");
@@ -366,7 +364,7 @@ class SnapshotObserver : public Observer {
     add_rows(i, sum_);
     const int64_t every = std::max<int64_t>(1, steps_ / options_.snapshots);
     // of whole steps: those that no solver solves to such a tolerance are taken in parts
-    const int64_t step = begin_[static_cast<size_t>(i.stage)] + i.steps_before;
+    const int64_t step = begin_[i.stage] + i.steps_before;
     if (i.last || (step % every == 0 && step > 0)) snapshots.push_back(snapshot(i));
   }
   void keep_state(const Standing& standing, const State& state) override {
@@ -386,16 +384,15 @@ class SnapshotObserver : public Observer {
 
   // The side of a block whose outward normal now is nearest to `direction`, within 0.1 rad.
   int side_facing(const Instant& i, int block, Vec2 direction) const {
-    const auto k = static_cast<size_t>(block);
     const BlockSet& blocks = i.scene.blocks;
     const int n = blocks.vertex_count(block);
     double best = std::cos(0.1);
     int side = -1;
     for (int e = 0; e < n; ++e) {
-      const Vec2 from = offset_now(i.state, k, blocks.corner({block, e}));
-      const Vec2 to = offset_now(i.state, k, blocks.corner({block, (e + 1) % n}));
+      const Vec2 from = offset_now(i.state, block, blocks.corner({block, e}));
+      const Vec2 to = offset_now(i.state, block, blocks.corner({block, (e + 1) % n}));
       const double d = dot(turn_right(to - from), direction) / norm(to - from);
-      if (d > best) best = d, side = problem_.side[k][static_cast<size_t>(e)];
+      if (d > best) best = d, side = problem_.side[block][e];
     }
     return side;
   }
@@ -404,8 +401,7 @@ class SnapshotObserver : public Observer {
     for (size_t r = 0; r < i.work.rows.points.size(); ++r) {
       const PointRows& p = i.work.rows.points[r];
       if (p.block_a < 0 || p.block_b < 0 || i.work.rows.impulse[r][0] <= 0) continue;
-      const int a = problem_.body[static_cast<size_t>(p.block_a)],
-                b = problem_.body[static_cast<size_t>(p.block_b)];
+      const int a = problem_.body[p.block_a], b = problem_.body[p.block_b];
       if (a >= 0 && b >= 0 && a != b) touched_.insert(std::minmax(a, b));
     }
   }
@@ -415,31 +411,30 @@ class SnapshotObserver : public Observer {
   }
 
   Snapshot snapshot(const Instant& i) {
-    const auto bodies = static_cast<size_t>(problem_.bodies);
+    const int bodies = problem_.bodies;
     const Similarity& to = problem_.placement;
     const BlockSet& blocks = i.scene.blocks;
     const double length = 1 / to.scale, force = length * length * length;
     Snapshot s;
     s.time = i.state.time;
     s.displacement.resize(bodies), s.velocity.resize(bodies), s.stretch.resize(bodies);
-    s.touched = static_cast<int>(touched_.size());
+    s.touched = count_of(touched_);
     std::vector<double> area(bodies);
     std::vector<int> parts(bodies);
     double mass = 0;
     for (int b = 0; b < blocks.count; ++b) {
-      const auto k = static_cast<size_t>(b);
-      if (problem_.body[k] < 0) continue;
-      const auto body = static_cast<size_t>(problem_.body[k]);
-      s.displacement[body] += blocks.volume[k] * length * to.direction_back(i.state.displacement[k]);
-      s.velocity[body] += blocks.volume[k] * length * to.direction_back(i.state.rate[k].a);
-      s.stretch[body] = length * std::sqrt(blocks.volume[k]) * to.back(i.state.strain_part[k]);
-      area[body] += blocks.volume[k], ++parts[body];
+      if (problem_.body[b] < 0) continue;
+      const int body = problem_.body[b];
+      s.displacement[body] += blocks.volume[b] * length * to.direction_back(i.state.displacement[b]);
+      s.velocity[body] += blocks.volume[b] * length * to.direction_back(i.state.rate[b].a);
+      s.stretch[body] = length * std::sqrt(blocks.volume[b]) * to.back(i.state.strain_part[b]);
+      area[body] += blocks.volume[b], ++parts[body];
       if (!blocks.moves_freely(b)) continue;
-      mass += blocks.mass[k];
-      s.height += blocks.mass[k] * to.back(blocks.centroid[k] + i.state.displacement[k]).y;
+      mass += blocks.mass[b];
+      s.height += blocks.mass[b] * to.back(blocks.centroid[b] + i.state.displacement[b]).y;
     }
     s.height /= mass;
-    for (size_t b = 0; b < bodies; ++b) {
+    for (int b = 0; b < bodies; ++b) {
       if (parts[b] == 0) continue;
       s.displacement[b] *= 1 / area[b], s.velocity[b] *= 1 / area[b];
     }
@@ -456,8 +451,8 @@ class SnapshotObserver : public Observer {
   void add_row(const Instant& i, size_t r, Snapshot& s) const {
     const double scale = std::pow(problem_.placement.scale, -3);
     const PointRows& p = i.work.rows.points[r];
-    const int a = p.block_a < 0 ? -1 : problem_.body[static_cast<size_t>(p.block_a)];
-    const int b = p.block_b < 0 ? -1 : problem_.body[static_cast<size_t>(p.block_b)];
+    const int a = p.block_a < 0 ? -1 : problem_.body[p.block_a];
+    const int b = p.block_b < 0 ? -1 : problem_.body[p.block_b];
     if (p.block_a < 0 || (p.block_b >= 0 && a == b) || a < 0 || (p.block_b >= 0 && b < 0)) return;
     const Vec2 f = scale * problem_.placement.direction_back(force_of(i, r));
     if (p.block_b < 0) {

@@ -19,19 +19,17 @@ inline LargestOverlap largest_overlap(const BlockSet& blocks, const State& state
   std::vector<Polygon> polygons;
   std::vector<Box> boxes;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     Polygon p;
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      p.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner({i, v})));
+      p.push_back(blocks.centroid[i] + offset_now(state, i, blocks.corner({i, v})));
     boxes.push_back(bounding_box(p));
     polygons.push_back(std::move(p));
   }
   LargestOverlap largest;
   for (const auto& [i, j] : close_pairs(boxes, 0)) {
-    const Polygon &a = polygons[static_cast<size_t>(i)], &b = polygons[static_cast<size_t>(j)];
+    const Polygon &a = polygons[i], &b = polygons[j];
     const double share = polygon_overlap(a, b).area / std::min(signed_area(a), signed_area(b));
-    if (share > largest.share)
-      largest = {share, blocks.name[static_cast<size_t>(i)] + " and " + blocks.name[static_cast<size_t>(j)]};
+    if (share > largest.share) largest = {share, blocks.name[i] + " and " + blocks.name[j]};
   }
   return largest;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/base/random.h"
 
 namespace talus::test {
@@ -30,9 +31,7 @@ class Choices {
   double between(double a, double b) { return a + (b - a) * next() / 255.0; }
   /// Of many orders of magnitude.
   double scale(double a, double b) { return std::pow(10, between(std::log10(a), std::log10(b))); }
-  std::string of(std::initializer_list<const char*> list) {
-    return *(list.begin() + below(static_cast<int>(list.size())));
-  }
+  std::string of(std::initializer_list<const char*> list) { return *(list.begin() + below(count_of(list))); }
 
  private:
   int next() { return at_ < bytes_.size() ? static_cast<unsigned char>(bytes_[at_++]) : 0; }

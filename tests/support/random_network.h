@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "support/cut_case.h"
+#include "talus/base/index.h"
 #include "talus/base/random.h"
 #include "talus/geometry/shapes.h"
 
@@ -40,10 +41,8 @@ class NetworkMaker {
     const Box box = bounding_box(outline_);
     return {between(box.min.x, box.max.x), between(box.min.y, box.max.y)};
   }
-  std::pair<Vec2, Vec2> some_line() {
-    return lines_[static_cast<size_t>(below(static_cast<int>(lines_.size())))];
-  }
-  Vec2 some_corner() { return outline_[static_cast<size_t>(below(static_cast<int>(outline_.size())))]; }
+  std::pair<Vec2, Vec2> some_line() { return lines_[below(count_of(lines_))]; }
+  Vec2 some_corner() { return outline_[below(count_of(outline_))]; }
 
   void make_outline() {
     size_ = std::pow(10, between(0.3, 2.5));

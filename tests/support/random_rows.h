@@ -44,14 +44,13 @@ inline PointRows random_point(std::mt19937& random, int blocks) {
 
 inline std::vector<BlockRate> random_rates(std::mt19937& random, const BlockSet& blocks) {
   std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<BlockRate> rate(static_cast<size_t>(blocks.count));
+  std::vector<BlockRate> rate(blocks.count);
   for (int i = 0; i < blocks.count; ++i) {
-    auto& v = rate[static_cast<size_t>(i)];
+    auto& v = rate[i];
     if (!blocks.moves_freely(i)) continue;
     v.a = {unit(random), unit(random)};
-    v.G = blocks.kind[static_cast<size_t>(i)] == BlockKind::kRigid
-              ? spin_matrix(unit(random))
-              : Mat2{unit(random), unit(random), unit(random), unit(random)};
+    v.G = blocks.kind[i] == BlockKind::kRigid ? spin_matrix(unit(random))
+                                              : Mat2{unit(random), unit(random), unit(random), unit(random)};
   }
   return rate;
 }

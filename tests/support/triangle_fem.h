@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/base/vec2.h"
 
 namespace talus::test {
@@ -34,8 +35,8 @@ inline Eigen::Matrix3d plane_strain(const Elastic& rock) {
 
 /// Strain (xx, yy, 2 xy) over the displacements (x, y of each corner) of a triangle [1/m].
 inline Eigen::Matrix<double, 3, 6> strain_of_corners(const TriangleMesh& mesh, int triangle) {
-  const auto& corner = mesh.triangle[static_cast<size_t>(triangle)];
-  const auto at = [&](int k) { return mesh.node[static_cast<size_t>(corner[static_cast<size_t>(k % 3)])]; };
+  const auto& corner = mesh.triangle[triangle];
+  const auto at = [&](int k) { return mesh.node[corner[k % 3]]; };
   const double twice_area = cross(at(1) - at(0), at(2) - at(0));
   Eigen::Matrix<double, 3, 6> out = Eigen::Matrix<double, 3, 6>::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -48,8 +49,8 @@ inline Eigen::Matrix<double, 3, 6> strain_of_corners(const TriangleMesh& mesh, i
 }
 
 inline double area(const TriangleMesh& mesh, int triangle) {
-  const auto& c = mesh.triangle[static_cast<size_t>(triangle)];
-  const auto at = [&](size_t k) { return mesh.node[static_cast<size_t>(c[k])]; };
+  const auto& c = mesh.triangle[triangle];
+  const auto at = [&](size_t k) { return mesh.node[c[k]]; };
   return 0.5 * cross(at(1) - at(0), at(2) - at(0));
 }
 
@@ -59,30 +60,28 @@ inline double area(const TriangleMesh& mesh, int triangle) {
 /// @throws std::runtime_error  when the body can still move
 inline std::vector<Vec2> displacements(const TriangleMesh& mesh, const Elastic& rock,
                                        const std::vector<Vec2>& force, const std::map<int, double>& held) {
-  const int size = 2 * static_cast<int>(mesh.node.size());
-  std::vector<int> unknown(static_cast<size_t>(size), -1);
+  const int size = 2 * count_of(mesh.node);
+  std::vector<int> unknown(size, -1);
   int free = 0;
   for (int i = 0; i < size; ++i)
-    if (held.count(i) == 0) unknown[static_cast<size_t>(i)] = free++;
+    if (held.count(i) == 0) unknown[i] = free++;
 
   // stiffness of the free unknowns; what the held ones pull goes to the right-hand side
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(free);
   for (int i = 0; i < size; ++i) {
-    const Vec2 f = force[static_cast<size_t>(i / 2)];
-    if (const int u = unknown[static_cast<size_t>(i)]; u >= 0) pull[u] = i % 2 == 0 ? f.x : f.y;
+    const Vec2 f = force[i / 2];
+    if (const int u = unknown[i]; u >= 0) pull[u] = i % 2 == 0 ? f.x : f.y;
   }
   std::vector<Eigen::Triplet<double>> entries;
-  for (int t = 0; t < static_cast<int>(mesh.triangle.size()); ++t) {
+  for (int t = 0; t < count_of(mesh.triangle); ++t) {
     const auto B = strain_of_corners(mesh, t);
     const Eigen::Matrix<double, 6, 6> K = area(mesh, t) * B.transpose() * plane_strain(rock) * B;
-    const auto index = [&](int k) {
-      return 2 * mesh.triangle[static_cast<size_t>(t)][static_cast<size_t>(k / 2)] + k % 2;
-    };
+    const auto index = [&](int k) { return 2 * mesh.triangle[t][k / 2] + k % 2; };
     for (int r = 0; r < 6; ++r) {
-      const int row = unknown[static_cast<size_t>(index(r))];
+      const int row = unknown[index(r)];
       if (row < 0) continue;
       for (int c = 0; c < 6; ++c) {
-        const int column = unknown[static_cast<size_t>(index(c))];
+        const int column = unknown[index(c)];
         if (column >= 0)
           entries.emplace_back(row, column, K(r, c));
         else
@@ -98,9 +97,9 @@ inline std::vector<Vec2> displacements(const TriangleMesh& mesh, const Elastic& 
 
   std::vector<Vec2> out(mesh.node.size());
   for (int i = 0; i < size; ++i) {
-    const int u = unknown[static_cast<size_t>(i)];
+    const int u = unknown[i];
     const double value = u >= 0 ? found[u] : held.at(i);
-    (i % 2 == 0 ? out[static_cast<size_t>(i / 2)].x : out[static_cast<size_t>(i / 2)].y) = value;
+    (i % 2 == 0 ? out[i / 2].x : out[i / 2].y) = value;
   }
   return out;
 }
@@ -110,8 +109,7 @@ inline Eigen::Vector3d stress_of(const TriangleMesh& mesh, const Elastic& rock, 
                                  int triangle) {
   Eigen::Matrix<double, 6, 1> corners;
   for (int k = 0; k < 3; ++k) {
-    const Vec2 d =
-        u[static_cast<size_t>(mesh.triangle[static_cast<size_t>(triangle)][static_cast<size_t>(k)])];
+    const Vec2 d = u[mesh.triangle[triangle][k]];
     corners[2 * k] = d.x, corners[2 * k + 1] = d.y;
   }
   return plane_strain(rock) * (strain_of_corners(mesh, triangle) * corners);

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "support/triangle_fem.h"
+#include "talus/base/index.h"
 
 namespace talus::test {
 
@@ -47,10 +48,10 @@ struct Tunnel {
       for (int j = 0; j <= sectors; ++j) out.node.push_back(corner(i, j));
     for (int i = 0; i < rings; ++i) {
       for (int j = 0; j < sectors; ++j) {
-        const int middle = static_cast<int>(out.node.size());
+        const int middle = count_of(out.node);
         const int around[] = {node(i, j + 1), node(i, j), node(i + 1, j), node(i + 1, j + 1)};
         Vec2 sum;
-        for (const int n : around) sum = sum + out.node[static_cast<size_t>(n)];
+        for (const int n : around) sum = sum + out.node[n];
         out.node.push_back(0.25 * sum);
         for (int k = 0; k < 4; ++k) out.triangle.push_back({around[k], around[(k + 1) % 4], middle});
       }
@@ -78,7 +79,7 @@ struct Tunnel {
       // the core no longer pushes: as if the wall were pulled towards the middle by what it bore
       const Vec2 chord = corner(0, j + 1) - corner(0, j), inward = turn_left(chord);
       for (const int k : {j, j + 1}) {
-        Vec2& f = force[static_cast<size_t>(node(0, k))];
+        Vec2& f = force[node(0, k)];
         f = f + 0.5 * Vec2{horizontal * inward.x, vertical * inward.y};
       }
     }
@@ -118,17 +119,17 @@ inline std::string Tunnel::msh(bool version4) const {
     out += (version4 ? "" : fmt::format("{} ", i + 1)) +
            fmt::format("{} {} 0\n", grid.node[i].x, grid.node[i].y);
   out += "$EndNodes\n$Elements\n";
-  const auto wall = static_cast<size_t>(sectors);
-  out += version4 ? fmt::format("2 {0} 1 {0}\n1 3 1 {1}\n", wall + triangles, wall)
-                  : fmt::format("{}\n", wall + triangles);
-  for (size_t j = 0; j < wall; ++j)
+  out += version4 ? fmt::format("2 {0} 1 {0}\n1 3 1 {1}\n", sectors + triangles, sectors)
+                  : fmt::format("{}\n", sectors + triangles);
+  for (int j = 0; j < sectors; ++j)
     out += fmt::format("{}{} {}\n", version4 ? fmt::format("{} ", j + 1) : fmt::format("{} 1 2 5 3 ", j + 1),
-                       node(0, static_cast<int>(j)) + 1, node(0, static_cast<int>(j) + 1) + 1);
+                       node(0, j) + 1, node(0, j + 1) + 1);
   if (version4) out += fmt::format("2 4 2 {}\n", triangles);
   for (size_t t = 0; t < triangles; ++t)
-    out += fmt::format("{}{} {} {}\n",
-                       version4 ? fmt::format("{} ", wall + t + 1) : fmt::format("{} 2 2 9 4 ", wall + t + 1),
-                       grid.triangle[t][0] + 1, grid.triangle[t][1] + 1, grid.triangle[t][2] + 1);
+    out += fmt::format(
+        "{}{} {} {}\n",
+        version4 ? fmt::format("{} ", sectors + t + 1) : fmt::format("{} 2 2 9 4 ", sectors + t + 1),
+        grid.triangle[t][0] + 1, grid.triangle[t][1] + 1, grid.triangle[t][2] + 1);
   return out + "$EndElements\n";
 }
 
@@ -212,7 +213,7 @@ tolerance = 1e-9
     out += fmt::format("[[mesh]]\nname = \"ring\"\nfile = \"{}\"\nmaterial = \"rock\"\n", mesh_file);
   for (size_t t = 0; mesh_file.empty() && t < grid.triangle.size(); ++t) {
     std::vector<Vec2> corners;
-    for (const int n : grid.triangle[t]) corners.push_back(grid.node[static_cast<size_t>(n)]);
+    for (const int n : grid.triangle[t]) corners.push_back(grid.node[n]);
     block(fmt::format("t{}", t), corners);
   }
   // the outer edge; what its two ends may do along the axes the rollers say

@@ -3,6 +3,7 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "support/triangle_fem.h"
+#include "talus/base/index.h"
 
 namespace test_cantilever {
 
@@ -23,7 +24,7 @@ TriangleMesh crossed(int nx, int ny) {
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
       const int low = j * (nx + 1) + i, high = low + nx + 1;
-      const int middle = static_cast<int>(out.node.size());
+      const int middle = count_of(out.node);
       out.node.push_back({a * (i + 0.5), b * (j + 0.5)});
       for (const auto& [p, q] : {std::pair(low, low + 1), std::pair(low + 1, high + 1),
                                  std::pair(high + 1, high), std::pair(high, low)})
@@ -41,9 +42,9 @@ double finite_elements(int nx, int ny, double force) {
   for (int j = 0; j <= ny; ++j) {
     const int wall = j * (nx + 1), end = wall + nx;
     held[2 * wall] = held[2 * wall + 1] = 0;
-    load[static_cast<size_t>(end)].y = -force / ny * (j == 0 || j == ny ? 0.5 : 1);
+    load[end].y = -force / ny * (j == 0 || j == ny ? 0.5 : 1);
   }
-  return -displacements(mesh, kRock, load, held)[static_cast<size_t>(ny / 2 * (nx + 1) + nx)].y;
+  return -displacements(mesh, kRock, load, held)[ny / 2 * (nx + 1) + nx].y;
 }
 
 // Steps far above the stable limit of the explicit ones: the way to rest does not matter. The contact error

@@ -32,17 +32,15 @@ std::vector<double> posts_under_a_beam(const std::vector<int>& order, const std:
     if (k == 3)
       text += box("beam", -2, 2, 0, 0.4, "rigid");
     else
-      text += box(fmt::format("post{}", k), kPosts[static_cast<size_t>(k)] - kHalfPost,
-                  kPosts[static_cast<size_t>(k)] + kHalfPost, -1, 0, "fixed");
+      text += box(fmt::format("post{}", k), kPosts[k] - kHalfPost, kPosts[k] + kHalfPost, -1, 0, "fixed");
   }
   std::vector<double> force(kPosts.size());
   run_case(text + rest, more, [&](const Instant& i) {
     if (!i.last) return;
     for (const Patch& c : i.state.patches)
       for (const int block : {c.block_a, c.block_b}) {
-        const std::string& name = i.scene.blocks.name[static_cast<size_t>(block)];
-        if (name.starts_with("post"))
-          force.at(static_cast<size_t>(name[4] - '0')) += c.force[0][0] + c.force[1][0];
+        const std::string& name = i.scene.blocks.name[block];
+        if (name.starts_with("post")) force.at(name[4] - '0') += c.force[0][0] + c.force[1][0];
       }
   });
   return force;
@@ -142,8 +140,7 @@ TEST_CASE("a tower of 100 rigid blocks stands at default settings") {
           if (!i.last) return;
           dt = i.work.clock.dt;
           for (const Patch& c : i.state.patches)
-            if (i.scene.blocks.name[static_cast<size_t>(c.block_a)] == "ground")
-              foot += c.force[0][0] + c.force[1][0];
+            if (i.scene.blocks.name[c.block_a] == "ground") foot += c.force[0][0] + c.force[1][0];
           for (const Vec2 d : i.state.displacement) moved = std::max(moved, norm(d));
         });
     check_close("tower of 100: force at its foot [N]", foot, 100 * 0.5 * 2000 * kG, 1e-3, 1e-5);

@@ -18,6 +18,7 @@
 #include "support/contact_paths_laws.h"
 #include "support/relative.h"
 #include "talus/audit/shapes.h"
+#include "talus/base/index.h"
 #include "talus/geometry/polygon_check.h"
 
 namespace test_contact_paths {
@@ -38,7 +39,7 @@ class OverlapForces : public ContactForces {
     const std::vector<Polygon> blocks = path_->placed(s);
     const std::vector<PathPose> pose = path_->pose(s);
     PathForces out(blocks.size());
-    for (size_t a = 0; a < blocks.size(); ++a)
+    for (int a = 0; a < count_of(blocks); ++a)
       for (size_t b = a + 1; b < blocks.size(); ++b) {
         const double area = audit::common_part(blocks[a], blocks[b]).area;
         const Vec2 u = pose[a].displacement - pose[b].displacement;
@@ -50,7 +51,7 @@ class OverlapForces : public ContactForces {
         const double shear = -area * slip / kElastic;
         anchor = dot(u, t) - slip;
         add(a, area * n, shear * t, out), add(b, -area * n, -shear * t, out);
-        out.pairs.push_back({static_cast<int>(a), static_cast<int>(b), area});
+        out.pairs.push_back({a, static_cast<int>(b), area});
       }
     return out;
   }

@@ -49,11 +49,9 @@ double edge_length(const Cut& cut, const std::string& origin) {
   double sum = 0;
   for (const CutBlock& b : cut.blocks) {
     for (const int i : b.edge) {
-      const auto e = static_cast<size_t>(i);
-      if (seen[e] || cut.origins[static_cast<size_t>(cut.edge_origin[e])].name != origin) continue;
-      seen[e] = true;
-      sum += norm(cut.point[static_cast<size_t>(cut.edge[e][1])] -
-                  cut.point[static_cast<size_t>(cut.edge[e][0])]);
+      if (seen[i] || cut.origins[cut.edge_origin[i]].name != origin) continue;
+      seen[i] = true;
+      sum += norm(cut.point[cut.edge[i][1]] - cut.point[cut.edge[i][0]]);
     }
   }
   return sum;

@@ -102,7 +102,7 @@ Scene pile(int sweeps) {
     }
   for (int y = 0; y < kRows; ++y)
     for (int x = 0; x < kColumns; ++x) {
-      const auto at = [&](int i, int j) { return node[static_cast<size_t>(j * (kColumns + 1) + i)]; };
+      const auto at = [&](int i, int j) { return node[j * (kColumns + 1) + i]; };
       const Polygon cell{at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)};
       const Vec2 center = 0.25 * (cell[0] + cell[1] + cell[2] + cell[3]);
       Polygon stone;

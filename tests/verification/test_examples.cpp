@@ -55,8 +55,8 @@ TEST_CASE("example shaken_tower: carries its weight at rest, then follows the ba
   const CaseResult r = run_example("shaken_tower", [&](const Instant& i) {
     if (i.stage != 1) return;
     const int base = 0, tower = 1;  // the driven block comes first, then the lowest cell
-    const double foot = displacement_at(i.state, tower, i.scene.blocks.corner({tower, 0})).x -
-                        i.state.displacement[static_cast<size_t>(base)].x;
+    const double foot =
+        displacement_at(i.state, tower, i.scene.blocks.corner({tower, 0})).x - i.state.displacement[base].x;
     if (i.stage_start) {
       start = foot;
       for (const Patch& c : i.state.patches) at_rest += c.force[0][0] + c.force[1][0];
@@ -218,14 +218,13 @@ TEST_CASE("example pile: no stone inside another, comes to rest, the same bits t
       // the arc that a corner or an edge leaves its tangent by in a step: 1/2 (dt spin)^2 of the arm
       // (theory 3.3)
       const auto arc = [&](int block) {
-        const double turn = i.plan.dt * i.work.rate_before[static_cast<size_t>(block)].G.yx;
-        return 0.5 * turn * turn * i.scene.blocks.size[static_cast<size_t>(block)];
+        const double turn = i.plan.dt * i.work.rate_before[block].G.yx;
+        return 0.5 * turn * turn * i.scene.blocks.size[block];
       };
       for (size_t n = 0; n < 2 * i.state.patches.size(); ++n) {
         const double gap = i.work.gaps[n];
         const int a = i.state.patches[n / 2].block_a, b = i.state.patches[n / 2].block_b;
-        const double size = std::min(i.scene.blocks.size[static_cast<size_t>(a)],
-                                     i.scene.blocks.size[static_cast<size_t>(b)]);
+        const double size = std::min(i.scene.blocks.size[a], i.scene.blocks.size[b]);
         const double allowed =
             i.scene.model.contact.slop * size + i.scene.model.solver.tolerance * least + arc(a) + arc(b);
         beyond = std::max(beyond, -gap / allowed);
@@ -320,7 +319,7 @@ TEST_CASE("example blast_hole: the rock keeps still until the blast, which leave
           doctest::test_suite("optimised")) {
   double before = 0, most = 0, last = 0, near = 0, far = 0;
   const auto speed = [](const Instant& i, Vec2 at) {
-    const auto k = static_cast<size_t>(block_of_point(i.scene.layout, at));
+    const int k = block_of_point(i.scene.layout, at);
     return velocity_at(rate_now(i.work, i.state, k), at - i.scene.blocks.centroid[k]).x;
   };
   const CaseResult r = run_example("blast_hole", [&](const Instant& i) {
@@ -350,7 +349,7 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
     if (i.stage != 1 || !(i.stage_start || i.last)) return;
     if (i.stage_start) start = i.state.displacement;
     const auto moved = [&](Vec2 point) {
-      const auto b = static_cast<size_t>(block_of_point(i.scene.layout, point));
+      const int b = block_of_point(i.scene.layout, point);
       return displacement_at(i.state, b, point - i.scene.blocks.centroid[b]);
     };
     (i.last ? base_end : base_start) = moved({45, 0.1});
@@ -358,7 +357,7 @@ TEST_CASE("example shaken_slope: the rock above the bedding slides out, the wedg
     (i.last ? behind_end : behind_start) = moved({85, 41.9});
     if (!i.last) return;
     for (const ContactPair& p : i.state.pairs) {
-      const auto a = static_cast<size_t>(p.a), b = static_cast<size_t>(p.b);
+      const int a = p.a, b = p.b;
       slip =
           std::max(slip, norm((i.state.displacement[a] - start[a]) - (i.state.displacement[b] - start[b])));
     }

@@ -15,9 +15,8 @@ namespace {
 
 std::vector<Vec2> corners_now(const Scene& scene, const State& state, int block) {
   std::vector<Vec2> out;
-  const auto k = static_cast<size_t>(block);
   for (int v = 0; v < scene.blocks.vertex_count(block); ++v)
-    out.push_back(scene.blocks.centroid[k] + offset_now(state, k, scene.blocks.corner({block, v})));
+    out.push_back(scene.blocks.centroid[block] + offset_now(state, block, scene.blocks.corner({block, v})));
   return out;
 }
 

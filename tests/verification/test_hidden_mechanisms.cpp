@@ -155,7 +155,7 @@ std::string held_but(const std::string& text, Vec2 inside) {
   for (int i = 0; i < prepared.scene.blocks.count; ++i)
     if (i != wedge)
       out += fmt::format("[[change]]\nstage = \"stand\"\nblock = \"{}\"\nkind = \"fixed\"\n",
-                         prepared.scene.blocks.name[static_cast<size_t>(i)]);
+                         prepared.scene.blocks.name[i]);
   return out;
 }
 

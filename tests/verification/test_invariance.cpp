@@ -6,6 +6,7 @@
 #include "support/invariance.h"
 #include "support/limit_models.h"
 #include "support/tolerance.h"
+#include "talus/base/index.h"
 
 namespace test_invariance {
 
@@ -136,7 +137,7 @@ std::string pile() {
     }
   for (int y = 0; y < kRows; ++y)
     for (int x = 0; x < kColumns; ++x) {
-      const auto at = [&](int i, int j) { return node[static_cast<size_t>(j * (kColumns + 1) + i)]; };
+      const auto at = [&](int i, int j) { return node[j * (kColumns + 1) + i]; };
       Polygon stone{at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)};
       const Vec2 middle = 0.25 * (stone[0] + stone[1] + stone[2] + stone[3]);
       for (Vec2& v : stone) v = dyadic(middle + 0.9 * (v - middle));
@@ -375,9 +376,9 @@ class Subject {
     for (const Snapshot& s : a.at) {
       for (const Vec2 u : s.displacement) moved = std::max(moved, norm(u));
       for (const auto& [key, force] : s.face) {
-        const Polygon& p = here.layout.blocks[static_cast<size_t>(key[0])].polygon;
+        const Polygon& p = here.layout.blocks[key[0]].polygon;
         if (key[1] < 0) continue;
-        const auto k = static_cast<size_t>(key[1]);
+        const int k = key[1];
         const double stiffness = here.model.joints.back().bonded && here.model.joints.size() > 1
                                      ? here.model.joints[1].normal_stiffness
                                      : here.model.joints[0].normal_stiffness;
@@ -423,7 +424,7 @@ class Subject {
       JointSetInput set;
       set.name = "across", set.angle.mean = std::numbers::pi / 2, set.spacing.mean = 0.375;
       set.origin = {0.1875, 0};
-      set.joint = static_cast<int>(model.joints.size());
+      set.joint = count_of(model.joints);
       model.joints.push_back(strong), model.joint_sets.push_back(set);
     });
     judge_bodies(name, outcome_of(divided(whole, 1), options_), outcome_of(parts, options_));

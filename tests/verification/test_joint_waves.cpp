@@ -350,7 +350,7 @@ void slips_under_a_wave(const std::vector<double>& betas) {
     const CaseResult r = run_case(c.text(), {}, [&](const Instant& i) {
       if (i.stage == 1) friction.push_back(i.report.energy.work[Cause::kFriction]);
     });
-    const auto last = static_cast<size_t>(c.steps_looked_at());
+    const int last = c.steps_looked_at();
     const auto tail = [last](const std::vector<double>& v) {
       std::vector<double> values;
       for (size_t k = v.size() - last; k < v.size(); ++k) values.push_back(v[k]);

@@ -142,8 +142,7 @@ TEST_CASE("A6g columns on a slope topple below the friction of Goodman and Bray"
     check_collapses(what, r, -3 * above);
     // the toe slides, the middle topples, the top stands
     for (int n = 1; n <= kColumns; ++n) {
-      const auto k = static_cast<size_t>(n);
-      const double moved = norm(r.state.displacement[k]), turned = std::abs(r.state.angle[k]);
+      const double moved = norm(r.state.displacement[n]), turned = std::abs(r.state.angle[n]);
       INFO("column ", n, " moved ", moved, " m, turned ", turned);
       CHECK((n <= 13 ? moved > 1e-2 : moved < 1e-4));
       CHECK((n >= 4 && n <= 13 ? turned > 1e-3 : turned < 1e-5));

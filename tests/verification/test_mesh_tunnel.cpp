@@ -8,6 +8,7 @@
 #include "support/source_file.h"
 #include "support/tolerance.h"
 #include "support/tunnel_model.h"
+#include "talus/base/index.h"
 #include "talus/base/text_file.h"
 #include "talus/mesh/read_msh.h"
 
@@ -54,7 +55,7 @@ TEST_CASE(
     doctest::test_suite("optimised")) {
   const Tunnel t = tunnel(kSectors);
   const std::vector<Vec2> u = t.finite_elements();
-  const double discrete = -u[static_cast<size_t>(t.node(0, t.sectors))].y;
+  const double discrete = -u[t.node(0, t.sectors)].y;
   const CaseResult blocks = run_case(t.text());
   for (const bool version4 : {true, false}) {
     const MeshFile file(t.msh(version4));
@@ -74,9 +75,9 @@ TEST_CASE("A6j by an unstructured mesh that Gmsh made" * doctest::test_suite("op
   const Tunnel t = tunnel(24);
   std::vector<Vec2> force(grid.node.size());
   std::map<int, double> held;
-  for (size_t i = 0; i < grid.node.size(); ++i) {
+  for (int i = 0; i < count_of(grid.node); ++i) {
     const Vec2 p = grid.node[i];
-    const int k = 2 * static_cast<int>(i);
+    const int k = 2 * i;
     if (p.x == 0) held[k] = 0;
     if (p.y == 0) held[k + 1] = 0;
     if (norm(p) < Tunnel::kEdge - 1e-6) continue;
@@ -86,13 +87,13 @@ TEST_CASE("A6j by an unstructured mesh that Gmsh made" * doctest::test_suite("op
   }
   int wall = 0;
   for (const MeshEdge& e : read.edges) {
-    if (read.curve_groups[static_cast<size_t>(e.group)] != "wall") continue;
+    if (read.curve_groups[e.group] != "wall") continue;
     ++wall;
-    Vec2 a = grid.node[static_cast<size_t>(e.from)], b = grid.node[static_cast<size_t>(e.to)];
+    Vec2 a = grid.node[e.from], b = grid.node[e.to];
     if (cross(a, b) < 0) std::swap(a, b);
     const Vec2 inward = turn_left(b - a);  // what the core bore pulls towards the middle
     for (const int n : {e.from, e.to}) {
-      Vec2& f = force[static_cast<size_t>(n)];
+      Vec2& f = force[n];
       f = f + 0.5 * Vec2{t.horizontal * inward.x, t.vertical * inward.y};
     }
   }

@@ -95,7 +95,7 @@ Eigen::Matrix2cd exact() {
   const double mu = kDensity * kShear * kShear, c11 = kDensity * kPressure * kPressure;
   const auto all = waves();
   for (int i = 0; i < 4; ++i) {
-    const auto [kz, d] = all[static_cast<size_t>(i)];
+    const auto [kz, d] = all[i];
     q(0, i) = mu * (kTrace * d.y + kz * d.x) - kDensity * kShear * kOmega * d.x;
     q(1, i) = (c11 - 2 * mu) * kTrace * d.x + c11 * kz * d.y - kDensity * kPressure * kOmega * d.y;
   }
@@ -118,11 +118,11 @@ Eigen::Vector4cd taken_apart(const std::vector<Vec2>& place,
         for (Eigen::Index c = 0; c < 2; ++c) {
           const auto row = static_cast<Eigen::Index>(2 * i) + c;
           for (Eigen::Index w = 0; w < 4; ++w) {
-            const Wave& wave = all[static_cast<size_t>(w)];
+            const Wave& wave = all[w];
             a(row, w) = (c == 0 ? wave.d.x : wave.d.y) *
                         std::polar(1.0, -kTrace * place[i].x - wave.kz * (place[i].y - kHeight));
           }
-          b(row) = motion[i][static_cast<size_t>(c)];
+          b(row) = motion[i][c];
         }
       const Eigen::Vector4cd x = (a.adjoint() * a).ldlt().solve(a.adjoint() * b);
       const double off = (a * x - b).norm() / b.norm();

@@ -39,9 +39,8 @@ std::string stage(double duration, double step) {
 double centre_velocity(const Scene& scene, const State& s, int from, int to) {
   double momentum = 0, mass = 0;
   for (int i = from; i < to; ++i) {
-    const auto k = static_cast<size_t>(i);
-    momentum += scene.blocks.mass[k] * s.rate[k].a.y;
-    mass += scene.blocks.mass[k];
+    momentum += scene.blocks.mass[i] * s.rate[i].a.y;
+    mass += scene.blocks.mass[i];
   }
   return momentum / mass;
 }

@@ -112,7 +112,7 @@ struct ColumnTop {
   std::vector<double> x, y;
   void operator()(const Instant& i) {
     const FreeField& f = i.scene.boundaries.free_field;
-    const auto top = static_cast<size_t>(f.columns[0].first_node + f.columns[0].elements);
+    const int top = f.columns[0].first_node + f.columns[0].elements;
     x.push_back(i.state.column_displacement[top].x);
     y.push_back(i.state.column_displacement[top].y);
   }
@@ -279,7 +279,7 @@ TEST_CASE(
   double sideways = 0;
   const CaseResult r = run_case(text, {}, [&](const Instant& i) {
     if (i.stage != 1) return;
-    const auto top = static_cast<size_t>(block_of_point(i.scene.layout, {12, 30}));
+    const int top = block_of_point(i.scene.layout, {12, 30});
     v.push_back(velocity_at(rate_now(i.work, i.state, top), Vec2{12, 30} - i.scene.blocks.centroid[top]).x);
     exact.push_back(ray_series(i.state.history_time, 1));
     sideways = std::max(sideways, std::abs(rate_now(i.work, i.state, top).a.y));

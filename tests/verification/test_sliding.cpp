@@ -78,7 +78,7 @@ std::string shaking(double angle, const std::string& horizontal, const std::stri
 
 double slip_at(const CaseResult& r, double t) {
   const auto &time = r.column("t [s]"), &x = r.column("b.displacement_x");
-  return x[static_cast<size_t>(std::lround(t / (time[1] - time[0])))];
+  return x[std::lround(t / (time[1] - time[0]))];
 }
 
 }  // namespace

@@ -42,11 +42,10 @@ Section section(const Instant& now) {
   Section out;
   out.time = now.state.time;
   for (int i = 0; i < b.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (b.removed(i)) continue;
-    const double y = b.centroid[k].y, vertical = kTop + kWeight * (kHeight - y);
+    const double y = b.centroid[i].y, vertical = kTop + kWeight * (kHeight - y);
     const Mat2 stress = cauchy_stress(b, now.state, i);
-    (b.group[k] == tunnel ? out.tunnel : out.rock).add(b.volume[k], y, stress.yy);
+    (b.group[i] == tunnel ? out.tunnel : out.rock).add(b.volume[i], y, stress.yy);
     out.change = std::max({out.change, std::abs(stress.yy + vertical),
                            std::abs(stress.xx + kRatio * vertical), std::abs(stress.xy)});
   }
@@ -88,7 +87,7 @@ void check_example(const std::vector<std::string>& overrides) {
   // the integral of y t_y over its edge, which is its stress + weight_moment().
   const double left[] = {1, 0.5, 0}, pass = 1e-4, stretch = 1e-5;
   for (int k = 0; k < 3; ++k) {
-    const std::string name = fmt::format("staged_tunnel {}, ", r.run.stages[static_cast<size_t>(k)].name);
+    const std::string name = fmt::format("staged_tunnel {}, ", r.run.stages[k].name);
     const double weight = kTop * kWidth + kWeight * (rock.area + left[k] * tunnel.area);
     check_close(name + "force of the base / weight", force(k, "base_force.reaction_y") / weight, 1, pass,
                 stretch);

@@ -32,8 +32,7 @@ Wall blocks(Tunnel tunnel) {
 Wall finite_elements(const Tunnel& tunnel) {
   const std::vector<Vec2> u = tunnel.finite_elements();
   const double more = stress_of(tunnel.mesh(), tunnel.rock(), u, 0)[1];
-  return {-u[static_cast<size_t>(tunnel.node(0, 0))].x,
-          -u[static_cast<size_t>(tunnel.node(0, tunnel.sectors))].y, more - tunnel.vertical};
+  return {-u[tunnel.node(0, 0)].x, -u[tunnel.node(0, tunnel.sectors)].y, more - tunnel.vertical};
 }
 
 }  // namespace

@@ -79,8 +79,8 @@ void shear_along_a_set(const std::string& stiffness) {
           CHECK(upper.size() > 30);
           double mass = 0;
           for (const int k : upper) {
-            const double m = i.scene.blocks.mass[static_cast<size_t>(k)];
-            speed += m * rate_now(i.work, i.state, static_cast<size_t>(k)).a, mass += m;
+            const double m = i.scene.blocks.mass[k];
+            speed += m * rate_now(i.work, i.state, k).a, mass += m;
           }
           speed = (1 / mass) * speed;
         },

@@ -43,9 +43,8 @@ class Watch {
       if (last_[1].of(last_[1].overlap, pair) < 0.5 * deep) continue;
       if (lost.size() < 5)
         lost.push_back(fmt::format("{} and {} before t = {:g} s: {:.3g} N, {:.3g} N, {:.3g} N",
-                                   now.scene.blocks.name[static_cast<size_t>(pair.first)],
-                                   now.scene.blocks.name[static_cast<size_t>(pair.second)], now.state.time,
-                                   before, last_[1].of(last_[1].force, pair), after));
+                                   now.scene.blocks.name[pair.first], now.scene.blocks.name[pair.second],
+                                   now.state.time, before, last_[1].of(last_[1].force, pair), after));
     }
   }
 

@@ -61,7 +61,7 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
         if (i.stage == 1 && i.stage_start) {
           for (int k = 0; k < b.count; ++k) {
             if (b.removed(k)) continue;
-            const double depth = 300 - b.centroid[static_cast<size_t>(k)].y;
+            const double depth = 300 - b.centroid[k].y;
             const double vertical = 14.68e6 + 2850 * 9.81 * depth;
             stress = std::max(stress, std::abs(cauchy_stress(b, i.state, k).yy + vertical) / vertical);
           }
@@ -73,9 +73,7 @@ TEST_CASE("example xianglushan, cut down: rest, excavation and the first 3 s of 
           if (h.name == "north") outcrop = h;
         for (size_t f = 0; f < i.state.face.size(); ++f)
           if (i.state.face[f].broken)
-            farthest = std::max(
-                farthest,
-                norm(b.centroid[static_cast<size_t>(i.scene.bonds.faces[f].block_a)] - Vec2{0, 200}));
+            farthest = std::max(farthest, norm(b.centroid[i.scene.bonds.faces[f].block_a] - Vec2{0, 200}));
       },
       nullptr, file);
 

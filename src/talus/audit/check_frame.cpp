@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "talus/audit/overlap_energy.h"
 #include "talus/audit/shapes.h"
 #include "talus/audit/tip.h"
+#include "talus/base/index.h"
 
 namespace talus::audit {
 
@@ -97,21 +99,15 @@ class Check {
     double closing = 0;   // the most they may close a gap at within the step [m/s]
   };
 
-  const Polygon& polygon(int i) const { return frame_.blocks[static_cast<size_t>(i)].polygon; }
-  double size_of(int a, int b) const {
-    return std::min(size_[static_cast<size_t>(a)], size_[static_cast<size_t>(b)]);
-  }
+  const Polygon& polygon(int i) const { return frame_.blocks[i].polygon; }
+  double size_of(int a, int b) const { return std::min(size_[a], size_[b]); }
   double extent(const Polygon& p) const {
     const Box box = bounding_box(p);
     return norm(box.max - box.min);
   }
-  double area_of(int a, int b) const {
-    return std::min(area_[static_cast<size_t>(a)], area_[static_cast<size_t>(b)]);
-  }
-  bool prescribed(int i) const { return frame_.blocks[static_cast<size_t>(i)].hold == Hold::kPrescribed; }
-  const Law* law_of(const Point& p) const {
-    return p.joint < 0 ? nullptr : &rules_.laws[static_cast<size_t>(p.joint)];
-  }
+  double area_of(int a, int b) const { return std::min(area_[a], area_[b]); }
+  bool prescribed(int i) const { return frame_.blocks[i].hold == Hold::kPrescribed; }
+  const Law* law_of(const Point& p) const { return p.joint < 0 ? nullptr : &rules_.laws[p.joint]; }
 
   void take_points() {
     const size_t n = frame_.points.size();
@@ -124,7 +120,7 @@ class Check {
       const double force = std::hypot(p.normal_force, p.shear_force);
       if (force > 0) sum += force, ++forces;
       seen_[i] = p.bond() ? see_bond(p) : p.patch() ? see_patch(p) : see_contact(p);
-      if (p.bond()) tied_[static_cast<size_t>(p.block_a)] = tied_[static_cast<size_t>(p.block_b)] = true;
+      if (p.bond()) tied_[p.block_a] = tied_[p.block_b] = true;
       corners = corners || !(p.bond() || p.patch());
     }
     if (!corners && rules_.joints_everywhere && !rules_.changes) softest_ = softest();
@@ -149,8 +145,7 @@ class Check {
   Seen see_patch(const Point& p) const {
     Seen s;
     s.place = p.place, s.normal = p.normal, s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
-    const Block &a = frame_.blocks[static_cast<size_t>(p.block_a)],
-                &b = frame_.blocks[static_cast<size_t>(p.block_b)];
+    const Block &a = frame_.blocks[p.block_a], &b = frame_.blocks[p.block_b];
     const auto moves = [&](std::vector<Vec2> Block::*velocity) {
       return velocity_at(a, p.place, velocity) - velocity_at(b, p.place, velocity);
     };
@@ -165,14 +160,13 @@ class Check {
 
   Seen see_contact(const Point& p) const {
     const Polygon &a = polygon(p.block_a), &b = polygon(p.block_b);
-    const auto v = static_cast<size_t>(p.corner), e = static_cast<size_t>(p.edge), next = (e + 1) % b.size();
+    const size_t v = p.corner, e = p.edge, next = (e + 1) % b.size();
     Seen s;
     const Vec2 side = b[next] - b[e];
     s.place = a[v], s.normal = turn_right(side) / norm(side);
     s.gap = p.gap, s.depth = std::max(0.0, -p.gap);
     const double along = std::clamp(dot(a[v] - b[e], side) / dot(side, side), 0.0, 1.0);
-    const Block &block_a = frame_.blocks[static_cast<size_t>(p.block_a)],
-                &block_b = frame_.blocks[static_cast<size_t>(p.block_b)];
+    const Block &block_a = frame_.blocks[p.block_a], &block_b = frame_.blocks[p.block_b];
     const auto moves = [&](std::vector<Vec2> Block::*velocity) {
       return moves_against(block_a, v, block_b, e, along, velocity);
     };
@@ -191,7 +185,7 @@ class Check {
     Seen s;
     s.place = p.place;
     if (p.partner < 0) return s;
-    const Vec2 other = frame_.points[static_cast<size_t>(p.partner)].place;
+    const Vec2 other = frame_.points[p.partner].place;
     const Vec2 face = other - p.place, middle = p.place + 0.5 * face;
     const double length = norm(face);
     if (length == 0) return s;
@@ -215,25 +209,23 @@ class Check {
   void list_pairs() {
     std::vector<Box> boxes;
     std::vector<int> block;
-    for (size_t i = 0; i < frame_.blocks.size(); ++i) {
+    for (int i = 0; i < count_of(frame_.blocks); ++i) {
       if (frame_.blocks[i].hold == Hold::kRemoved) continue;
       boxes.push_back(bounding_box(frame_.blocks[i].polygon));
-      block.push_back(static_cast<int>(i));
+      block.push_back(i);
     }
     // neighbours across a hair gap too
     double margin = 0;
-    for (const int i : block)
-      margin += 2 * kHairGap * size_[static_cast<size_t>(i)] / static_cast<double>(block.size());
+    for (const int i : block) margin += 2 * kHairGap * size_[i] / static_cast<double>(block.size());
     std::vector<std::pair<int, int>> list;
-    for (const auto& [i, j] : close_pairs(boxes, margin))
-      list.emplace_back(block[static_cast<size_t>(i)], block[static_cast<size_t>(j)]);
+    for (const auto& [i, j] : close_pairs(boxes, margin)) list.emplace_back(block[i], block[j]);
     const auto pair_of = [this](int i) {
-      const Point& p = frame_.points[static_cast<size_t>(i)];
+      const Point& p = frame_.points[i];
       return std::minmax(p.block_a, p.block_b);
     };
-    for (size_t i = 0; i < frame_.points.size(); ++i) {
-      order_.push_back(static_cast<int>(i));
-      list.emplace_back(pair_of(static_cast<int>(i)));
+    for (int i = 0; i < count_of(frame_.points); ++i) {
+      order_.push_back(i);
+      list.emplace_back(pair_of(i));
     }
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -246,8 +238,8 @@ class Check {
       Pair pair{a, b, static_cast<int>(next), 0};
       while (next < order_.size() && std::pair<int, int>(pair_of(order_[next])) == std::pair{a, b}) ++next;
       pair.end = static_cast<int>(next);
-      neighbours_[static_cast<size_t>(a)].push_back({b, static_cast<int>(pairs_.size())});
-      neighbours_[static_cast<size_t>(b)].push_back({a, static_cast<int>(pairs_.size())});
+      neighbours_[a].push_back({b, count_of(pairs_)});
+      neighbours_[b].push_back({a, count_of(pairs_)});
       pairs_.push_back(pair);
     }
   }
@@ -261,17 +253,15 @@ class Check {
     for (size_t q = 0; q < pairs_.size(); ++q)
       if (has_energy(pairs_[q])) fit.push_back(q);
     const size_t every = std::max<size_t>(1, (fit.size() + kMostByEnergy - 1) / kMostByEnergy);
-    for (size_t k = static_cast<size_t>(turn) % every; k < fit.size(); k += every) by_energy_[fit[k]] = true;
+    for (size_t k = turn % every; k < fit.size(); k += every) by_energy_[fit[k]] = true;
   }
 
   bool has_energy(const Pair& pair) const {
-    if (pair.end - pair.begin != 2 || tied_[static_cast<size_t>(pair.a)] ||
-        tied_[static_cast<size_t>(pair.b)])
-      return false;
+    if (pair.end - pair.begin != 2 || tied_[pair.a] || tied_[pair.b]) return false;
     double normal = 0;
     for (int k = pair.begin; k < pair.end; ++k) {
-      const int i = order_[static_cast<size_t>(k)];
-      const Point& p = frame_.points[static_cast<size_t>(i)];
+      const int i = order_[k];
+      const Point& p = frame_.points[i];
       const Law* law = law_of(p);
       if (!p.patch() || p.partner < 0 || !law || law->normal_stiffness <= 0 || law->dilates ||
           !std::isfinite(p.closing) || p.normal_force <= 0)
@@ -288,10 +278,10 @@ class Check {
 
   void check_pair(const Pair& pair, FrameResult& out) const {
     check_overlap(pair, out);
-    if (by_energy_[static_cast<size_t>(&pair - pairs_.data())]) check_energy(pair, out);
+    if (by_energy_[&pair - pairs_.data()]) check_energy(pair, out);
     check_tip(pair, out);
     for (int k = pair.begin; k < pair.end; ++k) {
-      const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+      const int i = order_[k];
       const Point& p = frame_.points[i];
       check_closure(p, seen_[i], out);
       check_shear(i, out);
@@ -341,7 +331,7 @@ class Check {
     if (pair.begin == pair.end && softest() == 0) return true;
     double stiffness = pair.begin == pair.end ? stiffest() : 0;
     for (int k = pair.begin; k < pair.end; ++k) {
-      const Law* law = law_of(frame_.points[static_cast<size_t>(order_[static_cast<size_t>(k)])]);
+      const Law* law = law_of(frame_.points[order_[k]]);
       if (!law || law->normal_stiffness == 0) return true;
       stiffness = std::max(stiffness, law->normal_stiffness);
     }
@@ -351,9 +341,7 @@ class Check {
   // An overlap without any point, by the force that the softest joint would make of it: what is a share of 1e-4 of a block is
   // a large force where joints are stiff. Not asked beside bonds: behind a tied side there is no way out.
   void check_push(const Pair& pair, const Common& common, FrameResult& out) const {
-    if (softest_ == 0 || mean_force_ == 0 || tied_[static_cast<size_t>(pair.a)] ||
-        tied_[static_cast<size_t>(pair.b)])
-      return;
+    if (softest_ == 0 || mean_force_ == 0 || tied_[pair.a] || tied_[pair.b]) return;
     const double area = std::max(0.0, common.area - crossing_product(pair, common));
     const double push = softest_ * rules_.thickness * area, share = push / mean_force_;
     if (share <= kPushWarns) return;
@@ -372,7 +360,7 @@ class Check {
     double normal = 0, may = 0;
     Vec2 place;
     for (int k = pair.begin; k < pair.end; ++k) {
-      const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+      const int i = order_[k];
       const Point& p = frame_.points[i];
       if (!p.patch()) return;
       if (p.normal_force > 0) normal += p.normal_force, place = seen_[i].place;
@@ -395,8 +383,8 @@ class Check {
   // Check 4, exactly: the force of a patch is minus the gradient of the energy of the overlap, taken by finite differences,
   // and what its stiffness makes of the way to where the force belongs.
   void check_energy(const Pair& pair, FrameResult& out) const {
-    const auto i = static_cast<size_t>(order_[static_cast<size_t>(pair.begin)]);
-    const Point &p = frame_.points[i], &q = frame_.points[static_cast<size_t>(p.partner)];
+    const int i = order_[pair.begin];
+    const Point &p = frame_.points[i], &q = frame_.points[p.partner];
     const Polygon &a = polygon(p.block_a), &b = polygon(p.block_b);
     if (!is_convex(a) || !is_convex(b)) return;
     const OverlapForce overlap = overlap_force(a, b);
@@ -429,12 +417,12 @@ class Check {
     const double left = rules_.slop * size + rules_.tolerance;
     double sum = 0;
     for (int k = pair.begin; k < pair.end; ++k) {
-      const int i = order_[static_cast<size_t>(k)];
-      const Point& p = frame_.points[static_cast<size_t>(i)];
-      const Seen& s = seen_[static_cast<size_t>(i)];
+      const int i = order_[k];
+      const Point& p = frame_.points[i];
+      const Seen& s = seen_[i];
       if (p.partner >= 0) {
         if (p.partner < i) continue;  // counted with its other end
-        const Seen& o = seen_[static_cast<size_t>(p.partner)];
+        const Seen& o = seen_[p.partner];
         const double length = norm(o.place - s.place);
         sum += trapezium(s.gap, o.gap, length) + left * length;
         if (p.patch()) sum += end_cell(s.gap) + end_cell(o.gap);
@@ -460,7 +448,7 @@ class Check {
   double wedge(const Point& p, const Seen& s, double depth) const {
     if (depth <= 0) return 0;
     const Polygon &a = polygon(p.block_a), &b = polygon(p.block_b);
-    const auto v = static_cast<size_t>(p.corner), e = static_cast<size_t>(p.edge);
+    const int v = p.corner, e = p.edge;
     const Polygon legs{a[v], a[(v + 1) % a.size()], a[(v + a.size() - 1) % a.size()]};
     if (signed_area(legs) <= 0) return 0;  // a notch bears nothing
     const Vec2 from = b[e], to = b[(e + 1) % b.size()], side = (to - from) / norm(to - from);
@@ -475,8 +463,8 @@ class Check {
   double crossing_product(const Pair& pair, const Common& common) const {
     double most = 0;
     const double reach = 3 * std::sqrt(common.area) + kPlace * size_of(pair.a, pair.b);
-    const auto& of_a = neighbours_[static_cast<size_t>(pair.a)];
-    const auto& of_b = neighbours_[static_cast<size_t>(pair.b)];
+    const auto& of_a = neighbours_[pair.a];
+    const auto& of_b = neighbours_[pair.b];
     for (size_t x = 0, y = 0; x < of_a.size() && y < of_b.size();) {
       if (of_a[x].block != of_b[y].block) {
         of_a[x].block < of_b[y].block ? ++x : ++y;
@@ -492,10 +480,10 @@ class Check {
 
   // The deepest closure of a pair at points within `reach` of a place, counted with its own depth.
   double closure_near(int pair, Vec2 place, double reach) const {
-    const Pair& q = pairs_[static_cast<size_t>(pair)];
+    const Pair& q = pairs_[pair];
     double most = rules_.slop * size_of(q.a, q.b) + rules_.tolerance;
     for (int k = q.begin; k < q.end; ++k) {
-      const Seen& s = seen_[static_cast<size_t>(order_[static_cast<size_t>(k)])];
+      const Seen& s = seen_[order_[k]];
       if (norm(s.place - place) <= reach + 3 * s.depth) most = std::max(most, s.depth);
     }
     return most;
@@ -531,7 +519,7 @@ class Check {
     const Law* law = law_of(p);
     const bool soft = p.joint == kUnknownJoint || (law && law->normal_stiffness > 0);
     if (soft && p.partner >= 0) {
-      const auto other = static_cast<size_t>(p.partner);
+      const int other = p.partner;
       // or is closing there within the step
       if (seen_[other].gap <
           frame_.points[other].in_situ + frame_.points[other].rise + 3 * frame_.step * seen_[other].closing)
@@ -559,10 +547,10 @@ class Check {
   // is high is past it.
   void check_side(const Point& p, const Seen& s, FrameResult& out) const {
     const double size = size_of(p.block_a, p.block_b);
-    const auto a = static_cast<size_t>(p.block_a);
+    const int a = p.block_a;
     // along a face the side is exposed to the corner's own block: nothing else can cover it there
     if (p.partner >= 0) {
-      const Seen& o = seen_[static_cast<size_t>(p.partner)];
+      const Seen& o = seen_[p.partner];
       if (norm(o.place - s.place) > kFace * size &&
           std::max(std::abs(o.gap), std::abs(s.gap)) < 0.1 * kFace * size)
         return;
@@ -578,7 +566,7 @@ class Check {
     const std::vector<int> own = glued_to(p.block_a, p.block_b);
     bool covered = false;
     const Vec2 ahead = s.place + (overlap - s.gap) * s.normal;
-    for (const Neighbour& n : neighbours_[static_cast<size_t>(p.block_b)]) {
+    for (const Neighbour& n : neighbours_[p.block_b]) {
       if (std::find(own.begin(), own.end(), n.block) != own.end()) continue;
       around.push_back(&polygon(n.block));
       covered = covered || depth_in(polygon(n.block), ahead) > -2 * hair;
@@ -599,12 +587,11 @@ class Check {
       if (nearest <= 2 * overlap) break;  // at the surface
     }
     const double share = std::abs(p.normal_force) / mean_force_;
-    out.findings.push_back(
-        finding(Defect::kCoveredSide, share > kForceInvalid, p.block_a, p.block_b, s.place, share,
-                fmt::format("a corner of \"{}\" bears with {:.4g} N on a side of \"{}\" that the next block "
-                            "covers (normal {:.2g}, {:.2g})",
-                            rules_.names[a], p.normal_force, rules_.names[static_cast<size_t>(p.block_b)],
-                            s.normal.x, s.normal.y)));
+    out.findings.push_back(finding(
+        Defect::kCoveredSide, share > kForceInvalid, p.block_a, p.block_b, s.place, share,
+        fmt::format("a corner of \"{}\" bears with {:.4g} N on a side of \"{}\" that the next block "
+                    "covers (normal {:.2g}, {:.2g})",
+                    rules_.names[a], p.normal_force, rules_.names[p.block_b], s.normal.x, s.normal.y)));
   }
 
   // Check 3 of patches: a force that pushes out through a side behind which third blocks lie. Of a tip between two blocks
@@ -613,13 +600,13 @@ class Check {
     // in the first step what presses has not closed anything yet
     if (frame_.time == 0) return;
     for (int k = pair.begin; k < pair.end; ++k) {
-      const int i = order_[static_cast<size_t>(k)];
-      const Point& p = frame_.points[static_cast<size_t>(i)];
+      const int i = order_[k];
+      const Point& p = frame_.points[i];
       if (!p.patch() || p.partner < i) continue;
-      const Point& q = frame_.points[static_cast<size_t>(p.partner)];
+      const Point& q = frame_.points[p.partner];
       const double force = p.normal_force + q.normal_force, share = force / mean_force_;
       if (!(share > kPushWarns)) continue;
-      const Seen &s = seen_[static_cast<size_t>(i)], &o = seen_[static_cast<size_t>(p.partner)];
+      const Seen &s = seen_[i], &o = seen_[p.partner];
       const Pressed at{
           (p.normal_force * s.place + q.normal_force * o.place) / force, 0.5 * (s.place + o.place),
           std::max(s.depth, o.depth) + kPlace * size_of(pair.a, pair.b), norm(o.place - s.place)};
@@ -640,22 +627,22 @@ class Check {
     if (has_side(polygon(block), way, at) && has_side(polygon(pressed), -way, at)) return 0;
     if (!is_held(pressed, block, way, at)) return 0;
     std::vector<Third> thirds;
-    for (const Neighbour& n : neighbours_[static_cast<size_t>(block)])
+    for (const Neighbour& n : neighbours_[block])
       if (n.block != pressed) thirds.push_back({&polygon(n.block), closure_near(n.pair, at.place, at.depth)});
     return through_covered(polygon(block), thirds, way, at);
   }
 
   // Whether some third block presses a block against `way` there: else it may go that way, as one that slides past a crossing.
   bool is_held(int block, int other, Vec2 way, const Pressed& at) const {
-    for (const Neighbour& n : neighbours_[static_cast<size_t>(block)]) {
-      const Pair& pair = pairs_[static_cast<size_t>(n.pair)];
+    for (const Neighbour& n : neighbours_[block]) {
+      const Pair& pair = pairs_[n.pair];
       for (int k = pair.begin; n.block != other && k < pair.end; ++k) {
-        const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+        const int i = order_[k];
         const Point& p = frame_.points[i];
         if (p.partner < 0 || p.normal_force <= 0) continue;
         const Vec2 normal = p.block_a == block ? seen_[i].normal : -seen_[i].normal;
         if (dot(normal, way) < -kOffSide &&
-            distance_to_segment(at.place, seen_[i].place, seen_[static_cast<size_t>(p.partner)].place) <=
+            distance_to_segment(at.place, seen_[i].place, seen_[p.partner].place) <=
                 4 * at.depth + 2 * at.length)
           return true;
       }
@@ -668,16 +655,16 @@ class Check {
   // that closure, so a corner deeper than that came from the front.
   bool stands_before_step(const Point& p, const Seen& s) const {
     const Polygon& b = polygon(p.block_b);
-    const auto e = static_cast<size_t>(p.edge), next = (e + 1) % b.size();
+    const size_t e = p.edge, next = (e + 1) % b.size();
     const double size = size_of(p.block_a, p.block_b);
     const Vec2 side = turn_left(s.normal);
     const double below =
         std::min(std::abs(dot(side, s.place - b[e])), std::abs(dot(side, s.place - b[next])));
     double floor = rules_.slop * size + rules_.tolerance;
-    for (const Neighbour& n : neighbours_[static_cast<size_t>(p.block_a)]) {
-      const Pair& q = pairs_[static_cast<size_t>(n.pair)];
+    for (const Neighbour& n : neighbours_[p.block_a]) {
+      const Pair& q = pairs_[n.pair];
       for (int k = q.begin; k < q.end; ++k) {
-        const Seen& other = seen_[static_cast<size_t>(order_[static_cast<size_t>(k)])];
+        const Seen& other = seen_[order_[k]];
         if (std::abs(dot(other.normal, s.normal)) > kOtherWay || norm(other.place - s.place) > kBeside * size)
           continue;
         floor = std::max(floor, other.depth);
@@ -691,16 +678,14 @@ class Check {
     std::vector<int> body{a};
     const auto is_near = [&](int i) {
       for (const int centre : {a, b})
-        for (const Neighbour& n : neighbours_[static_cast<size_t>(centre)])
+        for (const Neighbour& n : neighbours_[centre])
           if (n.block == i) return i != b;
       return false;
     };
     for (size_t k = 0; k < body.size(); ++k) {
-      for (const Neighbour& n : neighbours_[static_cast<size_t>(body[k])]) {
-        const Pair& pair = pairs_[static_cast<size_t>(n.pair)];
-        if (pair.begin == pair.end ||
-            !frame_.points[static_cast<size_t>(order_[static_cast<size_t>(pair.begin)])].bond())
-          continue;
+      for (const Neighbour& n : neighbours_[body[k]]) {
+        const Pair& pair = pairs_[n.pair];
+        if (pair.begin == pair.end || !frame_.points[order_[pair.begin]].bond()) continue;
         if (is_near(n.block) && std::find(body.begin(), body.end(), n.block) == body.end())
           body.push_back(n.block);
       }
@@ -711,16 +696,16 @@ class Check {
   // Check 4, along the joint: the resultant of a face, or of a corner alone.
   void check_shear(size_t i, FrameResult& out) const {
     const Point& p = frame_.points[i];
-    if (p.partner >= 0 && static_cast<size_t>(p.partner) < i) return;
+    if (p.partner >= 0 && std::cmp_less(p.partner, i)) return;
     const Law* law = law_of(p);
     if (p.joint == kUnknownJoint || (law && law->bonded)) return;
     const Law none;
     if (!law) law = &none;
     double normal = p.normal_force, shear = p.shear_force, area = 0;
     if (p.partner >= 0) {
-      const Point& o = frame_.points[static_cast<size_t>(p.partner)];
+      const Point& o = frame_.points[p.partner];
       if (o.joint != p.joint) return;
-      area = norm(seen_[static_cast<size_t>(p.partner)].place - seen_[i].place) * rules_.thickness;
+      area = norm(seen_[p.partner].place - seen_[i].place) * rules_.thickness;
       normal += o.normal_force, shear += o.shear_force;
     }
     const double slack = kLawSlack * (std::abs(normal) + law->cohesion * area) + kForceSeen * mean_force_;
@@ -749,7 +734,7 @@ class Check {
     const Law* law = nullptr;
     Vec2 direction, place;
     for (int k = pair.begin; k < pair.end; ++k) {
-      const auto i = static_cast<size_t>(order_[static_cast<size_t>(k)]);
+      const int i = order_[k];
       const Point& p = frame_.points[i];
       const Seen& s = seen_[i];
       const Law* here = law_of(p);
@@ -766,8 +751,7 @@ class Check {
       direction = n;
       if (!p.patch() && !side_along(p, s)) return;
       if (p.normal_force >= normal) place = s.place;
-      const double length =
-          p.partner >= 0 ? 0.5 * norm(seen_[static_cast<size_t>(p.partner)].place - s.place) : 0.02 * size;
+      const double length = p.partner >= 0 ? 0.5 * norm(seen_[p.partner].place - s.place) : 0.02 * size;
       blurred += length * (kPlace * size + 3 * frame_.step * s.approach);
       normal += p.normal_force;
     }
@@ -791,7 +775,7 @@ class Check {
   // Whether a side of the corner lies along the side that it is over.
   bool side_along(const Point& p, const Seen& s) const {
     const Polygon& a = polygon(p.block_a);
-    const auto v = static_cast<size_t>(p.corner);
+    const size_t v = p.corner;
     for (const size_t k : {v, (v + a.size() - 1) % a.size()}) {
       const Vec2 side = a[(k + 1) % a.size()] - a[k];
       const Vec2 n = turn_right(side) / norm(side);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "talus/base/index.h"
+
 namespace talus::audit {
 
 namespace {
@@ -39,16 +41,16 @@ void exchange_finding(auto& x, const std::string& name, auto& f) {
 
 }  // namespace
 
-const char* key_of(Defect defect) { return kKey[static_cast<size_t>(defect)]; }
+const char* key_of(Defect defect) { return kKey[place_of(defect)]; }
 
 std::string pair_text(const std::vector<std::string>& names, int block_a, int block_b) {
-  const auto name = [&names](int i) { return "\"" + names[static_cast<size_t>(i)] + "\""; };
+  const auto name = [&names](int i) { return "\"" + names[i] + "\""; };
   if (block_a < 0) return "";
   return block_b < 0 ? name(block_a) : name(block_a) + " and " + name(block_b);
 }
 
 void Report::add(const Finding& f) {
-  Entry& e = entries_[static_cast<size_t>(f.defect)];
+  Entry& e = entries_[place_of(f.defect)];
   if (e.count == 0 || (f.invalid && !e.invalid)) e.first = f;
   if (e.count == 0 || (f.invalid && !e.worst.invalid) ||
       (f.invalid == e.worst.invalid && f.share > e.worst.share))

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/base/vec2.h"
 #include "talus/output/archive.h"
 
@@ -30,7 +31,7 @@ enum class Defect {
   kLooseSteps,
   kCount
 };
-inline constexpr size_t kDefects = static_cast<size_t>(Defect::kCount);
+inline constexpr size_t kDefects = place_of(Defect::kCount);
 constexpr Defect last_of(Defect) { return Defect::kCount; }  // of an entry without finding
 
 /// "force_vanished": as in summary.json.
@@ -59,7 +60,7 @@ class Report {
   void add(const std::vector<Finding>& findings) {
     for (const Finding& f : findings) add(f);
   }
-  const Entry& of(Defect defect) const { return entries_[static_cast<size_t>(defect)]; }
+  const Entry& of(Defect defect) const { return entries_[place_of(defect)]; }
   bool valid() const;
   int invalid_kinds() const;
   int warning_kinds() const;

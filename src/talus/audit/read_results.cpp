@@ -11,6 +11,7 @@
 
 #include "talus/audit/check_frame.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/json_depth.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
@@ -82,8 +83,8 @@ class Reader {
   void judge_ends() {
     const auto& s = summary_;
     if (s.contains("solver")) {
-      const int64_t steps = count_of("contact_solves"), failed = std::max(count_of("failed_steps"), failed_),
-                    loose = std::max(count_of("loose_steps"), loose_);
+      const int64_t steps = counted("contact_solves"), failed = std::max(counted("failed_steps"), failed_),
+                    loose = std::max(counted("loose_steps"), loose_);
       if (failed > steps - loose && s["solver"].contains("contact_solves"))
         throw FileError(fmt::format("{}: {} steps failed and {} are loose of {}: talus did not write that",
                                     (folder_ / "summary.json").string(), failed, loose, steps));
@@ -109,7 +110,7 @@ class Reader {
   }
 
   // Of summary.json; what an older talus did not count is 0.
-  int64_t count_of(const char* name) const {
+  int64_t counted(const char* name) const {
     const auto& solver = summary_["solver"];
     const nlohmann::json count = solver.value(name, nlohmann::json(0));
     const int64_t steps = count.is_number_integer() ? count.get<int64_t>() : -1;
@@ -169,7 +170,7 @@ class Reader {
         law.normal_stiffness = j.value("normal_stiffness [Pa/m]", 0.0);
         dilation_.push_back(std::tan(kDegree * j.value("dilation_angle [deg]", 0.0)));
         law.dilates = dilation_.back() > 0, lifting_ = lifting_ || law.dilates;
-        joint_of_name_[j.value("name", std::string())] = static_cast<int>(rules_.laws.size());
+        joint_of_name_[j.value("name", std::string())] = count_of(rules_.laws);
         rules_.laws.push_back(law);
       }
       for (const auto& stage : summary_["stages"]) {
@@ -211,14 +212,14 @@ class Reader {
     if (id < 0 || name < 0)
       throw FileError(fmt::format("{}: has no columns id and name", (folder_ / "blocks.csv").string()));
     for (const auto& row : table.rows) {
-      const std::string& text = row[static_cast<size_t>(id)];
+      const std::string& text = row[id];
       size_t i = 0;
       const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), i);
       if (status != std::errc{} || end != text.data() + text.size() || i >= table.rows.size())
         throw FileError(fmt::format("{}: \"{}\" is no number of a block", (folder_ / "blocks.csv").string(),
                                     text.substr(0, 40)));
       if (rules_.names.size() <= i) rules_.names.resize(i + 1);
-      rules_.names[i] = row[static_cast<size_t>(name)];
+      rules_.names[i] = row[name];
       number_of_[rules_.names[i]] = static_cast<int>(i);
     }
     out_.names = rules_.names;
@@ -232,13 +233,12 @@ class Reader {
     const int a = table.find("block_a"), b = table.find("block_b"), joint = table.find("joint");
     if (a < 0 || b < 0 || joint < 0) return;
     for (const auto& row : table.rows) {
-      const std::string& name = row[static_cast<size_t>(joint)];
+      const std::string& name = row[joint];
       const auto known = joint_of_name_.find(name);
       const int here = name.empty()                    ? kNoJoint
                        : known == joint_of_name_.end() ? kUnknownJoint
                                                        : known->second;
-      const std::pair<int, int> pair =
-          std::minmax(number_of_[row[static_cast<size_t>(a)]], number_of_[row[static_cast<size_t>(b)]]);
+      const std::pair<int, int> pair = std::minmax(number_of_[row[a]], number_of_[row[b]]);
       const auto [it, fresh] = joint_of_pair_.emplace(pair, here);
       if (!fresh && it->second != here) it->second = kUnknownJoint;
     }
@@ -264,7 +264,7 @@ class Reader {
                                                      &error = column("contact error [m]");
     for (size_t i = 0; i < table.rows(); ++i) take_step(t[i], failed[i], loose[i], error[i]);
     // those before a branch are in another folder
-    if (!std::isnan(limit_) && count_of("loose_steps") > loose_)
+    if (!std::isnan(limit_) && counted("loose_steps") > loose_)
       left_before_ = std::max(tolerance_, std::fmin(worst_error_, limit_));
   }
 
@@ -361,13 +361,13 @@ class Reader {
       check_number(vtk, p.block_a, frame.blocks.size());
       check_number(vtk, p.block_b, frame.blocks.size());
       for (const int k : {p.block_a, p.block_b})
-        if (frame.blocks[static_cast<size_t>(k)].polygon.empty())
+        if (frame.blocks[k].polygon.empty())
           throw FileError(fmt::format("{}: a point names a block that is not in its frame", vtk.file));
       if (kind[i] == 0) {
         p.corner = whole(vtk, corner[i]), p.edge = whole(vtk, edge[i]);
         if (!p.patch()) {
-          check_number(vtk, p.corner, frame.blocks[static_cast<size_t>(p.block_a)].polygon.size());
-          check_number(vtk, p.edge, frame.blocks[static_cast<size_t>(p.block_b)].polygon.size());
+          check_number(vtk, p.corner, frame.blocks[p.block_a].polygon.size());
+          check_number(vtk, p.edge, frame.blocks[p.block_b].polygon.size());
         } else if (p.edge < kMostParts) {
           throw FileError(fmt::format("{}: {} is no number of an edge", vtk.file, p.edge));
         }
@@ -378,21 +378,21 @@ class Reader {
       const auto joint = joint_of_pair_.find(std::minmax(p.block_a, p.block_b));
       p.joint = joint == joint_of_pair_.end() || rules_.changes ? kUnknownJoint : joint->second;
       // the way up to which a joint rises is not in the folder: the frame's slip is
-      if (p.joint >= 0) p.rise = dilation_[static_cast<size_t>(p.joint)] * slip[i];
+      if (p.joint >= 0) p.rise = dilation_[p.joint] * slip[i];
       if (p.joint == kUnknownJoint && lifting_)
         p.rise = *std::max_element(dilation_.begin(), dilation_.end()) * slip[i];
-      const bool soft = p.joint == kUnknownJoint ||
-                        (p.joint >= 0 && rules_.laws[static_cast<size_t>(p.joint)].normal_stiffness > 0);
+      const bool soft =
+          p.joint == kUnknownJoint || (p.joint >= 0 && rules_.laws[p.joint].normal_stiffness > 0);
       if (rules_.in_situ && soft) p.in_situ = std::numeric_limits<double>::infinity();
       if (tells && p.patch())
         tell_patch(vtk, column("joint")[i], column("closure [m]")[i], column("closing [m]")[i],
                    column("dilation [m]")[i], p);
-      at[i] = static_cast<int>(frame.points.size());
+      at[i] = count_of(frame.points);
       frame.points.push_back(p);
     }
     for (size_t i = 0; i < kind.size(); ++i) {
       if (at[i] < 0 || !(partner[i] >= 0) || partner[i] >= static_cast<double>(kind.size())) continue;
-      frame.points[static_cast<size_t>(at[i])].partner = at[static_cast<size_t>(partner[i])];
+      frame.points[at[i]].partner = at[static_cast<size_t>(partner[i])];
     }
   }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "talus/audit/shapes.h"
+#include "talus/base/index.h"
 
 namespace talus::audit {
 
@@ -93,20 +94,20 @@ void Watch::forces_gone(const Step& step, Report& report) const {
 // A point without its force: has another point at the same place taken it over, or do the two still overlap?
 void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
                   Report& report) const {
-  const auto a = static_cast<size_t>(before.block_a), b = static_cast<size_t>(before.block_b);
+  const int a = before.block_a, b = before.block_b;
   if (step.blocks[a].hold == Hold::kRemoved || step.blocks[b].hold == Hold::kRemoved) return;
   const double size = std::min(step.blocks[a].size, step.blocks[b].size);
   const Block shape_a = step.shape(before.block_a), shape_b = step.shape(before.block_b);
   if (before.edge < -1) return judge_patch(step, before, now, mean, shape_a, shape_b, report);
-  const Vec2 place = shape_a.polygon[static_cast<size_t>(before.corner)];
-  const auto e = static_cast<size_t>(before.edge), next = (e + 1) % shape_b.polygon.size();
+  const Vec2 place = shape_a.polygon[before.corner];
+  const size_t e = before.edge, next = (e + 1) % shape_b.polygon.size();
   const Vec2 side = shape_b.polygon[next] - shape_b.polygon[e], normal = turn_right(side) / norm(side);
   const double inside = depth_in(shape_b.polygon, place);
   const double depth = now ? -now->gap : std::min(inside, -dot(normal, place - shape_b.polygon[e]));
   // within the step the two may still part
   const double along = std::clamp(dot(place - shape_b.polygon[e], side) / dot(side, side), 0.0, 1.0);
   const auto moves = [&](std::vector<Vec2> Block::*velocity) {
-    return moves_against(shape_a, static_cast<size_t>(before.corner), shape_b, e, along, velocity);
+    return moves_against(shape_a, before.corner, shape_b, e, along, velocity);
   };
   const double speed = std::max(norm(moves(&Block::velocity)), norm(moves(&Block::next)));
   const double allowed = (kOverlap + rules_.slop) * size + 2 * rules_.tolerance +
@@ -120,13 +121,12 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
     const bool of_pair = pair_of(p) == pair_of(before);
     // an end of a side that turns away: the corner across bears on that side now, as far as it is closed
     if (of_pair && p.block_b == before.block_a &&
-        (before.corner == p.edge ||
-         static_cast<size_t>(before.corner) == static_cast<size_t>(p.edge + 1) % shape_a.polygon.size()))
+        (before.corner == p.edge || before.corner == (p.edge + 1) % count_of(shape_a.polygon)))
       return;
     // over a crossing the force passes to the neighbour
     if (!of_pair && p.block_a != before.block_a) continue;
-    const Vec2 there = p.block_a == before.block_a   ? shape_a.polygon[static_cast<size_t>(p.corner)]
-                       : p.block_a == before.block_b ? shape_b.polygon[static_cast<size_t>(p.corner)]
+    const Vec2 there = p.block_a == before.block_a   ? shape_a.polygon[p.corner]
+                       : p.block_a == before.block_b ? shape_b.polygon[p.corner]
                                                      : place;
     if (norm(there - place) <= near) return;
   }
@@ -140,8 +140,7 @@ void Watch::judge(const Step& step, const StepPoint& before, const StepPoint* no
 // A patch without its force: do the two still overlap where they have carried it to, and does nothing else push them apart?
 void Watch::judge_patch(const Step& step, const StepPoint& before, const StepPoint* now, double mean,
                         const Block& a, const Block& b, Report& report) const {
-  const double size = std::min(step.blocks[static_cast<size_t>(before.block_a)].size,
-                               step.blocks[static_cast<size_t>(before.block_b)].size);
+  const double size = std::min(step.blocks[before.block_a].size, step.blocks[before.block_b].size);
   const Vec2 place = before.place + 0.5 * step.step *
                                         (velocity_at(a, before.place, &Block::velocity) +
                                          velocity_at(b, before.place, &Block::velocity));
@@ -159,7 +158,7 @@ void Watch::judge_patch(const Step& step, const StepPoint& before, const StepPoi
   // hard, and keeps the overlap that it has: it lets go, but for the arc by which corners leave their tangent in a step
   const auto arc = [&](const Block& x, int block) {
     const double turn = step.step * turning(x, &Block::next);
-    return 0.5 * turn * turn * step.blocks[static_cast<size_t>(block)].radius;
+    return 0.5 * turn * turn * step.blocks[block].radius;
   };
   // the normal has turned with one of the two; one of another way is another contact
   const double turned = step.step * (turning(a, &Block::velocity) + turning(b, &Block::velocity));
@@ -190,23 +189,22 @@ void Watch::blocks_through(const Step& step, Report& report) const {
   if (fastest <= kThrough * thinnest) return;  // nothing can go through anything
   std::vector<Box> boxes;
   std::vector<int> block;
-  for (size_t i = 0; i < step.centroid.size(); ++i) {
+  for (int i = 0; i < count_of(step.centroid); ++i) {
     if (step.blocks[i].hold == Hold::kRemoved) continue;
     const Vec2 now = step.centroid[i], was = centroid_before_[i];
     const Vec2 r{step.blocks[i].radius, step.blocks[i].radius};
     boxes.push_back({Vec2{std::min(now.x, was.x), std::min(now.y, was.y)} - r,
                      Vec2{std::max(now.x, was.x), std::max(now.y, was.y)} + r});
-    block.push_back(static_cast<int>(i));
+    block.push_back(i);
   }
   for (const auto& [x, y] : close_pairs(boxes, 0)) {
-    const int i = block[static_cast<size_t>(x)], j = block[static_cast<size_t>(y)];
-    const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
-    const Vec2 moved = (step.centroid[a] - centroid_before_[a]) - (step.centroid[b] - centroid_before_[b]);
-    if (norm(moved) <= kThrough * std::min(step.blocks[a].thin, step.blocks[b].thin)) continue;
+    const int i = block[x], j = block[y];
+    const Vec2 moved = (step.centroid[i] - centroid_before_[i]) - (step.centroid[j] - centroid_before_[j]);
+    if (norm(moved) <= kThrough * std::min(step.blocks[i].thin, step.blocks[j].thin)) continue;
     Vec2 at;
     if (!went_through(step, i, j, at) && !went_through(step, j, i, at)) continue;
     report.add({Defect::kCrossed, true, i, j, step.time, at,
-                norm(moved) / std::min(step.blocks[a].thin, step.blocks[b].thin),
+                norm(moved) / std::min(step.blocks[i].thin, step.blocks[j].thin),
                 fmt::format(
                     "they move by {:.3g} m against each other in one step, through more than half of what is "
                     "in the way",
@@ -216,12 +214,11 @@ void Watch::blocks_through(const Step& step, Report& report) const {
 
 // Whether a corner or the centroid of block i went through block j within the step, block j standing still.
 bool Watch::went_through(const Step& step, int i, int j, Vec2& at) const {
-  const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
-  const Vec2 moved = (step.centroid[a] - centroid_before_[a]) - (step.centroid[b] - centroid_before_[b]);
+  const Vec2 moved = (step.centroid[i] - centroid_before_[i]) - (step.centroid[j] - centroid_before_[j]);
   const Polygon polygon = step.shape(j).polygon;
   const double thin = least_thickness(polygon);
   Polygon corners = step.shape(i).polygon;
-  corners.push_back(step.centroid[a]);
+  corners.push_back(step.centroid[i]);
   for (const Vec2 now : corners) {
     const Vec2 was = now - moved;
     if (contains(polygon, was, 1e-3 * thin)) continue;
@@ -256,8 +253,7 @@ void Watch::load(Loader& from, const std::string& name) { exchange(from, *this, 
 
 bool Watch::fits(const std::vector<int>& corners) const {
   const auto is_corner = [&corners](int block, int corner) {
-    return block >= 0 && static_cast<size_t>(block) < corners.size() && corner >= 0 &&
-           corner < corners[static_cast<size_t>(block)];
+    return block >= 0 && block < count_of(corners) && corner >= 0 && corner < corners[block];
   };
   return (!known_ || centroid_before_.size() == corners.size()) &&
          std::all_of(before_.begin(), before_.end(), [&](const StepPoint& p) {

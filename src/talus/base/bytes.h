@@ -96,7 +96,7 @@ class ByteReader {
     uint64_t n = 0;
     take(&n, sizeof n);
     if (n > (bytes_.size() - at_) / least) throw std::runtime_error("there are too few bytes");
-    return static_cast<size_t>(n);
+    return n;
   }
 
   const std::string& bytes_;

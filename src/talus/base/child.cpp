@@ -92,7 +92,7 @@ bool read_up_to(int in, double end, std::string& bytes) {
     const ssize_t n = read(in, part.data(), part.size());
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return true;
-    bytes.append(part.data(), static_cast<size_t>(n));
+    bytes.append(part.data(), n);
   }
 }
 

@@ -22,7 +22,7 @@ int write_all(int descriptor, std::string_view bytes, size_t& done) {
   for (done = 0; done < bytes.size();) {
     const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
     if (n > 0)
-      done += static_cast<size_t>(n);
+      done += n;
     else if (n == 0)
       return EIO;
     else if (errno != EINTR)

@@ -25,9 +25,9 @@ const std::string& checked_json(const std::string& name, const std::string& text
     } else if (c == '[' || c == '{') {
       if (++depth > kMostJsonDepth)
         throw FileError(fmt::format("{}: is nested more than {} deep", name, kMostJsonDepth));
-      if (depth > 0) keys[static_cast<size_t>(depth)] = 0;
+      if (depth > 0) keys[depth] = 0;
     } else if (c == ':' && depth > 0) {
-      looks += keys[static_cast<size_t>(depth)]++;
+      looks += keys[depth]++;
       if (looks > kMostJsonLooks)
         throw FileError(fmt::format("{}: has more keys in one object than are read", name));
     } else if (c == ']' || c == '}') {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "talus/base/clock.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -166,7 +167,7 @@ double Workers::shared_seconds() const { return team_ ? team_->shared : 0; }
 
 double Workers::idle_seconds() const { return team_ ? team_->waited + team_->stood_by : 0; }
 
-int Workers::threads() const { return team_ ? static_cast<int>(team_->helpers.size()) + 1 : 1; }
+int Workers::threads() const { return team_ ? count_of(team_->helpers) + 1 : 1; }
 
 void Workers::together(const std::function<void()>& body) const {
   if (!team_ || team_->standing_by) return body();

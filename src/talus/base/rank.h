@@ -11,7 +11,7 @@ namespace talus {
 /// The value that `rank` others of the list come before, in rising order. Cost: linear. @pre rank < size
 inline double value_at_rank(std::vector<double> values, size_t rank) {
   TALUS_ASSERT(rank < values.size());
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  const auto at = values.begin() + rank;
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }

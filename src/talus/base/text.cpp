@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -32,12 +34,12 @@ std::string closest_name(std::string_view word, const std::vector<std::string>& 
   std::string best;
   constexpr size_t kLongestWord = 200;
   if (word.empty() || word.size() > kLongestWord) return best;
-  int best_distance = (static_cast<int>(word.size()) + 2) / 3;
+  int best_distance = (count_of(word) + 2) / 3;
   for (const std::string& name : known) {
     if (name.size() > word.size() + kLongestWord) continue;
     const int distance = edit_distance(word, name);
     const bool begins = word.size() >= 3 && name.rfind(word, 0) == 0;  // "dens" for "density"
-    if ((distance <= best_distance && distance < static_cast<int>(word.size())) || (begins && best.empty())) {
+    if ((distance <= best_distance && distance < count_of(word)) || (begins && best.empty())) {
       if (best.empty() || distance < best_distance) best = name;
       best_distance = std::min(best_distance, distance);
     }

@@ -45,7 +45,7 @@ void read_parts(const std::filesystem::path& path, const Take& take) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
     if (n == 0) return;
-    take(std::string_view(part).substr(0, static_cast<size_t>(n)));
+    take(std::string_view(part).substr(0, n));
   }
 }
 

@@ -7,6 +7,8 @@
 #include <climits>
 #include <cstring>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -25,18 +27,18 @@ static_assert(std::atomic<int>::is_always_lock_free);
 
 Unfinished::Unfinished(const std::string& path) {
   if (path.size() >= PATH_MAX) return;
-  for (size_t i = 0; i < slots.size(); ++i) {
+  for (int i = 0; i < count_of(slots); ++i) {
     int free = kFree;
     if (!slots[i].use.compare_exchange_strong(free, kFilling)) continue;
     std::memcpy(slots[i].path, path.c_str(), path.size() + 1);
     slots[i].use = kNoted;
-    slot_ = static_cast<int>(i);
+    slot_ = i;
     return;
   }
 }
 
 Unfinished::~Unfinished() {
-  if (slot_ >= 0) slots[static_cast<size_t>(slot_)].use = kFree;
+  if (slot_ >= 0) slots[slot_].use = kFree;
 }
 
 void remove_unfinished() noexcept {

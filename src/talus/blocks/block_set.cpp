@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/rank.h"
 #include "talus/blocks/tiles.h"
 
@@ -69,7 +70,7 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
   set.thickness = model.thickness;
   set.vertex_begin.push_back(0);
   for (const BlockShape& shape : layout.blocks) {
-    const Material& material = model.materials[static_cast<size_t>(shape.material)];
+    const Material& material = model.materials[shape.material];
     const PolygonMoments m = polygon_moments(shape.polygon);
     const double lump = model.inertia == Inertia::kLumped && shape.kind == BlockKind::kDeformable ? 3 : 1;
     const Mat2 inertia = (lump * material.density * model.thickness) * m.second;
@@ -98,7 +99,7 @@ BlockSet build_blocks(const Model& model, const Layout& layout) {
       set.radius.back() = std::max(set.radius.back(), norm(set.arm.back()));
     }
     set.thinness.push_back(m.area / (2 * set.radius.back()));
-    set.vertex_begin.push_back(static_cast<int>(set.arm.size()));
+    set.vertex_begin.push_back(count_of(set.arm));
   }
   set.tile = tiles_of(set.centroid);
   return set;
@@ -114,10 +115,9 @@ double tolerance_size(const BlockSet& blocks) {
 }
 
 double stable_step_of(const BlockSet& blocks, int i) {
-  const auto k = static_cast<size_t>(i);
-  if (blocks.kind[k] != BlockKind::kDeformable) return kInfinity;
-  const Eigen2 e = eigen_symmetric(blocks.inertia[k]);
-  return 2 / std::sqrt(largest_frequency2(blocks.moduli[k], blocks.volume[k], e.s1, e.s2));
+  if (blocks.kind[i] != BlockKind::kDeformable) return kInfinity;
+  const Eigen2 e = eigen_symmetric(blocks.inertia[i]);
+  return 2 / std::sqrt(largest_frequency2(blocks.moduli[i], blocks.volume[i], e.s1, e.s2));
 }
 
 StableStep stable_step(const BlockSet& blocks) {
@@ -135,17 +135,16 @@ void clamp_moments(BlockSet& blocks, double dt) {
   // a mode exactly at its limit grows linearly: clamped blocks stay a tenth below it
   const double allowed = 4 * kClampMargin * kClampMargin / (dt * dt);
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (stable_step_of(blocks, i) >= dt) continue;
-    const Eigen2 e = eigen_symmetric(blocks.inertia[k]);
-    const PlaneModuli& c = blocks.moduli[k];
+    const Eigen2 e = eigen_symmetric(blocks.inertia[i]);
+    const PlaneModuli& c = blocks.moduli[i];
     const auto fits = [&](double s1, double s2) {
-      return largest_frequency2(c, blocks.volume[k], s1, s2) <= allowed;
+      return largest_frequency2(c, blocks.volume[i], s1, s2) <= allowed;
     };
 
     // bisect on s2, raised up to s1; a block too small in both directions is raised as a whole
     double s1 = e.s1, s2 = e.s2;
-    if (!fits(s1, s1)) s1 = s2 = s1 * largest_frequency2(c, blocks.volume[k], s1, s1) / allowed * (1 + 1e-12);
+    if (!fits(s1, s1)) s1 = s2 = s1 * largest_frequency2(c, blocks.volume[i], s1, s1) / allowed * (1 + 1e-12);
     double low = e.s2, high = s1;
     for (int n = 0; n < 200 && high - low > 1e-13 * high; ++n) {
       const double middle = 0.5 * (low + high);
@@ -154,10 +153,10 @@ void clamp_moments(BlockSet& blocks, double dt) {
     s2 = high;
 
     const Vec2 d1 = e.direction1, d2 = turn_left(d1);
-    blocks.inertia[k] = s1 * outer(d1, d1) + s2 * outer(d2, d2);
-    blocks.inertia_inverse[k] = inverse(blocks.inertia[k]);
-    blocks.polar_inertia[k] = s1 + s2;
-    blocks.principal[k] = {s1, s2};
+    blocks.inertia[i] = s1 * outer(d1, d1) + s2 * outer(d2, d2);
+    blocks.inertia_inverse[i] = inverse(blocks.inertia[i]);
+    blocks.polar_inertia[i] = s1 + s2;
+    blocks.principal[i] = {s1, s2};
     ++blocks.clamped;
     blocks.largest_clamp = std::max(blocks.largest_clamp, s2 / e.s2);
   }

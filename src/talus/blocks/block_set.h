@@ -55,18 +55,15 @@ struct BlockSet {
   int clamped = 0;           // blocks whose inertia was raised (moment clamp)
   double largest_clamp = 1;  // largest factor by which an eigenvalue of S0 was raised
 
-  bool moves_freely(int i) const {
-    return kind[static_cast<size_t>(i)] == BlockKind::kDeformable ||
-           kind[static_cast<size_t>(i)] == BlockKind::kRigid;
+  bool moves_freely(size_t i) const {
+    return kind[i] == BlockKind::kDeformable || kind[i] == BlockKind::kRigid;
   }
-  bool removed(int i) const { return kind[static_cast<size_t>(i)] == BlockKind::kRemoved; }
+  bool removed(int i) const { return kind[i] == BlockKind::kRemoved; }
   /// Whether forces between two blocks can move one of them.
   bool interact(int i, int j) const {
     return (moves_freely(i) || moves_freely(j)) && !removed(i) && !removed(j);
   }
-  int vertex_count(int i) const {
-    return vertex_begin[static_cast<size_t>(i) + 1] - vertex_begin[static_cast<size_t>(i)];
-  }
+  int vertex_count(int i) const { return vertex_begin[i + 1] - vertex_begin[i]; }
   /// The corner at which an edge ends.
   BlockCorner end_of(BlockEdge e) const {
     return {e.block, e.edge + 1 == vertex_count(e.block) ? 0 : e.edge + 1};
@@ -74,14 +71,12 @@ struct BlockSet {
   /// Reference arm of a corner.
   Vec2 corner(BlockCorner c) const {
     TALUS_ASSERT(c.corner >= 0 && c.corner < vertex_count(c.block));
-    return arm[static_cast<size_t>(vertex_begin[static_cast<size_t>(c.block)] + c.corner)];
+    return arm[vertex_begin[c.block] + c.corner];
   }
   /// From the start of an edge to its end, of the reference shape.
   Vec2 side(BlockEdge e) const { return corner(end_of(e)) - corner({e.block, e.edge}); }
   /// Size of the smaller of two blocks [m].
-  double smaller_size(int i, int j) const {
-    return std::min(size[static_cast<size_t>(i)], size[static_cast<size_t>(j)]);
-  }
+  double smaller_size(int i, int j) const { return std::min(size[i], size[j]); }
 };
 
 /// Blocks of a layout, with exact mass properties.

@@ -9,7 +9,7 @@ double fastest_given(const Model& model, const Layout& layout, const BlockSet& b
   double fastest = 0;
   const auto follow = [&](const Motion& m) {
     if (m.history < 0) return;
-    const History& h = model.histories[static_cast<size_t>(m.history)];
+    const History& h = model.histories[m.history];
     for (size_t i = 0; i < h.time.size(); ++i) {
       if (m.kind == Motion::kVelocity) fastest = std::max(fastest, std::abs(h.value[i]));
       if (m.kind == Motion::kDisplacement && i > 0)

@@ -15,7 +15,7 @@ Mat2 in_situ_stress(const InSituInput& input, Vec2 gravity, double height) {
 
 std::vector<Mat2> initial_stresses(const Model& model, const BlockSet& blocks) {
   if (!model.in_situ.given) return {};
-  std::vector<Mat2> stress(static_cast<size_t>(blocks.count));
+  std::vector<Mat2> stress(blocks.count);
   for (size_t i = 0; i < stress.size(); ++i)
     if (blocks.kind[i] == BlockKind::kDeformable)
       stress[i] = in_situ_stress(model.in_situ, model.gravity, blocks.centroid[i].y);
@@ -25,8 +25,7 @@ std::vector<Mat2> initial_stresses(const Model& model, const BlockSet& blocks) {
 int block_above_ground(const Model& model, const BlockSet& blocks) {
   if (!model.in_situ.with_depth) return -1;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    if (blocks.kind[k] == BlockKind::kDeformable && blocks.centroid[k].y > model.in_situ.level) return i;
+    if (blocks.kind[i] == BlockKind::kDeformable && blocks.centroid[i].y > model.in_situ.level) return i;
   }
   return -1;
 }

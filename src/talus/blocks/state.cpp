@@ -1,6 +1,7 @@
 #include "talus/blocks/state.h"
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -34,16 +35,16 @@ Polar polar_strain(const Mat2& H) {
 }  // namespace
 
 State initial_state(const BlockSet& blocks, const Layout& layout) {
-  TALUS_ASSERT(layout.blocks.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(layout.blocks) == blocks.count);
   State s;
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   s.displacement.resize(n);
   s.strain_part.resize(n);
   s.angle.resize(n);
   s.rate.resize(n);
   s.row_force.resize(n);
-  for (size_t i = 0; i < n; ++i) {
-    if (!blocks.moves_freely(static_cast<int>(i))) continue;
+  for (int i = 0; i < n; ++i) {
+    if (!blocks.moves_freely(i)) continue;
     s.rate[i] = {layout.blocks[i].velocity, spin_matrix(layout.blocks[i].spin)};
   }
   return s;
@@ -80,12 +81,11 @@ double strain_energy_density(const PlaneModuli& k, const Mat2& H) { return elast
 
 // Theory 1.5.
 Mat2 cauchy_stress(const BlockSet& blocks, const State& state, int i) {
-  const auto k = static_cast<size_t>(i);
-  if (blocks.kind[k] != BlockKind::kDeformable) return {};
-  if (!state.carried_stress.empty()) return state.carried_stress[k];
-  const Mat2& H = state.strain_part[k];
-  const Mat2 T0 = initial_stress_of(state, k), F = kIdentity + H;
-  return (1 / det(F)) * (elastic_state(blocks.moduli[k], H, T0).stress * transpose(F));
+  if (blocks.kind[i] != BlockKind::kDeformable) return {};
+  if (!state.carried_stress.empty()) return state.carried_stress[i];
+  const Mat2& H = state.strain_part[i];
+  const Mat2 T0 = initial_stress_of(state, i), F = kIdentity + H;
+  return (1 / det(F)) * (elastic_state(blocks.moduli[i], H, T0).stress * transpose(F));
 }
 
 Mat2 rotation_minus_identity(double angle) {

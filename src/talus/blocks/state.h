@@ -154,8 +154,7 @@ struct Neighbours {
 
   std::span<const int> of(int i) const {
     if (begin.empty()) return {};
-    const auto k = static_cast<size_t>(i);
-    return {block.data() + begin[k], static_cast<size_t>(begin[k + 1] - begin[k])};
+    return {block.data() + begin[i], static_cast<size_t>(begin[i + 1] - begin[i])};
   }
 };
 
@@ -271,7 +270,9 @@ struct State {
   RestWatch rest;
   std::vector<int>
       left_out;  // blocks that fall or slide and that the rest of a stage does not wait for, in order
-  bool is_left_out(int block) const { return std::binary_search(left_out.begin(), left_out.end(), block); }
+  bool is_left_out(size_t block) const {
+    return std::binary_search(left_out.begin(), left_out.end(), static_cast<int>(block));
+  }
 };
 
 /// T0 of block i [Pa].

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "talus/base/index.h"
 #include "talus/geometry/polygon.h"
 
 namespace talus {
@@ -13,7 +14,7 @@ namespace {
 // Most places of a tile: the motion of so many blocks takes half of the nearest memory of a processor, and the
 // smaller tiles are, the fewer sweeps are needed (docs/decisions/0012-tiles.md). Fewest of all at which there are
 // tiles.
-constexpr size_t kTile = 128, kFewest = 4 * kTile;
+constexpr int kTile = 128, kFewest = 4 * kTile;
 
 // Cells along a side of the square: 2^kBits.
 constexpr unsigned kBits = 16;
@@ -36,19 +37,19 @@ uint64_t along_curve(uint32_t x, uint32_t y) {
 }  // namespace
 
 std::vector<int> tiles_of(const std::vector<Vec2>& places) {
-  const size_t n = places.size();
+  const int n = count_of(places);
   if (n < kFewest) return {};
   const auto [low, high] = bounding_box(places);
   const double side = std::max(high.x - low.x, high.y - low.y);
   const double cells = static_cast<double>((1U << kBits) - 1);
   const auto cell = [&](double from) { return static_cast<uint32_t>(side > 0 ? from / side * cells : 0); };
   std::vector<std::pair<uint64_t, int>> order(n);
-  for (size_t i = 0; i < n; ++i)
-    order[i] = {along_curve(cell(places[i].x - low.x), cell(places[i].y - low.y)), static_cast<int>(i)};
+  for (int i = 0; i < n; ++i)
+    order[i] = {along_curve(cell(places[i].x - low.x), cell(places[i].y - low.y)), i};
   std::sort(order.begin(), order.end());
   const size_t tiles = (n + kTile - 1) / kTile;
   std::vector<int> tile(n);
-  for (size_t k = 0; k < n; ++k) tile[static_cast<size_t>(order[k].second)] = static_cast<int>(k * tiles / n);
+  for (int k = 0; k < n; ++k) tile[order[k].second] = static_cast<int>(k * tiles / n);
   return tile;
 }
 

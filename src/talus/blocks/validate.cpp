@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace talus {
 
@@ -24,10 +25,10 @@ void promise_length_or_none(const auto& array, size_t length, const char* name) 
   if (!array.empty()) promise_length(array, length, name);
 }
 
-bool is_index(int i, size_t count) { return i >= 0 && static_cast<size_t>(i) < count; }
+bool is_index(int i, size_t count) { return i >= 0 && std::cmp_less(i, count); }
 
 void validate_lengths(const BlockSet& b) {
-  const auto n = static_cast<size_t>(b.count);
+  const int n = b.count;
   promise(b.count >= 0, "{} blocks", b.count);
   promise_length(b.name, n, "names of blocks"), promise_length(b.group, n, "groups of blocks");
   promise_length(b.kind, n, "kinds of blocks"), promise_length(b.material, n, "materials of blocks");
@@ -39,14 +40,13 @@ void validate_lengths(const BlockSet& b) {
   promise_length(b.thinness, n, "thicknesses of blocks"), promise_length(b.radius, n, "radii of blocks");
   promise_length(b.vertex_begin, n + 1, "first corners");
   promise(b.vertex_begin.front() == 0, "the first corner of all is numbered {}", b.vertex_begin.front());
-  promise_length(b.arm, static_cast<size_t>(b.vertex_begin.back()), "arms of corners");
+  promise_length(b.arm, b.vertex_begin.back(), "arms of corners");
 }
 
 void validate_block(const BlockSet& b, size_t i) {
   const int id = static_cast<int>(i);
   promise(b.vertex_begin[i + 1] - b.vertex_begin[i] >= 3, "block {} has {} corners", id, b.vertex_count(id));
-  const auto outline = std::span(b.arm).subspan(static_cast<size_t>(b.vertex_begin[i]),
-                                                static_cast<size_t>(b.vertex_count(id)));
+  const auto outline = std::span(b.arm).subspan(b.vertex_begin[i], b.vertex_count(id));
   promise(signed_area(outline) > 0, "block {} runs clockwise", id);
   promise(is_finite(b.centroid[i]), "the centroid of block {} is not finite", id);
   promise(std::isfinite(b.mass[i]) && b.mass[i] > 0, "block {} has a mass of {}", id, b.mass[i]);
@@ -66,7 +66,7 @@ void validate_candidates(const CandidateList& c, size_t blocks) {
   promise_length(begin, blocks + 1, "first neighbours");
   promise(begin.front() == 0 && begin.back() >= 0, "neighbours begin at {} and end at {}", begin.front(),
           begin.back());
-  promise_length(c.neighbours.block, static_cast<size_t>(begin.back()), "neighbours");
+  promise_length(c.neighbours.block, begin.back(), "neighbours");
   for (size_t i = 0; i < blocks; ++i)
     promise(begin[i] >= 0 && begin[i] <= begin[i + 1], "neighbours of block {} end before they begin", i);
   for (const int other : c.neighbours.block)
@@ -74,26 +74,26 @@ void validate_candidates(const CandidateList& c, size_t blocks) {
 }
 
 void validate_contact(const State& s, const BlockSet& b, const ContactPair& pair, int k) {
-  const Contact& c = s.contacts[static_cast<size_t>(pair.begin + k)];
+  const Contact& c = s.contacts[pair.begin + k];
   const ContactKey& key = c.key;
   const bool forward = key.block_a == pair.a && key.block_b == pair.b;
   promise(forward || (key.block_a == pair.b && key.block_b == pair.a),
           "a contact of blocks {} and {} is listed with those of {} and {}", key.block_a, key.block_b, pair.a,
           pair.b);
-  promise(is_index(key.vertex, static_cast<size_t>(b.vertex_count(key.block_a))),
+  promise(is_index(key.vertex, b.vertex_count(key.block_a)),
           "block {} has no corner {}, which touches something", key.block_a, key.vertex);
-  promise(is_index(key.edge, static_cast<size_t>(b.vertex_count(key.block_b))),
-          "block {} has no edge {}, which touches something", key.block_b, key.edge);
+  promise(is_index(key.edge, b.vertex_count(key.block_b)), "block {} has no edge {}, which touches something",
+          key.block_b, key.edge);
   promise(c.joint >= -1, "a contact has joint {}", c.joint);
   if (c.partner < 0) return;
   promise(c.partner < pair.count && c.partner != k, "contact {} of blocks {} and {} has partner {} of {}", k,
           pair.a, pair.b, c.partner, pair.count);
-  promise(s.contacts[static_cast<size_t>(pair.begin + c.partner)].partner == k,
+  promise(s.contacts[pair.begin + c.partner].partner == k,
           "contact {} of blocks {} and {} is no partner of its partner", k, pair.a, pair.b);
 }
 
 void validate_patch(const State& s, const BlockSet& b, const ContactPair& pair, int k) {
-  const Patch& p = s.patches[static_cast<size_t>(pair.begin + k)];
+  const Patch& p = s.patches[pair.begin + k];
   promise(p.block_a == pair.a && p.block_b == pair.b,
           "a patch of blocks {} and {} is listed with those of {} and {}", p.block_a, p.block_b, pair.a,
           pair.b);
@@ -111,14 +111,14 @@ void validate_pairs(const State& s, const BlockSet& b) {
   promise(s.followed.empty() || s.followed.size() == s.pairs.size(), "{} pairs of {} are followed",
           s.followed.size(), s.pairs.size());
   for (const FollowedPair& pair : s.followed) {
-    promise(pair.covers >= 0 && static_cast<size_t>(pair.covers) <= pair.cover.size(),
-            "{} of {} blocks cover a side", pair.covers, pair.cover.size());
+    promise(pair.covers >= 0 && pair.covers <= count_of(pair.cover), "{} of {} blocks cover a side",
+            pair.covers, pair.cover.size());
     for (int k = 0; k < pair.covers; ++k) {
-      const int third = pair.cover[static_cast<size_t>(k)].block;
-      promise(is_index(third, static_cast<size_t>(b.count)), "block {} of {} covers a side", third, b.count);
+      const int third = pair.cover[k].block;
+      promise(is_index(third, b.count), "block {} of {} covers a side", third, b.count);
     }
   }
-  const auto blocks = static_cast<size_t>(b.count);
+  const int blocks = b.count;
   size_t contacts = 0;
   for (size_t p = 0; p < s.pairs.size(); ++p) {
     const ContactPair& pair = s.pairs[p];
@@ -130,7 +130,7 @@ void validate_pairs(const State& s, const BlockSet& b) {
     }
     promise(pair.count >= 0 && pair.begin == static_cast<int>(contacts),
             "contacts of blocks {} and {} begin at {}, not {}", pair.a, pair.b, pair.begin, contacts);
-    contacts += static_cast<size_t>(pair.count);
+    contacts += pair.count;
     promise(contacts <= most, "pairs have more contacts than there are, {}", most);
     promise(pair.face >= -1 && (pair.face < 0 || is_index(pair.face, s.face.size())),
             "blocks {} and {} have face {} of {}", pair.a, pair.b, pair.face, s.face.size());
@@ -156,11 +156,11 @@ void validate_bolt(const Bolt& bolt, size_t blocks) {
 
 void validate(const BlockSet& blocks) {
   validate_lengths(blocks);
-  for (size_t i = 0; i < static_cast<size_t>(blocks.count); ++i) validate_block(blocks, i);
+  for (int i = 0; i < blocks.count; ++i) validate_block(blocks, i);
 }
 
 void validate(const State& s, const BlockSet& blocks) {
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   promise(!(s.dt_before < 0) && s.step >= 0, "step {} follows one of {} s", s.step, s.dt_before);
   promise_length(s.displacement, n, "displacements"), promise_length(s.strain_part, n, "strains");
   promise_length(s.angle, n, "angles"), promise_length(s.rate, n, "rates");

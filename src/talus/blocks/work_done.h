@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 /// `joints`: elastic joints, stored and lost. `boundary`: dashpots, what waves bring in, reactions that stand
@@ -25,7 +27,7 @@ enum class Cause {
 };
 
 /// Names of their work in files: "load work [J]".
-inline constexpr size_t kCauses = static_cast<size_t>(Cause::kImplicit) + 1;
+inline constexpr size_t kCauses = place_of(Cause::kImplicit) + 1;
 inline constexpr std::array<std::string_view, kCauses> kCauseName{
     "load",     "support", "boundary", "bond",    "joint", "contact closing",
     "friction", "damping", "bolt",     "implicit"};
@@ -34,8 +36,8 @@ inline constexpr std::array<std::string_view, kCauses> kCauseName{
 struct WorkDone {
   std::array<double, kCauses> by{};
 
-  double& operator[](Cause c) { return by[static_cast<size_t>(c)]; }
-  double operator[](Cause c) const { return by[static_cast<size_t>(c)]; }
+  double& operator[](Cause c) { return by[place_of(c)]; }
+  double operator[](Cause c) const { return by[place_of(c)]; }
   WorkDone& operator+=(const WorkDone& o) {
     for (size_t i = 0; i < kCauses; ++i) by[i] += o.by[i];
     return *this;

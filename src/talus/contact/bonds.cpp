@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/joint_state.h"
 
@@ -18,15 +19,12 @@ constexpr double kAtLimit = 0.99999;
 // Faces to a chunk.
 constexpr size_t kFaceGrain = 256;
 
-bool holds(const std::vector<JointLaw>& laws, int joint) {
-  return joint >= 0 && laws[static_cast<size_t>(joint)].holds();
-}
+bool holds(const std::vector<JointLaw>& laws, int joint) { return joint >= 0 && laws[joint].holds(); }
 
 // Overlaps of antiparallel edges of two blocks in contact, as faces (theory 3.4).
 void add_faces(const BlockSet& blocks, int a, int b, double touching, std::vector<BondFace>& faces) {
-  const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
-  const double near = std::max(touching, kTouching * std::min(blocks.size[ia], blocks.size[ib]));
-  const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
+  const double near = std::max(touching, kTouching * std::min(blocks.size[a], blocks.size[b]));
+  const Vec2 shift = blocks.centroid[a] - blocks.centroid[b];
   for (int eb = 0; eb < blocks.vertex_count(b); ++eb) {
     const Vec2 b0 = blocks.corner({b, eb}), b1 = blocks.corner({b, (eb + 1) % blocks.vertex_count(b)});
     const double length_b = norm(b1 - b0);
@@ -61,25 +59,25 @@ void add_faces(const BlockSet& blocks, int a, int b, double touching, std::vecto
 // joins them: their neighbours hold them, and a contact would only say the same again (theory 3.4).
 void tie_around_corners(const Layout& layout, const BlockSet& blocks,
                         const std::vector<std::pair<int, int>>& pairs, BondSet& bonds) {
-  std::vector<std::vector<int>> neighbours(static_cast<size_t>(blocks.count));
+  std::vector<std::vector<int>> neighbours(blocks.count);
   for (const auto& [a, b] : bonds.tied) {
-    neighbours[static_cast<size_t>(a)].push_back(b);
-    neighbours[static_cast<size_t>(b)].push_back(a);
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
   }
   const auto touches = [&](int block, Vec2 point) {
-    return contains(layout.blocks[static_cast<size_t>(block)].polygon, point,
-                    std::max(layout.touching, kTouching * blocks.size[static_cast<size_t>(block)]));
+    return contains(layout.blocks[block].polygon, point,
+                    std::max(layout.touching, kTouching * blocks.size[block]));
   };
   std::vector<std::pair<int, int>> joined;
   for (const auto& [a, b] : pairs) {
     bool found = false;
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
-      for (const Vec2 corner : layout.blocks[static_cast<size_t>(from)].polygon) {
+      for (const Vec2 corner : layout.blocks[from].polygon) {
         if (found || !touches(to, corner)) continue;
         // walk from face to face through the blocks around this corner
         std::vector<int> reached{from};
         for (size_t i = 0; i < reached.size(); ++i)
-          for (const int next : neighbours[static_cast<size_t>(reached[i])])
+          for (const int next : neighbours[reached[i]])
             if (touches(next, corner) && std::find(reached.begin(), reached.end(), next) == reached.end())
               reached.push_back(next);
         found = std::find(reached.begin(), reached.end(), to) != reached.end();
@@ -91,28 +89,25 @@ void tie_around_corners(const Layout& layout, const BlockSet& blocks,
   std::sort(bonds.tied.begin(), bonds.tied.end());
 }
 
-bool has_edge_joints(const Layout& layout, int block) {
-  return !layout.blocks[static_cast<size_t>(block)].edge_joint.empty();
-}
+bool has_edge_joints(const Layout& layout, int block) { return !layout.blocks[block].edge_joint.empty(); }
 
 bool has_bonded_edge(const std::vector<JointLaw>& laws, const Layout& layout, int block) {
-  for (const int j : layout.blocks[static_cast<size_t>(block)].edge_joint)
-    if (j >= 0 && laws[static_cast<size_t>(j)].bonded()) return true;
+  for (const int j : layout.blocks[block].edge_joint)
+    if (j >= 0 && laws[j].bonded()) return true;
   return false;
 }
 
 double transit_time(const Model& model, const BlockSet& blocks, int i) {
-  const auto k = static_cast<size_t>(i);
-  if (blocks.kind[k] != BlockKind::kDeformable) return 0;
-  const double density = model.materials[static_cast<size_t>(blocks.material[k])].density;
-  return blocks.size[k] / std::sqrt(blocks.moduli[k].c11 / density);
+  if (blocks.kind[i] != BlockKind::kDeformable) return 0;
+  const double density = model.materials[blocks.material[i]].density;
+  return blocks.size[i] / std::sqrt(blocks.moduli[i].c11 / density);
 }
 
 // Theory 1.7.
 void close_face(const Model& model, const BlockSet& blocks, const JointLaw& law, BondFace& face) {
   const Vec2 along = face.arm_b[1] - face.arm_b[0];
   for (int end = 0; end < 2; ++end) {
-    const double height = blocks.centroid[static_cast<size_t>(face.block_b)].y + face.arm_b[end].y;
+    const double height = blocks.centroid[face.block_b].y + face.arm_b[end].y;
     face.closure[end] =
         law.closure(in_situ_stress(model.in_situ, model.gravity, height), turn_right(along) / norm(along));
   }
@@ -129,8 +124,7 @@ bool stands_open(const JointLaw& law, double opening, double noticed) {
 bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointLaw& law, const FaceState& now,
                  const FaceOffset& offset) {
   const double half_area = 0.5 * face.length * blocks.thickness;
-  const double noticed =
-      noticeable(blocks, static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
+  const double noticed = noticeable(blocks, face.block_a, face.block_b);
   const JointStrength peak = law.between(face.block_a, face.block_b, law.peak());
   const JointStrength bears = peak.over(half_area);
   const double most_pull = peak.over(kAtLimit).over(half_area).tension;
@@ -156,7 +150,7 @@ bool is_at_limit(const BlockSet& blocks, const BondFace& face, const JointLaw& l
 
 // Theory 3.4.
 BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blocks) {
-  TALUS_ASSERT(layout.blocks.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(layout.blocks) == blocks.count);
   BondSet bonds;
   const std::vector<JointLaw> laws = joint_laws(model.joints);
   std::vector<Box> boxes;
@@ -166,19 +160,18 @@ BondSet find_bonds(const Model& model, const Layout& layout, const BlockSet& blo
   std::vector<std::pair<int, int>> without_face;
   for (const auto& [a, b] : close_pairs(boxes, std::max(layout.touching, kTouching * largest))) {
     if (!blocks.moves_freely(a) && !blocks.moves_freely(b)) continue;
-    const int pair =
-        layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
+    const int pair = layout.joint_of_pair(blocks.group[a], blocks.group[b]);
     const bool by_edges = pair == Layout::kNoPair && has_edge_joints(layout, a) && has_edge_joints(layout, b);
     const int whole = pair == Layout::kNoPair ? layout.default_joint : pair;
     if (!by_edges && !holds(laws, whole)) continue;
     const bool may_be_tied = by_edges ? has_bonded_edge(laws, layout, a) && has_bonded_edge(laws, layout, b)
-                                      : laws[static_cast<size_t>(whole)].bonded();
+                                      : laws[whole].bonded();
     std::vector<BondFace> faces;
     add_faces(blocks, a, b, layout.touching, faces);
     bool all_bonded = !faces.empty();
     for (BondFace& face : faces) {
       face.joint = layout.joint_at({a, face.edge_a}, {b, face.edge_b});
-      const JointLaw law = face.joint < 0 ? JointLaw() : laws[static_cast<size_t>(face.joint)];
+      const JointLaw law = face.joint < 0 ? JointLaw() : laws[face.joint];
       face.unbreakable = law.bonded();
       if (model.in_situ.given && face.joint >= 0 && !face.unbreakable) close_face(model, blocks, law, face);
       face.elastic_shear = law.is_soft(1);
@@ -207,7 +200,7 @@ std::vector<BondFace> shared_faces(const Layout& layout, const BlockSet& blocks)
 }
 
 FaceOffset face_offset(const BlockSet& blocks, const State& state, const BondFace& face) {
-  const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
+  const int a = face.block_a, b = face.block_b;
   const Vec2 edge =
       blocks.corner(blocks.end_of({face.block_b, face.edge_b})) - blocks.corner({face.block_b, face.edge_b});
   const Vec2 now = edge + state.strain_part[b] * edge;
@@ -229,7 +222,7 @@ bool is_tied(const BondSet& bonds, const State& state, int a, int b) {
   };
   auto it = std::lower_bound(bonds.faces.begin(), bonds.faces.end(), std::pair(a, b), before);
   for (; it != bonds.faces.end() && it->block_a == a && it->block_b == b; ++it)
-    if (!state.face[static_cast<size_t>(it - bonds.faces.begin())].broken) return true;
+    if (!state.face[it - bonds.faces.begin()].broken) return true;
   return false;
 }
 
@@ -238,7 +231,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
                    const ContactGive& give, const State& state, const std::vector<BlockRate>& before,
                    const StepClock& clock, const Workers& workers, RowSet& rows) {
   TALUS_ASSERT(state.face.size() == bonds.faces.size() && state.bond_force.size() == 2 * bonds.faces.size());
-  TALUS_ASSERT(rows.size() == 0 && before.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(rows.size() == 0 && count_of(before) == blocks.count);
   const auto holds = [&](size_t f) {
     const BondFace& face = bonds.faces[f];
     return !state.face[f].broken && blocks.interact(face.block_a, face.block_b);
@@ -254,7 +247,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
   const RowGive row_give(give, blocks, clock);
   const auto add = [&](size_t f, size_t at) {
     const BondFace& face = bonds.faces[f];
-    const auto a = static_cast<size_t>(face.block_a), b = static_cast<size_t>(face.block_b);
+    const int a = face.block_a, b = face.block_b;
     const FaceOffset apart = face_offset(blocks, state, face);
     std::array<std::array<double, 2>, 2> u{};
     for (size_t end = 0; end < 2; ++end) {
@@ -267,7 +260,7 @@ void add_bond_rows(const BlockSet& blocks, const BondSet& bonds, const std::vect
       p.row[0].bias = apart.opening[end] / clock.dt;
       p.row[1].bias = (apart.tangential[end] - state.face[f].slip[end]) / clock.dt;
       if (!face.unbreakable) {
-        const JointLaw& law = laws[static_cast<size_t>(face.joint)];
+        const JointLaw& law = laws[face.joint];
         const double half_area = 0.5 * face.length * blocks.thickness;
         bound(law.between(face.block_a, face.block_b, law.peak()).over(half_area).over(clock.dt_kick), p);
         if (stands_open(law, apart.opening[end], noticeable(blocks, a, b))) p.cohesion = 0;
@@ -346,7 +339,7 @@ int update_bonds(const BlockSet& blocks, const BondSet& bonds, const std::vector
   return workers.sum_chunks<int>(bonds.faces.size(), kFaceGrain, [&](size_t begin, size_t end, int& broken) {
     for (size_t f = begin; f < end; ++f) {
       if (bonds.faces[f].unbreakable || state.face[f].broken) continue;
-      const auto j = static_cast<size_t>(bonds.faces[f].joint);
+      const int j = bonds.faces[f].joint;
       broken += follow_face(blocks, bonds, laws[j], dt, f, state);
     }
   });

@@ -37,9 +37,7 @@ inline void make_compliant(double stiffness, double damping_time, bool in_face, 
 inline void add_compliance(const JointLaw& law, double half_area, bool in_face, const StepClock& clock,
                            const std::array<double, 2>& u_before, PointRows& p) {
   for (int i = 0; i < 2; ++i)
-    if (law.is_soft(i))
-      make_compliant(law.stiffness(i, half_area), 0, in_face, clock, u_before[static_cast<size_t>(i)],
-                     p.row[i]);
+    if (law.is_soft(i)) make_compliant(law.stiffness(i, half_area), 0, in_face, clock, u_before[i], p.row[i]);
 }
 
 /// First guess of a compliant row (k = 0 normal, 1 tangential) of the two ends of a face: the impulses that
@@ -63,11 +61,10 @@ inline void guess_compliant(const std::array<const PointRows*, 2>& p,
                             const std::array<Impulse*, 2>& guess) {
   for (int k = 0; k < 2; ++k) {
     if (!p[0]->is_soft(k)) continue;
-    const auto i = static_cast<size_t>(k);
-    const auto impulse = guess_compliant(p, k, {u[0][i], u[1][i]});
+    const auto impulse = guess_compliant(p, k, {u[0][k], u[1][k]});
     for (size_t end = 0; end < 2; ++end) {
       const Bounds bounds = bounds_of(*p[end], k, (*guess[end])[0]);
-      (*guess[end])[i] = std::clamp(impulse[end], bounds.lower, bounds.upper);
+      (*guess[end])[k] = std::clamp(impulse[end], bounds.lower, bounds.upper);
     }
   }
 }
@@ -77,7 +74,7 @@ inline void guess_compliant(const std::array<const PointRows*, 2>& p,
 inline double elastic_slip(const RowSet& rows, size_t r, const StepClock& clock, double damping_time = 0) {
   const PointRows& p = rows.points[r];
   double rate = p.row[1].compliance * rows.impulse[r][1];
-  if (p.partner >= 0) rate += p.cross(1) * rows.impulse[static_cast<size_t>(p.partner)][1];
+  if (p.partner >= 0) rate += p.cross(1) * rows.impulse[p.partner][1];
   return -rate * (p.is_soft(1) ? clock.dt / clock.elastic_weights(damping_time).position : clock.dt);
 }
 

@@ -18,8 +18,7 @@ constexpr double kRockStrain = 2e-3;
 double largest(const Signal& s, const Model& model) {
   if (s.history < 0) return std::abs(s.factor);
   double most = 0;
-  for (const double v : model.histories[static_cast<size_t>(s.history)].value)
-    most = std::max(most, std::abs(s.factor * v));
+  for (const double v : model.histories[s.history].value) most = std::max(most, std::abs(s.factor * v));
   return most;
 }
 
@@ -51,16 +50,15 @@ Extent extent_of(const Model& model, const BlockSet& blocks) {
   std::vector<double> sizes;
   for (int i = 0; i < blocks.count; ++i) {
     if (!blocks.moves_freely(i)) continue;
-    const auto k = static_cast<size_t>(i);
-    const double density = blocks.mass[k] / blocks.volume[k];
+    const double density = blocks.mass[i] / blocks.volume[i];
     e.density = std::max(e.density, density);
-    if (blocks.kind[k] == BlockKind::kDeformable) {
-      e.impedance = std::max(e.impedance, std::sqrt(density * blocks.moduli[k].c11));
-      e.stiffness = std::max(e.stiffness, blocks.moduli[k].c11);
+    if (blocks.kind[i] == BlockKind::kDeformable) {
+      e.impedance = std::max(e.impedance, std::sqrt(density * blocks.moduli[i].c11));
+      e.stiffness = std::max(e.stiffness, blocks.moduli[i].c11);
     }
-    sizes.push_back(blocks.size[k]);
+    sizes.push_back(blocks.size[i]);
     for (int v = 0; v < blocks.vertex_count(i); ++v) {
-      const Vec2 x = blocks.centroid[k] + blocks.corner({i, v});
+      const Vec2 x = blocks.centroid[i] + blocks.corner({i, v});
       highest = std::min(highest, dot(x, down)), deepest = std::max(deepest, dot(x, down));
       low = {std::min(low.x, x.x), std::min(low.y, x.y)};
       high = {std::max(high.x, x.x), std::max(high.y, x.y)};
@@ -68,7 +66,7 @@ Extent extent_of(const Model& model, const BlockSet& blocks) {
   }
   if (sizes.empty()) return e;
   e.along_gravity = deepest - highest, e.widest = norm(high - low);
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  const auto middle = sizes.begin() + (sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   e.size = *middle;
   return e;
@@ -93,7 +91,7 @@ double RowGive::between(int a, int b) const {
   if (give_ == 0) return 0;
   double yield = 0;  // about what two blocks yield at a corner, together [1/kg]
   for (const int block : {a, b})
-    if (blocks_.moves_freely(block)) yield += kYield / blocks_.mass[static_cast<size_t>(block)];
+    if (blocks_.moves_freely(block)) yield += kYield / blocks_.mass[block];
   return std::min(give_, per_yield_ * yield);
 }
 
@@ -125,9 +123,7 @@ ContactGive contact_give(const Model& model, const Layout& layout, const BlockSe
 
 bool meets_hard(const Layout& layout, const std::vector<JointLaw>& laws) {
   const auto hard = [&](int joint) {
-    return joint < 0 ||
-           (!laws[static_cast<size_t>(joint)].bonded() &&
-            !(laws[static_cast<size_t>(joint)].is_soft(0) && laws[static_cast<size_t>(joint)].is_soft(1)));
+    return joint < 0 || (!laws[joint].bonded() && !(laws[joint].is_soft(0) && laws[joint].is_soft(1)));
   };
   if (layout.blocks.size() < 2) return false;
   if (hard(layout.default_joint)) return true;

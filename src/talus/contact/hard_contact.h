@@ -43,14 +43,13 @@ inline void push_out(double closed, double size, double& allowed) {
 
 /// Mean thickness of a block: its area over its extent across `normal` [m].
 inline double thickness_along(const BlockSet& blocks, const State& state, int block, Vec2 normal) {
-  const auto k = static_cast<size_t>(block);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (int v = 0; v < blocks.vertex_count(block); ++v) {
     const Vec2 X = blocks.corner({block, v});
-    const double at = cross(normal, X + state.strain_part[k] * X);
+    const double at = cross(normal, X + state.strain_part[block] * X);
     least = std::min(least, at), most = std::max(most, at);
   }
-  return blocks.size[k] * blocks.size[k] / (most - least);
+  return blocks.size[block] * blocks.size[block] / (most - least);
 }
 
 /// Overlaps below this share of the thinner block are not measured against it.
@@ -62,7 +61,7 @@ inline double closed_share(const BlockSet& blocks, const State& state, int a, in
   double share = 0;
   if (gap >= 0) return share;
   for (const int block : {a, b})
-    if (-gap > kDeepNoticed * blocks.thinness[static_cast<size_t>(block)])
+    if (-gap > kDeepNoticed * blocks.thinness[block])
       share = std::max(share, -gap / thickness_along(blocks, state, block, normal));
   return share;
 }

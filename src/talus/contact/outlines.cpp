@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/blocks/in_situ.h"
 
 namespace talus {
@@ -139,7 +140,7 @@ void add_stretch(const BlockSet& blocks, int block, int edge, const Vec2 (&arm)[
   const double length = norm(side), first = dot(arm[0] - from, side) / length,
                second = dot(arm[1] - from, side) / length;
   s.from = std::min(first, second), s.to = std::max(first, second);
-  out[static_cast<size_t>(blocks.vertex_begin[static_cast<size_t>(block)] + edge)].push_back(s);
+  out[blocks.vertex_begin[block] + edge].push_back(s);
 }
 
 Stretches stretches_of(const Model& model, const Layout& layout, const BlockSet& blocks, const BondSet& bonds,
@@ -149,15 +150,15 @@ Stretches stretches_of(const Model& model, const Layout& layout, const BlockSet&
     add_stretch(blocks, f.block_a, f.edge_a, f.arm_a, s, out);
     add_stretch(blocks, f.block_b, f.edge_b, f.arm_b, s, out);
   };
-  for (size_t f = 0; f < bonds.faces.size(); ++f) {
+  for (int f = 0; f < count_of(bonds.faces); ++f) {
     Stretch s;
-    s.face = static_cast<int>(f);
+    s.face = f;
     add(bonds.faces[f], s);
   }
   if (!model.in_situ.given) return out;
   for (const BondFace& face : shared_faces(layout, blocks)) {
     if (face.joint < 0) continue;
-    const JointLaw& law = laws[static_cast<size_t>(face.joint)];
+    const JointLaw& law = laws[face.joint];
     if (law.bonded()) continue;
     outlines.closed.emplace_back(face.block_a, face.block_b);
     if (!law.is_soft(0)) continue;
@@ -185,7 +186,7 @@ struct Ground {
 
   double moved_out(int joint, double along) const {
     const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, height + along * rise);
-    return -0.5 * laws[static_cast<size_t>(joint)].closure(stress, normal).x;
+    return -0.5 * laws[joint].closure(stress, normal).x;
   }
   std::array<double, 2> moved_between(const std::vector<Stretch>& list, double from, double to) const {
     std::array<double, 2> out{};
@@ -200,13 +201,13 @@ struct Ground {
 Marked marked_outline(const Model& model, const BlockSet& blocks, const std::vector<JointLaw>& laws,
                       const Stretches& stretches, int block) {
   Marked out;
-  const double least = kTouching * blocks.size[static_cast<size_t>(block)];
+  const double least = kTouching * blocks.size[block];
   for (int e = 0; e < blocks.vertex_count(block); ++e) {
-    const auto& list = stretches[static_cast<size_t>(blocks.vertex_begin[static_cast<size_t>(block)] + e)];
+    const auto& list = stretches[blocks.vertex_begin[block] + e];
     const Vec2 from = blocks.corner({block, e}), side = blocks.corner(blocks.end_of({block, e})) - from;
     const double length = norm(side);
-    const Ground ground{model, laws, turn_right(side) / length,
-                        blocks.centroid[static_cast<size_t>(block)].y + from.y, side.y / length};
+    const Ground ground{model, laws, turn_right(side) / length, blocks.centroid[block].y + from.y,
+                        side.y / length};
     std::vector<double> at{0, length};
     for (const Stretch& s : list)
       for (const double end : {s.from, s.to})
@@ -276,11 +277,11 @@ Outlines build_outlines(const Model& model, const Layout& layout, const BlockSet
     for (const ConvexPart& part : convex_parts(outline)) {
       out.corner.insert(out.corner.end(), part.corner.begin(), part.corner.end());
       out.side.insert(out.side.end(), part.side.begin(), part.side.end());
-      out.corner_begin.push_back(static_cast<int>(out.corner.size()));
+      out.corner_begin.push_back(count_of(out.corner));
       out.plain.push_back(std::all_of(part.side.begin(), part.side.end(),
                                       [](const PartSide& s) { return s.edge >= 0 && s.face < 0; }));
     }
-    out.part_begin.push_back(static_cast<int>(out.corner_begin.size()) - 1);
+    out.part_begin.push_back(count_of(out.corner_begin) - 1);
   }
   return out;
 }

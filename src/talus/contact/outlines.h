@@ -24,12 +24,8 @@ struct Outlines {
   std::vector<std::pair<int, int>>
       closed;  // pairs of blocks between which the ground has closed a joint, sorted
 
-  int parts_of(int block) const {
-    return part_begin[static_cast<size_t>(block) + 1] - part_begin[static_cast<size_t>(block)];
-  }
-  int corners_of(int part) const {
-    return corner_begin[static_cast<size_t>(part) + 1] - corner_begin[static_cast<size_t>(part)];
-  }
+  int parts_of(int block) const { return part_begin[block + 1] - part_begin[block]; }
+  int corners_of(int part) const { return corner_begin[part + 1] - corner_begin[part]; }
 };
 
 /// A convex part, or an outline on its way there.

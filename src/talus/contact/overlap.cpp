@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/index.h"
 #include "talus/contact/moments.h"
 #include "talus/geometry/polygon.h"
 
@@ -62,10 +63,10 @@ bool PartsMeeting::take_nearest(bool of_b, std::vector<int>& sides, size_t& main
   // all of it lies at a glued crossing, with no way out but the far sides: left to the bonds around it
   if (*std::min_element(low_.begin(), low_.end()) > tied) return false;
   main = 0;
-  for (size_t k = 0; k < own.size(); ++k) {
+  for (int k = 0; k < count_of(own); ++k) {
     if (!(low_[k] < best)) continue;
-    if (!sides.empty() && middle_[k] < middle_[static_cast<size_t>(sides[main])]) main = sides.size();
-    sides.push_back(static_cast<int>(k));
+    if (!sides.empty() && middle_[k] < middle_[sides[main]]) main = sides.size();
+    sides.push_back(k);
   }
   return !sides.empty();
 }
@@ -75,11 +76,11 @@ bool PartsMeeting::take_nearest(bool of_b, std::vector<int>& sides, size_t& main
 void PartsMeeting::keep_nearest(bool of_b, const std::vector<int>& sides, size_t which, const Polygon& from,
                                 Polygon& out) const {
   const PartNow& own = part(of_b);
-  const auto n = own.size(), j = static_cast<size_t>(sides[which]);
+  const int n = count_of(own), j = sides[which];
   out = from;
   for (size_t i = 0; i < sides.size() && !out.empty(); ++i) {
     if (i == which) continue;
-    const auto k = static_cast<size_t>(sides[i]);
+    const int k = sides[i];
     const bool next = k == (j + 1) % n, before = j == (k + 1) % n;
     if (next || before) {
       const Vec2 at = corner(of_b, next ? k : j), way = own.along[j] + own.along[k];
@@ -98,8 +99,7 @@ void PartsMeeting::keep_nearest(bool of_b, const std::vector<int>& sides, size_t
 }
 
 SideCell PartsMeeting::cell(bool of_b, int side, double area, Vec2 first) const {
-  const auto j = static_cast<size_t>(side);
-  return {side, area, first, cross(part(of_b).along[j], first - area * corner(of_b, j))};
+  return {side, area, first, cross(part(of_b).along[side], first - area * corner(of_b, side))};
 }
 
 // Cells of all sides, the largest as what the others leave.
@@ -125,7 +125,7 @@ void PartsMeeting::cells_by_rest(bool of_b, size_t main, std::vector<SideCell>& 
 bool PartsMeeting::any_tied() const {
   const auto tied = [](const PartNow& p, const std::vector<int>& sides) {
     return std::any_of(sides.begin(), sides.end(),
-                       [&](int k) { return p.role_of(static_cast<size_t>(k)) == SideRole::kTiedHere; });
+                       [&](int k) { return p.role_of(k) == SideRole::kTiedHere; });
   };
   return tied(part_[0], near_a_) || tied(part_[1], near_b_);
 }
@@ -134,10 +134,10 @@ bool PartsMeeting::any_tied() const {
 void PartsMeeting::nested_cells() {
   corners_.clear();
   for (size_t i = 0; i < near_a_.size(); ++i) {
-    if (part_[0].role_of(static_cast<size_t>(near_a_[i])) == SideRole::kTiedHere) continue;
+    if (part_[0].role_of(near_a_[i]) == SideRole::kTiedHere) continue;
     keep_nearest(false, near_a_, i, region_, cell_);
     for (size_t j = 0; j < near_b_.size() && !cell_.empty(); ++j) {
-      if (part_[1].role_of(static_cast<size_t>(near_b_[j])) == SideRole::kTiedHere) continue;
+      if (part_[1].role_of(near_b_[j]) == SideRole::kTiedHere) continue;
       keep_nearest(true, near_b_, j, cell_, cell_of_cell_);
       const Moments m = moments(cell_of_cell_);
       if (!(m.area > 0)) continue;
@@ -189,7 +189,7 @@ bool PartsMeeting::sum_up() {
     double most = 0;
     side = -1;
     for (const SideCell& c : cells) {
-      const Vec2 out = (of_b ? 0.5 : -0.5) * turn_right(part(of_b).along[static_cast<size_t>(c.side)]);
+      const Vec2 out = (of_b ? 0.5 : -0.5) * turn_right(part(of_b).along[c.side]);
       force += c.area * out, moment += cross(c.first - c.area * centre, out);
       met_.energy += 0.5 * c.depth;
       if (c.area > most) most = c.area, side = c.side;
@@ -218,8 +218,7 @@ bool PartsMeeting::sum_up() {
 const PartsMet& PartsMeeting::look(const PartNow& a, const PartNow& b, Vec2 shift, double margin,
                                    double rounding, const LookFirst& first) {
   part_[0] = a, part_[1] = b, origin_[1] = shift, rounding_ = rounding, behind_ = first.behind;
-  is_strip_ = first.strip && first.way > 0 && static_cast<size_t>(first.way) <= b.size() &&
-              measure_strip(true, static_cast<size_t>(first.way) - 1);
+  is_strip_ = first.strip && first.way > 0 && first.way <= count_of(b) && measure_strip(true, first.way - 1);
   if (is_strip_)
     met_.kind = PartsMet::kOverlap;
   else if (first.near[0] != 0)

@@ -287,7 +287,7 @@ bool PartsMeeting::pushed_off(const Way& w, Vec2 force) const {
 bool PartsMeeting::faces_along(Vec2 tangent, double by) const {
   double low = -kAll, high = kAll;
   for (const bool of_b : {false, true}) {
-    const auto side = static_cast<size_t>(of_b ? met_.side_b : met_.side_a);
+    const int side = of_b ? met_.side_b : met_.side_a;
     const double s0 = dot(tangent, corner(of_b, side)),
                  s1 = dot(tangent, corner(of_b, after(side, part(of_b).size())));
     low = std::max(low, std::min(s0, s1)), high = std::min(high, std::max(s0, s1));

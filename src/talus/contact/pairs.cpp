@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/rank.h"
 
 namespace talus {
@@ -31,7 +32,7 @@ double highest_rise(const std::vector<JointLaw>& joints, const State& state) {
   double rise = 0;
   for (const Patch& p : state.patches)
     for (const double slip : p.slip)
-      if (p.joint >= 0) rise = std::max(rise, joints[static_cast<size_t>(p.joint)].rise(slip));
+      if (p.joint >= 0) rise = std::max(rise, joints[p.joint].rise(slip));
   return rise;
 }
 
@@ -46,7 +47,7 @@ double reach_of(const BlockSet& blocks, const LookAhead& ahead, size_t i) {
 bool list_holds(const BlockSet& blocks, const State& state, const LookAhead& ahead, double rise,
                 const Workers& workers) {
   const CandidateList& list = state.candidates;
-  if (list.reach.size() != static_cast<size_t>(blocks.count)) return false;
+  if (count_of(list.reach) != blocks.count) return false;
   std::atomic<bool> holds{true};
   workers.for_chunks(list.displacement.size(), 2048, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end && holds.load(std::memory_order_relaxed); ++i)
@@ -68,16 +69,14 @@ int first_face(const BondSet& bonds, int a, int b) {
 // The joint of a pair where it is the same for all of its sides. Bonded ones go by edges: what meets a bonded edge from
 // elsewhere is not of it.
 int joint_of(const BlockSet& blocks, const Layout& layout, const std::vector<JointLaw>& laws, int a, int b) {
-  const int given =
-      layout.joint_of_pair(blocks.group[static_cast<size_t>(a)], blocks.group[static_cast<size_t>(b)]);
+  const int given = layout.joint_of_pair(blocks.group[a], blocks.group[b]);
   if (given != Layout::kNoPair) return given;
-  const std::vector<int>&of_a = layout.blocks[static_cast<size_t>(a)].edge_joint,
-        &of_b = layout.blocks[static_cast<size_t>(b)].edge_joint;
+  const std::vector<int>&of_a = layout.blocks[a].edge_joint, &of_b = layout.blocks[b].edge_joint;
   if (of_a.empty() && of_b.empty()) return layout.default_joint;
   const int joint = of_a.empty() || of_b.empty() ? layout.default_joint : of_a[0];
   const auto same = [&](int other) { return other == joint; };
   const bool one = std::all_of(of_a.begin(), of_a.end(), same) && std::all_of(of_b.begin(), of_b.end(), same);
-  return one && !(joint >= 0 && laws[static_cast<size_t>(joint)].bonded()) ? joint : ContactPair::kByEdges;
+  return one && !(joint >= 0 && laws[joint].bonded()) ? joint : ContactPair::kByEdges;
 }
 
 }  // namespace
@@ -90,12 +89,11 @@ std::vector<Box> boxes_now(const BlockSet& blocks, const State& state) {
   std::vector<Box> boxes;
   const Vec2 origin = blocks.centroid[0];
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    const Vec2 from = blocks.centroid[k] - origin;
-    Box box{from + offset_now(state, k, blocks.corner({i, 0})), {}};
+    const Vec2 from = blocks.centroid[i] - origin;
+    Box box{from + offset_now(state, i, blocks.corner({i, 0})), {}};
     box.max = box.min;
     for (int v = 1; v < blocks.vertex_count(i); ++v) {
-      const Vec2 p = from + offset_now(state, k, blocks.corner({i, v}));
+      const Vec2 p = from + offset_now(state, i, blocks.corner({i, v}));
       box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};
       box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y)};
     }
@@ -106,7 +104,7 @@ std::vector<Box> boxes_now(const BlockSet& blocks, const State& state) {
 
 bool held_by_faces(const BondSet& bonds, const State& state, const ContactPair& pair) {
   if (pair.face < 0) return false;
-  for (auto f = static_cast<size_t>(pair.face); f < bonds.faces.size(); ++f) {
+  for (int f = pair.face; f < count_of(bonds.faces); ++f) {
     if (bonds.faces[f].block_a != pair.a || bonds.faces[f].block_b != pair.b) break;
     if (!state.face[f].broken) return true;
   }
@@ -114,21 +112,21 @@ bool held_by_faces(const BondSet& bonds, const State& state, const ContactPair& 
 }
 
 BySize by_size(const BlockSet& blocks, const ContactPair& p) {
-  const auto a = static_cast<size_t>(p.a), b = static_cast<size_t>(p.b);
+  const int a = p.a, b = p.b;
   return blocks.radius[a] <= blocks.radius[b] ? BySize{a, b} : BySize{b, a};
 }
 
 void list_neighbours(const BlockSet& blocks, const std::vector<std::pair<int, int>>& close, Neighbours& out) {
-  out.begin.assign(static_cast<size_t>(blocks.count) + 1, 0);
+  out.begin.assign(blocks.count + 1, 0);
   const auto both = [&](const auto& use) {
     for (const auto& [a, b] : close)
       if (!blocks.removed(a) && !blocks.removed(b)) use(a, b), use(b, a);
   };
-  both([&](int i, int) { ++out.begin[static_cast<size_t>(i) + 1]; });
+  both([&](int i, int) { ++out.begin[i + 1]; });
   for (size_t i = 1; i < out.begin.size(); ++i) out.begin[i] += out.begin[i - 1];
-  out.block.resize(static_cast<size_t>(out.begin.back()));
+  out.block.resize(out.begin.back());
   std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
-  both([&](int i, int j) { out.block[static_cast<size_t>(next[static_cast<size_t>(i)]++)] = j; });
+  both([&](int i, int j) { out.block[next[i]++] = j; });
 }
 
 Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& state,
@@ -144,8 +142,8 @@ Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& 
           const Mat2 turning = rate[small].G - rate[large].G;
           const double together = dt * (norm(rate[small].a - rate[large].a - rate[large].G * arm) +
                                         std::sqrt(contract(turning, turning)) * blocks.radius[small]);
-          most += {together / pair.margin, together / std::min(blocks.size[small], blocks.size[large]),
-                   static_cast<int>(small), static_cast<int>(large)};
+          most += {together / pair.margin, together / std::min(blocks.size[small], blocks.size[large]), small,
+                   large};
         }
       });
 }
@@ -154,8 +152,7 @@ Approach approach_of(const BondSet& bonds, const BlockSet& blocks, const State& 
 bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
                  const std::vector<JointLaw>& joints, const LookAhead& ahead, const Workers& workers,
                  State& state) {
-  TALUS_ASSERT(ahead.before.size() == static_cast<size_t>(blocks.count) &&
-               state.face.size() == bonds.faces.size());
+  TALUS_ASSERT(count_of(ahead.before) == blocks.count && state.face.size() == bonds.faces.size());
   const double rise = highest_rise(joints, state);
   if (blocks.count == 0 || list_holds(blocks, state, ahead, rise, workers)) return false;
   CandidateList& list = state.candidates;
@@ -163,10 +160,10 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
   list.displacement = state.displacement;
   list.strain_part = state.strain_part;
   const double median_size = median(blocks.size);
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   list.skin.resize(n), list.reach.resize(n);
   std::vector<Box> boxes = boxes_now(blocks, state);
-  for (size_t i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i) {
     list.skin[i] = kSkin * std::min(blocks.size[i], median_size);
     // twice what is needed now, where it is speed that asks for it, so that the list holds for a while
     const double now = reach_of(blocks, ahead, i), rest = 0.5 * kMarginShare * blocks.size[i];
@@ -194,7 +191,7 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
     if (known != before.end() && known->a == a && known->b == b) {
       pair = *known;
       pair.lead = 0;
-      if (!state.followed.empty()) as_followed = state.followed[static_cast<size_t>(known - before.begin())];
+      if (!state.followed.empty()) as_followed = state.followed[known - before.begin()];
     } else {
       pair.a = a, pair.b = b;
       pair.from_start = state.step == 0;
@@ -204,10 +201,10 @@ bool renew_pairs(const BlockSet& blocks, const BondSet& bonds, const Layout& joi
     }
     const int from = pair.begin;
     if (!state.patches.empty()) {
-      pair.begin = static_cast<int>(patches.size());
+      pair.begin = count_of(patches);
       patches.insert(patches.end(), state.patches.begin() + from, state.patches.begin() + from + pair.count);
     } else {
-      pair.begin = static_cast<int>(contacts.size());
+      pair.begin = count_of(contacts);
       contacts.insert(contacts.end(), state.contacts.begin() + from,
                       state.contacts.begin() + from + pair.count);
     }

@@ -45,7 +45,7 @@ inline constexpr double kMarginShare = 0.02;
 
 /// The smaller block of a pair and the larger one.
 struct BySize {
-  size_t small, large;
+  int small, large;
 };
 BySize by_size(const BlockSet& blocks, const ContactPair& pair);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 // A piece [u, v] of a linear field that is e0 at s0 and e1 at s1.
@@ -24,7 +26,7 @@ void PatchMemory::Field::take(const OldChord& old, const std::array<double, 2>& 
 }
 
 void PatchMemory::recall(const Patch* own, Patch& patch) const {
-  const auto a = static_cast<size_t>(patch.block_a);
+  const int a = patch.block_a;
   const Vec2 t = turn_right(patch.normal);
   const Vec2 x0 = patch.arm_a[0] + state_.strain_part[a] * patch.arm_a[0];
   Field field;
@@ -67,7 +69,7 @@ void PatchMemory::take_slip(const Patch& old, const OldChord& at, Patch& patch) 
 // A face on the same sides that broke in the step before hands over what it has slipped, and the shear of an elastic
 // one, at the places that no patch before has had.
 void PatchMemory::take_from_faces(Vec2 t, Vec2 x0, double nearest, Field& field, Patch& patch) const {
-  for (auto f = static_cast<size_t>(pair_->face); f < w_.bonds.faces.size(); ++f) {
+  for (int f = pair_->face; f < count_of(w_.bonds.faces); ++f) {
     const BondFace& face = w_.bonds.faces[f];
     if (face.block_a != pair_->a || face.block_b != pair_->b) break;
     const FaceState& broken = state_.face[f];
@@ -91,7 +93,7 @@ void PatchMemory::take_from_faces(Vec2 t, Vec2 x0, double nearest, Field& field,
 }
 
 Vec2 PatchMemory::place_on(const BondFace& face, int end) const {
-  return face.arm_a[end] + state_.strain_part[static_cast<size_t>(face.block_a)] * face.arm_a[end];
+  return face.arm_a[end] + state_.strain_part[face.block_a] * face.arm_a[end];
 }
 
 }  // namespace talus

@@ -55,7 +55,7 @@ class PatchMemory {
   };
 
   Carried carried(const Patch& p, size_t end) const {
-    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    const int a = p.block_a, b = p.block_b;
     return {p.arm_a[end] + state_.strain_part[a] * p.arm_a[end],
             p.arm_b[end] + state_.strain_part[b] * p.arm_b[end] + shift_};
   }

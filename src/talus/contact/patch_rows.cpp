@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/contact/hard_contact.h"
 #include "talus/contact/joint_state.h"
 
@@ -31,7 +32,7 @@ class PatchRows {
   void add(const ContactPair& pair) const {
     const double give = pair.count > 0 ? give_.between(pair.a, pair.b) : 0;
     for (int k = 0; k < pair.count; ++k) {
-      const auto i = static_cast<size_t>(pair.begin + k);
+      const int i = pair.begin + k;
       std::array<std::array<double, 2>, 2> u{};
       for (const size_t end : {0U, 1U}) write(pair, i, end, give, u[end]);
       const size_t r = first_ + 2 * i;
@@ -50,8 +51,8 @@ class PatchRows {
   // `give`: compliance where contacts give. `u`: gets the relative velocity half a step ago where the joint asks for it.
   void write(const ContactPair& pair, size_t i, size_t end, double give, std::array<double, 2>& u) const {
     const Patch& c = state_.patches[i];
-    const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
-    const JointLaw& law = c.joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.joint)];
+    const int a = c.block_a, b = c.block_b;
+    const JointLaw& law = c.joint < 0 ? none_ : w_.laws[c.joint];
     const size_t r = first_ + 2 * i + end;
     PointRows& p = rows_.points[r];
     p = kFreshRows;
@@ -92,7 +93,7 @@ class PatchRows {
     };
     JointStrength s = one(law);
     if (c.other_share == 0) return s;
-    const JointStrength other = one(c.other_joint < 0 ? none_ : w_.laws[static_cast<size_t>(c.other_joint)]);
+    const JointStrength other = one(c.other_joint < 0 ? none_ : w_.laws[c.other_joint]);
     const double z = c.other_share;
     s.friction = (1 - z) * s.friction + z * other.friction;
     s.cohesion = (1 - z) * s.cohesion + z * other.cohesion,
@@ -106,15 +107,14 @@ class PatchRows {
     for (int i = 0; i < 2; ++i)
       if (law.is_soft(i))
         make_compliant(mixed_stiffness(w_.laws, c, i, half_area),
-                       mixed_damping_time(w_.blocks, w_.laws, c, i), true, clock_, u[static_cast<size_t>(i)],
-                       p.row[i]);
+                       mixed_damping_time(w_.blocks, w_.laws, c, i), true, clock_, u[i], p.row[i]);
   }
 
   // Whether a face that has broken lay on the sides of a patch.
   bool was_face(const ContactPair& pair, const Patch& c) const {
     if (pair.face < 0) return false;
     const std::vector<BondFace>& faces = w_.bonds.faces;
-    for (auto f = static_cast<size_t>(pair.face); f < faces.size(); ++f) {
+    for (int f = pair.face; f < count_of(faces); ++f) {
       if (faces[f].block_a != pair.a || faces[f].block_b != pair.b) break;
       if (state_.face[f].broken && faces[f].edge_a == c.side_a && faces[f].edge_b == c.side_b) return true;
     }
@@ -185,7 +185,7 @@ std::array<double, 2> dashpot_impulse(const BlockSet& blocks, const std::vector<
   const PointRows& p = rows.points[r];
   if (!p.is_soft()) return {0, 0};
   const Patch& c = state.patches[(r - rows.range(Family::kContact).begin) / 2];
-  const auto second = static_cast<size_t>(p.partner);
+  const int second = p.partner;
   const PointRows& q = rows.points[second];
   const auto is_free = [&](size_t row, size_t k) {
     const Impulse& impulse = rows.impulse[row];
@@ -193,8 +193,8 @@ std::array<double, 2> dashpot_impulse(const BlockSet& blocks, const std::vector<
   };
   std::array<double, 2> out{0, 0}, before_p{}, before_q{}, after_q{};
   bool looked = false;
-  for (size_t k = 0; k < 2; ++k) {
-    const int i = static_cast<int>(k);
+  for (int k = 0; k < 2; ++k) {
+    const int i = k;
     if (!p.is_soft(i) || !is_free(r, k)) continue;
     const double time = mixed_damping_time(blocks, laws, c, i);
     if (clock.dashpot_time(time) == 0) continue;

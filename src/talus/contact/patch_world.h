@@ -22,9 +22,9 @@ struct PatchWorld {
 /// meet (theory 3.8).
 /// @pre  its joint is elastic in that direction
 inline double mixed_stiffness(const std::vector<JointLaw>& laws, const Patch& patch, int i, double area) {
-  const double one = laws[static_cast<size_t>(patch.joint)].stiffness(i, area);
+  const double one = laws[patch.joint].stiffness(i, area);
   if (patch.other_share == 0 || patch.other_joint < 0) return one;
-  const JointLaw& other = laws[static_cast<size_t>(patch.other_joint)];
+  const JointLaw& other = laws[patch.other_joint];
   return other.is_soft(i) ? (1 - patch.other_share) * one + patch.other_share * other.stiffness(i, area)
                           : one;
 }
@@ -34,12 +34,11 @@ inline double mixed_stiffness(const std::vector<JointLaw>& laws, const Patch& pa
 /// @pre  its joint is elastic in that direction
 inline double mixed_damping_time(const BlockSet& blocks, const std::vector<JointLaw>& laws,
                                  const Patch& patch, int i) {
-  const double closed =
-      -noticeable(blocks, static_cast<size_t>(patch.block_a), static_cast<size_t>(patch.block_b));
+  const double closed = -noticeable(blocks, patch.block_a, patch.block_b);
   if (patch.closure[0] < closed && patch.closure[1] < closed) return 0;
-  const JointLaw& law = laws[static_cast<size_t>(patch.joint)];
+  const JointLaw& law = laws[patch.joint];
   if (patch.other_share == 0 || patch.other_joint < 0) return law.damping_time();
-  const JointLaw& other = laws[static_cast<size_t>(patch.other_joint)];
+  const JointLaw& other = laws[patch.other_joint];
   if (!other.is_soft(i)) return law.damping_time();
   const double one = (1 - patch.other_share) * law.stiffness(i), two = patch.other_share * other.stiffness(i);
   return (one * law.damping_time() + two * other.damping_time()) / (one + two);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/patch_memory.h"
 
@@ -39,7 +40,7 @@ class PairSearch {
   double look(const ContactPair& pair, std::vector<Patch>& out) {
     out.clear();
     pair_ = &pair, elastic_ = all_elastic(pair);
-    const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+    const int a = pair.a, b = pair.b;
     shift_ =
         (w_.blocks.centroid[b] - w_.blocks.centroid[a]) + (state_.displacement[b] - state_.displacement[a]);
     known_ = {state_.patches.data() + pair.begin, static_cast<size_t>(pair.count)};
@@ -69,7 +70,7 @@ class PairSearch {
   double unseen() const { return unseen_; }
 
  private:
-  bool is_elastic(int joint) const { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].is_soft(0); }
+  bool is_elastic(int joint) const { return joint >= 0 && w_.laws[joint].is_soft(0); }
 
   // Whether all sides of the pair have joints that are elastic along the normal.
   bool all_elastic(const ContactPair& pair) const {
@@ -79,20 +80,18 @@ class PairSearch {
   // By how much a way must be behind another to stay so in this step: twice what any place of one block moves at most as the
   // other one sees it.
   double behind(double lifted) const {
-    const auto &a = search_.now_[static_cast<size_t>(pair_->a)],
-               &b = search_.now_[static_cast<size_t>(pair_->b)];
+    const auto &a = search_.now_[pair_->a], &b = search_.now_[pair_->b];
     return 2 * (closing_ + (a.turns + b.turns) * (distance_ + lifted + a.reach + b.reach)) + kLevel * size_;
   }
 
   // By how much one way may have come nearer to another since the list of pairs was made: twice what any place of one block
   // moves at most as the other one sees it, whose sides turn too.
   double gone_since_list() const {
-    const auto &a = search_.now_[static_cast<size_t>(pair_->a)],
-               &b = search_.now_[static_cast<size_t>(pair_->b)];
+    const auto &a = search_.now_[pair_->a], &b = search_.now_[pair_->b];
     return 2 * (a.gone + b.gone + 2 * (a.turned + b.turned) * (distance_ + a.reach + b.reach));
   }
 
-  const PartMotion& motion(int block) const { return search_.now_[static_cast<size_t>(block)].motion; }
+  const PartMotion& motion(int block) const { return search_.now_[block].motion; }
 
   // On block a [N].
   static Vec2 force_of(const Patch& p) {
@@ -101,15 +100,14 @@ class PairSearch {
   }
 
   double rise(const Patch& p, size_t end) const {
-    return p.joint < 0 ? 0 : w_.laws[static_cast<size_t>(p.joint)].rise(p.slip[end]);
+    return p.joint < 0 ? 0 : w_.laws[p.joint].rise(p.slip[end]);
   }
 
   PartNow part_now(int part, int other, std::vector<SideRole>& roles) const {
     const Outlines& o = w_.outlines;
-    const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
-               n = static_cast<size_t>(o.corners_of(part));
+    const size_t begin = o.corner_begin[part], n = o.corners_of(part);
     roles.clear();
-    if (!search_.bare_[static_cast<size_t>(part)])
+    if (!search_.bare_[part])
       for (size_t k = 0; k < n; ++k) roles.push_back(role_of(search_.tied_to_[begin + k], other));
     return {{search_.corner_.data() + begin, n}, {search_.along_.data() + begin, n}, roles};
   }
@@ -122,7 +120,7 @@ class PairSearch {
 
   // Whether a side of a part goes on in line with the next or the one before.
   bool goes_on(int part, const PartNow& now, size_t k) const {
-    const auto begin = static_cast<size_t>(w_.outlines.corner_begin[static_cast<size_t>(part)]);
+    const int begin = w_.outlines.corner_begin[part];
     const auto in_line = [&](size_t other) {
       return w_.outlines.side[begin + other].edge >= 0 &&
              std::abs(cross(now.along[k], now.along[other])) <= kOneSide;
@@ -133,9 +131,7 @@ class PairSearch {
   // Whether a bond ties a whole side of one part to the other part: convex parts share no more than that.
   bool tied_along_side(int p, const PartNow& a, int q, const PartNow& b) const {
     const Outlines& o = w_.outlines;
-    const auto face = [&](int part, size_t k) {
-      return o.side[static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]) + k].face;
-    };
+    const auto face = [&](int part, size_t k) { return o.side[o.corner_begin[part] + k].face; };
     for (size_t k = 0; k < a.role.size(); ++k) {
       if (a.role[k] != SideRole::kTiedHere) continue;
       for (size_t m = 0; m < b.role.size(); ++m)
@@ -230,14 +226,12 @@ class PairSearch {
   // not count: it goes out of the way with that.
   bool is_in_third(bool near_b, Vec2 x, Vec2 shift) const {
     const int own = near_b ? pair_->b : pair_->a, other = near_b ? pair_->a : pair_->b;
-    const auto k = static_cast<size_t>(own);
     const Vec2 from_own = x - (near_b ? shift : Vec2{});
     for (const int third : state_.candidates.neighbours.of(own)) {
       if (third == other || w_.blocks.removed(third)) continue;
-      const auto t = static_cast<size_t>(third);
-      const Vec2 place = from_own - (w_.blocks.centroid[t] - w_.blocks.centroid[k]) -
-                         (state_.displacement[t] - state_.displacement[k]);
-      if (norm(place) <= search_.now_[t].reach && is_in_block(t, place) &&
+      const Vec2 place = from_own - (w_.blocks.centroid[third] - w_.blocks.centroid[own]) -
+                         (state_.displacement[third] - state_.displacement[own]);
+      if (norm(place) <= search_.now_[third].reach && is_in_block(third, place) &&
           !is_tied(w_.bonds, state_, std::min(third, other), std::max(third, other)))
         return true;
     }
@@ -247,11 +241,9 @@ class PairSearch {
   // Whether a place, seen from the centroid of a block, is in one of its parts.
   bool is_in_block(size_t block, Vec2 place) const {
     const Outlines& o = w_.outlines;
-    for (auto p = static_cast<size_t>(o.part_begin[block]); p < static_cast<size_t>(o.part_begin[block + 1]);
-         ++p) {
+    for (int p = o.part_begin[block]; p < o.part_begin[block + 1]; ++p) {
       bool inside = true;
-      for (auto k = static_cast<size_t>(o.corner_begin[p]);
-           inside && k < static_cast<size_t>(o.corner_begin[p + 1]); ++k)
+      for (int k = o.corner_begin[p]; inside && k < o.corner_begin[p + 1]; ++k)
         inside = cross(search_.along_[k], place - search_.corner_[k]) >= 0;
       if (inside) return true;
     }
@@ -301,8 +293,7 @@ class PairSearch {
 
   int edge_of(int part, int side) const {
     if (side < 0) return -1;
-    return w_.outlines.side[static_cast<size_t>(w_.outlines.corner_begin[static_cast<size_t>(part)] + side)]
-        .edge;
+    return w_.outlines.side[w_.outlines.corner_begin[part] + side].edge;
   }
 
   int joint_met(int p, int q) const {
@@ -315,7 +306,7 @@ class PairSearch {
   int joint_between(int edge_a, int edge_b) const {
     if (pair_->joint != ContactPair::kByEdges) return pair_->joint;
     const Layout& l = w_.layout;
-    const auto glued = [&](int joint) { return joint >= 0 && w_.laws[static_cast<size_t>(joint)].bonded(); };
+    const auto glued = [&](int joint) { return joint >= 0 && w_.laws[joint].bonded(); };
     int joint = l.joint_by_edges({pair_->a, edge_a}, {pair_->b, edge_b});
     if (glued(joint)) joint = l.joint_by_edges({pair_->a, -1}, {pair_->b, edge_b});
     return glued(joint) && l.default_joint >= 0 ? l.default_joint : joint;
@@ -342,7 +333,7 @@ class PairSearch {
   }
 
   void write_place(const PartsMet& met, Vec2 shift, Patch& patch) const {
-    const auto a = static_cast<size_t>(patch.block_a), b = static_cast<size_t>(patch.block_b);
+    const int a = patch.block_a, b = patch.block_b;
     patch.normal = met.normal, patch.length = met.length();
     patch.closure = {met.closure[0], met.closure[1]};
     const std::array<Vec2, 2> x{met.begin, met.end};
@@ -354,8 +345,8 @@ class PairSearch {
   // What the stress of the ground has closed and slipped at an end, along normal and tangent (theory 1.7).
   Vec2 ground_at(const Patch& patch, size_t end) const {
     if (!w_.model.in_situ.given || patch.joint < 0 || !pair_->shares_face) return {};
-    const double height = w_.blocks.centroid[static_cast<size_t>(patch.block_b)].y + patch.arm_b[end].y;
-    const Vec2 closure = w_.laws[static_cast<size_t>(patch.joint)].closure(
+    const double height = w_.blocks.centroid[patch.block_b].y + patch.arm_b[end].y;
+    const Vec2 closure = w_.laws[patch.joint].closure(
         in_situ_stress(w_.model.in_situ, w_.model.gravity, height), patch.normal);
     return {-closure.x, closure.y};
   }
@@ -394,10 +385,9 @@ class PairSearch {
   };
   Span span_of(int part, int edge, Vec2 shift, Vec2 from, Vec2 along) const {
     const Outlines& o = w_.outlines;
-    const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(part)]),
-               n = static_cast<size_t>(o.corners_of(part));
+    const int begin = o.corner_begin[part], n = o.corners_of(part);
     Span out;
-    for (size_t k = 0; k < n; ++k)
+    for (int k = 0; k < n; ++k)
       if (o.side[begin + k].edge == edge)
         for (const size_t c : {k, (k + 1) % n}) {
           const double s = dot(along, o.corner[begin + c] + shift - from);
@@ -410,7 +400,7 @@ class PairSearch {
   // shape [m2].
   double closed_by_ground(const Patch& patch) const {
     if (!pair_->shares_face || patch.side_a < 0 || patch.side_b < 0) return 0;
-    const auto a = static_cast<size_t>(patch.block_a), b = static_cast<size_t>(patch.block_b);
+    const int a = patch.block_a, b = patch.block_b;
     const BlockEdge edge{patch.block_b, patch.side_b};
     const Vec2 from = w_.blocks.corner({edge.block, edge.edge}),
                side = w_.blocks.corner(w_.blocks.end_of(edge)) - from;
@@ -428,7 +418,7 @@ class PairSearch {
     if (!(high > low)) return 0;
     const double height = w_.blocks.centroid[b].y + from.y + 0.5 * (low + high) * along.y;
     const Mat2 stress = in_situ_stress(w_.model.in_situ, w_.model.gravity, height);
-    const JointLaw& law = w_.laws[static_cast<size_t>(patch.joint)];
+    const JointLaw& law = w_.laws[patch.joint];
     return std::max(0.0, -(high - low) * law.closure(stress, turn_right(along)).x);
   }
 
@@ -455,8 +445,8 @@ class PairSearch {
 // Whom a side is tied to now, for tied_to_.
 int PatchSearch::tied_to(const PatchWorld& world, const State& state, int block, const PartSide& side) {
   if (side.edge < 0) return kCut;
-  if (side.face < 0 || state.face[static_cast<size_t>(side.face)].broken) return kFree;
-  const BondFace& f = world.bonds.faces[static_cast<size_t>(side.face)];
+  if (side.face < 0 || state.face[side.face].broken) return kFree;
+  const BondFace& f = world.bonds.faces[side.face];
   if (!world.blocks.interact(f.block_a, f.block_b)) return kFree;
   return f.block_a == block ? f.block_b : f.block_a;
 }
@@ -471,7 +461,7 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
   if (std::find(o.plain.begin(), o.plain.end(), false) != o.plain.end()) tied_to_.resize(o.corner.size());
   bare_.resize(o.plain.size());
   now_.resize(state.strain_part.size());
-  workers.for_chunks(static_cast<size_t>(blocks.count), 1024, [&](size_t begin, size_t end) {
+  workers.for_chunks(blocks.count, 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Mat2& h = state.strain_part[i];
       const Mat2 turned = kIdentity + h, back = inverse(turned);
@@ -485,8 +475,7 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
                  norm(turn),
                  norm(state.displacement[i] - list.displacement[i]),
                  norm(h - list.strain_part[i]) * norm(back)};
-      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p)
-        place_part(world, state, i, static_cast<size_t>(p));
+      for (int p = o.part_begin[i]; p < o.part_begin[i + 1]; ++p) place_part(world, state, i, p);
     }
   });
 }
@@ -494,15 +483,14 @@ void PatchSearch::place_parts(const PatchWorld& world, const LookAhead& ahead, c
 void PatchSearch::place_part(const PatchWorld& world, const State& state, size_t block, size_t part) {
   const Outlines& o = world.outlines;
   const Mat2& h = state.strain_part[block];
-  const auto first = static_cast<size_t>(o.corner_begin[part]),
-             last = static_cast<size_t>(o.corner_begin[part + 1]);
-  for (size_t k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
-  for (size_t k = first; k < last; ++k) {
+  const int first = o.corner_begin[part], last = o.corner_begin[part + 1];
+  for (int k = first; k < last; ++k) corner_[k] = o.corner[k] + h * o.corner[k];
+  for (int k = first; k < last; ++k) {
     const Vec2 side = o.corner[k + 1 == last ? first : k + 1] - o.corner[k], now = side + h * side;
     along_[k] = now / norm(now);
   }
   bare_[part] = true;
-  for (size_t k = first; k < last && !o.plain[part]; ++k) {
+  for (int k = first; k < last && !o.plain[part]; ++k) {
     tied_to_[k] = tied_to(world, state, static_cast<int>(block), o.side[k]);
     bare_[part] = bare_[part] && tied_to_[k] == kFree;
   }
@@ -510,7 +498,7 @@ void PatchSearch::place_part(const PatchWorld& world, const State& state, size_t
 
 int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const Workers& workers,
                         State& state) {
-  TALUS_ASSERT(world.outlines.part_begin.size() == static_cast<size_t>(world.blocks.count) + 1);
+  TALUS_ASSERT(count_of(world.outlines.part_begin) == world.blocks.count + 1);
   place_parts(world, ahead, workers, state);
   const size_t n = state.pairs.size();
   changed_.resize((n + kPatchGrain - 1) / kPatchGrain);
@@ -528,11 +516,11 @@ int PatchSearch::update(const PatchWorld& world, const LookAhead& ahead, const W
       pair.margin = search.look(pair, found);
       pair.lead = search.lead();
       changed.met += !found.empty();
-      if (static_cast<int>(found.size()) == pair.count) {
+      if (count_of(found) == pair.count) {
         std::copy(found.begin(), found.end(), state.patches.begin() + pair.begin);
         continue;
       }
-      changed.pair.emplace_back(i, static_cast<int>(found.size()));
+      changed.pair.emplace_back(i, count_of(found));
       changed.patch.insert(changed.patch.end(), found.begin(), found.end());
     }
     changed.unseen = search.unseen();
@@ -553,7 +541,7 @@ void PatchSearch::put_together(State& state) {
   size_t count = state.patches.size();
   for (const Changed& c : changed_) {
     count += c.patch.size();
-    for (const auto& [pair, now] : c.pair) count -= static_cast<size_t>(state.pairs[pair].count);
+    for (const auto& [pair, now] : c.pair) count -= state.pairs[pair].count;
   }
   std::vector<Patch> all;
   all.reserve(count);
@@ -562,7 +550,7 @@ void PatchSearch::put_together(State& state) {
     auto from = changed_[c].patch.begin();
     for (size_t i = c * kPatchGrain; i < std::min(state.pairs.size(), (c + 1) * kPatchGrain); ++i) {
       ContactPair& pair = state.pairs[i];
-      const auto begin = static_cast<int>(all.size());
+      const auto begin = count_of(all);
       if (changed != changed_[c].pair.end() && changed->first == i) {
         all.insert(all.end(), from, from + changed->second);
         from += changed->second, pair.count = changed->second, ++changed;

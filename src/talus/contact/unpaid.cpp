@@ -27,7 +27,7 @@ class HeldByJoints {
   bool stores(const Patch& p) const {
     const auto keeps = [this](int joint) {
       if (joint < 0) return false;
-      const JointLaw& law = w_.laws[static_cast<size_t>(joint)];
+      const JointLaw& law = w_.laws[joint];
       return law.is_soft(0) && !law.dilates();
     };
     return keeps(p.joint) && (p.other_share == 0 || keeps(p.other_joint));

@@ -37,14 +37,14 @@ class CornerRows {
         gaps_(gaps) {}
 
   void add(const ContactPair& pair) const {
-    for (int k = 0; k < pair.count; ++k) write(static_cast<size_t>(pair.begin + k));
+    for (int k = 0; k < pair.count; ++k) write(pair.begin + k);
   }
 
  private:
   void write(size_t i) const {
     const Contact& c = state_.contacts[i];
-    const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
-    const JointLaw& law = c.joint < 0 ? none_ : laws_[static_cast<size_t>(c.joint)];
+    const int a = c.key.block_a, b = c.key.block_b;
+    const JointLaw& law = c.joint < 0 ? none_ : laws_[c.joint];
     const CornerEdge over = corner_over_edge(blocks_, state_, c.key.corner(), c.key.on());
     const Vec2 b0 = blocks_.corner({c.key.block_b, c.key.edge}), edge = blocks_.side(c.key.on());
     const double slop = model_.contact.slop * blocks_.smaller_size(c.key.block_a, c.key.block_b);

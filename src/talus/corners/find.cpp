@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/geometry/polygon.h"
 
 namespace talus {
@@ -78,9 +79,8 @@ bool leaves_against(std::span<const Vec2> polygon, Vec2 from, Vec2 to, Vec2 dire
 // Whether a place, seen from where the centroid of a block is now, lies in the block: in the reference frame,
 // in which its corners are known.
 bool lies_in(const BlockSet& blocks, const State& s, int block, Vec2 at) {
-  const auto k = static_cast<size_t>(block);
-  const Mat2& h = s.strain_part[k];
-  const double reach = blocks.radius[k] * (1 + std::sqrt(contract(h, h)));
+  const Mat2& h = s.strain_part[block];
+  const double reach = blocks.radius[block] * (1 + std::sqrt(contract(h, h)));
   if (dot(at, at) > reach * reach) return false;
   const Vec2 X = inverse(kIdentity + h) * at;
   bool inside = false;
@@ -98,17 +98,16 @@ bool lies_in(const BlockSet& blocks, const State& s, int block, Vec2 at) {
 
 void ContactSearch::Outline::take(const BlockSet& blocks, const State& state, int i) {
   block = i, count = blocks.vertex_count(i);
-  const auto n = static_cast<size_t>(count), k = static_cast<size_t>(i);
-  corner.resize(n), edge.resize(n), length.resize(n), flat.resize(n), convex.resize(n);
-  for (size_t v = 0; v < n; ++v) {
-    const Vec2 X = blocks.corner({i, static_cast<int>(v)});
-    const Vec2 E = blocks.corner({i, after(static_cast<int>(v))}) - X;
-    corner[v] = offset_now(state, k, X);
-    edge[v] = E + state.strain_part[k] * E;
+  corner.resize(count), edge.resize(count), length.resize(count), flat.resize(count), convex.resize(count);
+  for (int v = 0; v < count; ++v) {
+    const Vec2 X = blocks.corner({i, v});
+    const Vec2 E = blocks.corner({i, after(v)}) - X;
+    corner[v] = offset_now(state, i, X);
+    edge[v] = E + state.strain_part[i] * E;
     length[v] = norm(edge[v]);
   }
-  for (size_t v = 0; v < n; ++v) {
-    const auto b = static_cast<size_t>(before(static_cast<int>(v)));
+  for (int v = 0; v < count; ++v) {
+    const int b = before(v);
     const double turn = cross(edge[b], edge[v]);
     flat[v] = dot(edge[b], edge[v]) > 0 && std::abs(turn) <= kFlat * length[b] * length[v];
     convex[v] = turn > 0 || flat[v];
@@ -117,7 +116,7 @@ void ContactSearch::Outline::take(const BlockSet& blocks, const State& state, in
 
 // The first edge of the straight side that an edge belongs to.
 int ContactSearch::Outline::side_of(int e) const {
-  for (int steps = 0; steps < count && flat[static_cast<size_t>(e)]; ++steps) e = before(e);
+  for (int steps = 0; steps < count && flat[e]; ++steps) e = before(e);
   return e;
 }
 
@@ -126,8 +125,7 @@ int ContactSearch::Outline::side_of(int e) const {
 double ContactSearch::Outline::leans(int v, int side, double depth) const {
   const bool after_it = side_of(v) == side, before_it = side_of(before(v)) == side;
   if (after_it == before_it) return 0;  // a flat corner, or none of this side
-  const auto own = static_cast<size_t>(after_it ? v : before(v)),
-             other = static_cast<size_t>(after_it ? before(v) : v);
+  const int own = after_it ? v : before(v), other = after_it ? before(v) : v;
   const Vec2 outwards = (after_it ? -edge[own] : edge[own]) / length[own];
   const Vec2 away = (after_it ? -edge[other] : edge[other]) / length[other],
              down = turn_left(edge[own]) / length[own];
@@ -137,7 +135,7 @@ double ContactSearch::Outline::leans(int v, int side, double depth) const {
 
 // The last edge of the straight side that an edge belongs to.
 int ContactSearch::Outline::last_of(int e) const {
-  for (int steps = 0; steps < count && flat[static_cast<size_t>(after(e))]; ++steps) e = after(e);
+  for (int steps = 0; steps < count && flat[after(e)]; ++steps) e = after(e);
   return e;
 }
 
@@ -145,7 +143,7 @@ int ContactSearch::Outline::last_of(int e) const {
 bool ContactSearch::Outline::holds(Vec2 place, double tolerance) const {
   bool inside = false;
   for (int k = 0; k < count; ++k) {
-    const auto v = static_cast<size_t>(k), w = static_cast<size_t>(after(k));
+    const int v = k, w = after(k);
     const Vec2 p = corner[v], q = corner[w];
     if (tolerance > 0 && distance_to_segment(place, p, q) <= tolerance) return true;
     if ((p.y > place.y) != (q.y > place.y) && place.x < p.x + (place.y - p.y) / (q.y - p.y) * (q.x - p.x))
@@ -159,8 +157,8 @@ bool ContactSearch::Outline::holds(Vec2 place, double tolerance) const {
 int ContactSearch::Outline::edge_beside(int first, Vec2 place) const {
   int e = first;
   for (int steps = 0; steps < count; ++steps) {
-    const auto end = static_cast<size_t>(after(e));
-    if (!flat[end] || dot(place - corner[end], edge[static_cast<size_t>(e)]) <= 0) break;
+    const int end = after(e);
+    if (!flat[end] || dot(place - corner[end], edge[e]) <= 0) break;
     e = static_cast<int>(end);
   }
   return e;
@@ -169,15 +167,14 @@ int ContactSearch::Outline::edge_beside(int first, Vec2 place) const {
 // Whether corner `k` can rest on a plane with outward normal n: both its edges leave upwards, by more than
 // -`dip` (sine) (theory 13.6).
 bool ContactSearch::Outline::may_enter(int k, Vec2 n, double dip) const {
-  const auto v = static_cast<size_t>(k), b = static_cast<size_t>(before(k));
+  const int v = k, b = before(k);
   return convex[v] && !flat[v] && dot(edge[v], n) >= -dip * length[v] && -dot(edge[b], n) >= -dip * length[b];
 }
 
 // Whether edge f and edge e of another outline run against each other, within an angle (sine).
 bool ContactSearch::Outline::runs_against(int f, const Outline& other, int e, double sine) const {
-  const auto kf = static_cast<size_t>(f), ke = static_cast<size_t>(e);
-  return dot(edge[kf], other.edge[ke]) < 0 &&
-         std::abs(cross(edge[kf], other.edge[ke])) <= sine * length[kf] * other.length[ke];
+  return dot(edge[f], other.edge[e]) < 0 &&
+         std::abs(cross(edge[f], other.edge[e])) <= sine * length[f] * other.length[e];
 }
 
 // Whether only convex corners lie between two edges, the shorter way round.
@@ -185,7 +182,7 @@ bool ContactSearch::Outline::on_convex_chain(int edge_1, int edge_2) const {
   const int forward = (edge_2 - edge_1 + count) % count;
   const int from = 2 * forward <= count ? edge_1 : edge_2, to = 2 * forward <= count ? edge_2 : edge_1;
   for (int k = from; k != to; k = after(k))
-    if (!convex[static_cast<size_t>(after(k))]) return false;
+    if (!convex[after(k)]) return false;
   return true;
 }
 
@@ -211,19 +208,17 @@ bool ContactSearch::is_elsewhere(const Outline& a, int v, Vec2 place, const Outl
   const auto came_by = [&](const Contact& c) {
     if (c.key == hit.point.key) return true;
     if (c.key.block_a == a.block || !(c.force[0] > 0) || depth > most_reach_) return false;
-    return norm(b.corner[static_cast<size_t>(c.key.vertex)] - place) <= kBothIn * depth;
+    return norm(b.corner[c.key.vertex] - place) <= kBothIn * depth;
   };
   const bool deep = depth > kDeep * same_ && std::none_of(range_.known.begin(), range_.known.end(), came_by);
   for (int f = 0; f < b.count; ++f) {
-    const auto k = static_cast<size_t>(f);
-    if (!a.may_enter(v, turn_right(b.edge[k]) / b.length[k], deep ? kDeepDip : kEntrance)) continue;
+    if (!a.may_enter(v, turn_right(b.edge[f]) / b.length[f], deep ? kDeepDip : kEntrance)) continue;
     // sides that the corner lies over are weighed against each other, where they are no covered ones
-    if (std::any_of(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end(),
-                    [f](const Hit& h) { return h.point.key.edge == f; }))
+    if (std::any_of(hits_.begin() + first, hits_.end(), [f](const Hit& h) { return h.point.key.edge == f; }))
       continue;
-    const Vec2 r = place - b.corner[k];
-    const double along = std::clamp(dot(r, b.edge[k]) / (b.length[k] * b.length[k]), 0.0, 1.0);
-    const double left = depth - same_ - norm(r - along * b.edge[k]);
+    const Vec2 r = place - b.corner[f];
+    const double along = std::clamp(dot(r, b.edge[f]) / (b.length[f] * b.length[f]), 0.0, 1.0);
+    const double left = depth - same_ - norm(r - along * b.edge[f]);
     found_.clearance = std::min(found_.clearance, std::abs(left));
     nearer = nearer || left > 0;
   }
@@ -262,19 +257,16 @@ bool ContactSearch::was_in_touch(const Outline& a, int v, const Outline& b, int 
 ContactSearch::Stretch ContactSearch::stretch_of(const Outline& a, int v, const Outline& b, int e,
                                                  Vec2 shift) const {
   Stretch out;
-  const auto ke = static_cast<size_t>(e);
-  const Vec2 along = b.edge[ke] / b.length[ke];
+  const Vec2 along = b.edge[e] / b.length[e];
   for (const int f : {v, a.before(v)}) {
     if (!a.runs_against(f, b, e, kParallel)) continue;
     const int first_a = a.side_of(f), first_b = b.side_of(e);
-    const Vec2 a0 = shift + a.corner[static_cast<size_t>(first_a)],
-               a1 = shift + a.corner[static_cast<size_t>(a.after(a.last_of(f)))];
-    const Vec2 b0 = b.corner[static_cast<size_t>(first_b)],
-               b1 = b.corner[static_cast<size_t>(b.after(b.last_of(e)))];
+    const Vec2 a0 = shift + a.corner[first_a], a1 = shift + a.corner[a.after(a.last_of(f))];
+    const Vec2 b0 = b.corner[first_b], b1 = b.corner[b.after(b.last_of(e))];
     const double from = std::max(dot(along, b0), dot(along, a1)),
                  to = std::min(dot(along, b1), dot(along, a0));
     if (out.edge_a >= 0 && to - from <= out.length) continue;
-    out = {std::max(to - from, 0.0), 0.5 * (from + to) - dot(along, b.corner[ke]), f};
+    out = {std::max(to - from, 0.0), 0.5 * (from + to) - dot(along, b.corner[e]), f};
   }
   return out;
 }
@@ -285,14 +277,12 @@ ContactSearch::Stretch ContactSearch::stretch_of(const Outline& a, int v, const 
 bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int block, int other, Vec2 place,
                                   Vec2 back, Vec2 direction) {
   if (range_.neighbours == nullptr) return false;
-  const auto ib = static_cast<size_t>(block);
   for (const int third : range_.neighbours->of(block)) {
     if (third == other || blocks.removed(third)) continue;
-    const auto ic = static_cast<size_t>(third);
-    const Vec2 at = place - (blocks.centroid[ic] - blocks.centroid[ib]) - s.displacement[ic];
+    const Vec2 at = place - (blocks.centroid[third] - blocks.centroid[block]) - s.displacement[third];
     if (!lies_in(blocks, s, third, at)) continue;
     if (norm(direction) > 0) {
-      const Mat2& h = s.strain_part[ic];
+      const Mat2& h = s.strain_part[third];
       outline_.clear();
       for (int k = 0; k < blocks.vertex_count(third); ++k) {
         const Vec2 X = blocks.corner({third, k});
@@ -301,7 +291,7 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
       if (!leaves_against(outline_, at, at + back, direction)) continue;
       found_.this_step_only = true;  // it may turn its sides while the place stays in it
     }
-    const Vec2 arm = inverse(kIdentity + s.strain_part[ib]) * (place - s.displacement[ib]);
+    const Vec2 arm = inverse(kIdentity + s.strain_part[block]) * (place - s.displacement[block]);
     const Cover cover{third, block > other, arm};
     if (std::find(found_.cover.begin(), found_.cover.end(), cover) == found_.cover.end())
       found_.cover.push_back(cover);
@@ -312,7 +302,7 @@ bool ContactSearch::lies_in_third(const BlockSet& blocks, const State& s, int bl
 
 bool covers(const BlockSet& blocks, const State& s, int a, int b, const Cover& cover) {
   if (blocks.removed(cover.block)) return false;
-  const auto of = static_cast<size_t>(cover.of_b ? b : a), ic = static_cast<size_t>(cover.block);
+  const int of = cover.of_b ? b : a, ic = cover.block;
   const Vec2 at = (blocks.centroid[of] - blocks.centroid[ic]) + cover.at +
                   (s.displacement[of] - s.displacement[ic] + s.strain_part[of] * cover.at);
   return lies_in(blocks, s, cover.block, at);
@@ -333,16 +323,16 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   // a corner far from the ends of the side, or one that all but lies along it and that the side beside it
   // could not hold, came in through this one, whoever stands there; in a fan of blocks it did not
   if (stretch.edge_a < 0) {
-    const auto v = static_cast<size_t>(key.vertex);
+    const int v = key.vertex;
     const int first = b.side_of(key.edge), last = b.after(b.last_of(key.edge));
     const Vec2 place = shift + a.corner[v];
-    const Vec2 side = b.corner[static_cast<size_t>(last)] - b.corner[static_cast<size_t>(first)];
-    const double from = dot(side, place - b.corner[static_cast<size_t>(first)]) / norm(side);
+    const Vec2 side = b.corner[last] - b.corner[first];
+    const double from = dot(side, place - b.corner[first]) / norm(side);
     const double to = norm(side) - from;
     if (std::min(from, to) > std::max(reach, most_reach_)) return false;
-    const auto beside = static_cast<size_t>(from < to ? b.before(first) : last);
+    const int beside = from < to ? b.before(first) : last;
     // a side of the corner that runs back along the edge, not on beyond its end
-    const auto e = static_cast<size_t>(key.edge), kb = static_cast<size_t>(a.before(key.vertex));
+    const int e = key.edge, kb = a.before(key.vertex);
     const auto runs_back = [&](Vec2 leaving, double sine) {
       return (from < to) == (dot(leaving, b.edge[e]) > 0) &&
              std::abs(cross(leaving, b.edge[e])) <= sine * norm(leaving) * b.length[e];
@@ -358,10 +348,10 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   }
   // before the overlap comes to be, the height over which the two lie beside each other tells what it will be
   reach = std::clamp(stretch.length, reach, std::max(reach, most_reach_));
-  const auto ke = static_cast<size_t>(key.edge);
+  const int ke = key.edge;
   const double length = b.length[ke];
   const Vec2 along = b.edge[ke] / length, n = h.point.normal;
-  const double foot = dot(along, shift + a.corner[static_cast<size_t>(key.vertex)] - b.corner[ke]);
+  const double foot = dot(along, shift + a.corner[key.vertex] - b.corner[ke]);
   // a corner at the surface does not reach down into a joint that stands open by a hair
   const double deep = stretch.length > 0 ? stretch.length : std::min(foot, length - foot);
   if (const double hair = kHairGap / kSamePlace * same_; deep <= hair) reach = std::max(reach, hair);
@@ -381,7 +371,7 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
   if (h.point.gap < -same_) found_.this_step_only = true;
   // corner on corner, the two share nothing yet: a block in the notch between them holds both
   if (stretch.edge_a < 0) return false;
-  const auto kf = static_cast<size_t>(stretch.edge_a);
+  const int kf = stretch.edge_a;
   const Vec2 a0 = a.corner[kf], ea = a.edge[kf] / a.length[kf];
   const double at = dot(ea, b.corner[ke] + middle * along - shift - a0);
   return filled(a.block, b.block, a0, ea, a.length[kf], at, turn_right(ea));
@@ -391,27 +381,25 @@ bool ContactSearch::is_covered(const BlockSet& blocks, const State& s, const Out
 // (theory 13.6).
 void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, const Outline& a,
                                        const Outline& b, Vec2 shift) {
-  const auto ia = static_cast<size_t>(a.block), ib = static_cast<size_t>(b.block);
+  const int ia = a.block, ib = b.block;
   for (int v = 0; v < a.count; ++v) {
-    const auto kv = static_cast<size_t>(v);
-    const Vec2 place = shift + a.corner[kv];
+    const Vec2 place = shift + a.corner[v];
     const size_t first = hits_.size();
     for (int e = 0; e < b.count; ++e) {
-      const auto ke = static_cast<size_t>(e);
       // far from the line of the edge, as most are
-      const Vec2 from_end = place - b.corner[ke];
-      const double off = -cross(b.edge[ke], from_end);
-      if (off > (range_.margin + same_) * b.length[ke] || off < -(range_.depth + same_) * b.length[ke])
+      const Vec2 from_end = place - b.corner[e];
+      const double off = -cross(b.edge[e], from_end);
+      if (off > (range_.margin + same_) * b.length[e] || off < -(range_.depth + same_) * b.length[e])
         continue;
       // far beyond its ends: what comes within the look-ahead is nearer than the margin
-      const double run = dot(b.edge[ke], from_end), beside = 2 * (range_.margin + same_) * b.length[ke];
-      if (run < -beside || run > b.length[ke] * b.length[ke] + beside) continue;
+      const double run = dot(b.edge[e], from_end), beside = 2 * (range_.margin + same_) * b.length[e];
+      if (run < -beside || run > b.length[e] * b.length[e] + beside) continue;
       const CornerEdge c = corner_over_edge(blocks, s, {a.block, v}, {b.block, e});
       if (c.gap > range_.margin || c.gap < -range_.depth) continue;
       // beyond a convex end lies free space; beyond an end in a notch lies the block itself, and a corner
       // that has gone slightly into both sides of the notch is still held by both
-      const double before = b.convex[ke] ? same_ : range_.margin;
-      const double beyond = b.convex[static_cast<size_t>(b.after(e))] ? same_ : range_.margin;
+      const double before = b.convex[e] ? same_ : range_.margin;
+      const double beyond = b.convex[b.after(e)] ? same_ : range_.margin;
       const Vec2 b0 = blocks.corner({b.block, e}), b1 = blocks.corner({b.block, b.after(e)});
       const double along = std::clamp(c.along, 0.0, 1.0);
       const Vec2 foot = b0 + along * (b1 - b0);
@@ -443,9 +431,9 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
       hit.point.gap = c.gap;
       hit.point.slip = -c.along * norm(b1 - b0);  // in the material of b: stretching is no slip
       hit.expected = expected;
-      const auto kb = static_cast<size_t>(a.before(v));
+      const int kb = a.before(v);
       hit.lone = !a.runs_against(v, b, e, kParallel) && !a.runs_against(a.before(v), b, e, kParallel);
-      hit.blunt = dot(a.edge[kb], a.edge[kv]) / (a.length[kb] * a.length[kv]);
+      hit.blunt = dot(a.edge[kb], a.edge[v]) / (a.length[kb] * a.length[v]);
       hit.as_before =
           c.gap + range_.look_ahead * dot(c.normal, moves(range_.before ? *range_.before : s.rate));
       hit.coming = !above;
@@ -481,7 +469,7 @@ void ContactSearch::corners_over_edges(const BlockSet& blocks, const State& s, c
           continue;
         }
         if (is_better(hits_[j], hits_[i])) std::swap(hits_[i], hits_[j]);
-        hits_.erase(hits_.begin() + static_cast<std::ptrdiff_t>(j));
+        hits_.erase(hits_.begin() + j);
       }
     }
   }
@@ -494,8 +482,8 @@ void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 
     const ContactKey &p = x.point.key, &q = y.point.key;
     if (!x.lone || !y.lone || p.block_a == q.block_a || x.point.gap >= 0 || y.point.gap >= 0) return false;
     const bool first = p.block_a == a.block;
-    const Vec2 place_x = (first ? shift : Vec2{}) + (first ? a : b).corner[static_cast<size_t>(p.vertex)];
-    const Vec2 place_y = (first ? Vec2{} : shift) + (first ? b : a).corner[static_cast<size_t>(q.vertex)];
+    const Vec2 place_x = (first ? shift : Vec2{}) + (first ? a : b).corner[p.vertex];
+    const Vec2 place_y = (first ? Vec2{} : shift) + (first ? b : a).corner[q.vertex];
     return norm(place_x - place_y) <= -kBothIn * std::min(x.point.gap, y.point.gap);
   };
   // the corners at one end of two antiparallel sides, each over the side of the other: where these stand apart like a wedge the
@@ -512,10 +500,9 @@ void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 
     // of a short overlap they are the two ends
     if (!(x_begins && y_ends) && !(x_ends && y_begins)) return false;
     if (!on_x.runs_against(q.edge, on_y, p.edge, dip_)) return false;
-    const auto kx = static_cast<size_t>(q.edge), ky = static_cast<size_t>(p.edge);
+    const int kx = q.edge, ky = p.edge;
     const double angle = std::abs(cross(on_x.edge[kx], on_y.edge[ky])) / (on_x.length[kx] * on_y.length[ky]);
-    const Vec2 apart = (first ? shift : -shift) + on_x.corner[static_cast<size_t>(p.vertex)] -
-                       on_y.corner[static_cast<size_t>(q.vertex)];
+    const Vec2 apart = (first ? shift : -shift) + on_x.corner[p.vertex] - on_y.corner[q.vertex];
     const double wedge = angle * std::max(std::abs(x.point.gap), std::abs(y.point.gap));
     return std::abs(dot(apart, on_y.edge[ky])) <= (2 * same_ + wedge) * on_y.length[ky];
   };
@@ -526,7 +513,7 @@ void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 
     const Outline& owner = p.block_b == a.block ? a : b;
     // a corner in a notch rests on both sides of it
     return (p.block_a == q.block_a && p.vertex == q.vertex && x.at_corner == y.at_corner &&
-            owner.convex[static_cast<size_t>(x.at_corner)]) ||
+            owner.convex[x.at_corner]) ||
            (p.block_a == q.block_b && p.vertex == y.at_corner && q.vertex == x.at_corner);
   };
   for (size_t i = 0; i < hits_.size(); ++i) {
@@ -536,7 +523,7 @@ void ContactSearch::merge_corner_pairs(const Outline& a, const Outline& b, Vec2 
         continue;
       }
       if (is_better(hits_[j], hits_[i])) hits_[i] = hits_[j];
-      hits_.erase(hits_.begin() + static_cast<std::ptrdiff_t>(j));
+      hits_.erase(hits_.begin() + j);
     }
   }
 }
@@ -548,7 +535,7 @@ void ContactSearch::spans_of(const Outline& a, const Outline& b, const Hit& h,
   const ContactKey& k = h.point.key;
   const Outline &on_a = k.block_a == a.block ? a : b, &on_b = k.block_a == a.block ? b : a;
   int eb[2] = {k.edge, -1};
-  if (h.at_corner >= 0 && on_b.convex[static_cast<size_t>(h.at_corner)])
+  if (h.at_corner >= 0 && on_b.convex[h.at_corner])
     eb[1] = h.at_corner == k.edge ? on_b.before(k.edge) : on_b.after(k.edge);
   for (const int e : eb) {
     if (e < 0) continue;
@@ -571,10 +558,10 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
   // place of a hit's corner, seen from the lower block
   const auto place = [&](const Hit& h) {
     const ContactKey& k = h.point.key;
-    const auto v = static_cast<size_t>(k.vertex);
+    const int v = k.vertex;
     return k.block_a == lo.block ? lo.corner[v] : hi.corner[v] + lo_to_hi;
   };
-  for (size_t i = 0; i < hits_.size(); ++i) {
+  for (int i = 0; i < count_of(hits_); ++i) {
     for (size_t j = i + 1; j < hits_.size(); ++j) {
       // the overlap is that of now: a corner beside it must not take the place of the end that it follows
       if (hits_[i].coming || hits_[j].coming) continue;
@@ -582,7 +569,7 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         if (std::find(spans_[j].begin(), spans_[j].end(), span) == spans_[j].end()) continue;
         ContactPoint &x = hits_[i].point, &y = hits_[j].point;
         const Vec2 px = place(hits_[i]), py = place(hits_[j]), middle = 0.5 * (px + py);
-        const auto side = static_cast<size_t>(span.side_lo);
+        const int side = span.side_lo;
         double length = std::abs(dot(px - py, lo.edge[side])) / lo.length[side];
         // two corners that have gone into each other: what they share ends where their other edges cross it
         if (const double deep = -0.5 * (x.gap + y.gap); length < kLongerThanDeep * deep) {
@@ -597,7 +584,7 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
         // one partner each; what is left of a face whose other end has one goes to the free end
         const bool both = x.partner < 0 && y.partner < 0;
         if (both) {
-          x.partner = static_cast<int>(j), y.partner = static_cast<int>(i);
+          x.partner = static_cast<int>(j), y.partner = i;
           x.length = y.length = 0.5 * length;
           const bool first = dot(lo.edge[side], py - px) > 0;
           x.face = {span.side_lo, span.side_hi, first ? 0 : 1};
@@ -621,12 +608,11 @@ void ContactSearch::share_faces(const Outline& a, const Outline& b, Vec2 shift) 
 const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, int a, int b,
                                   const SearchRange& range) {
   TALUS_ASSERT(a != b && range.margin >= 0);
-  const auto ia = static_cast<size_t>(a), ib = static_cast<size_t>(b);
   range_ = range;
-  same_ = kSamePlace * std::min(blocks.size[ia], blocks.size[ib]);
+  same_ = kSamePlace * std::min(blocks.size[a], blocks.size[b]);
   most_reach_ = kMostReach / kSamePlace * same_;
   // what turns within the look-ahead may be in the way before it is seen to
-  const Mat2 turning = state.rate[ia].G - state.rate[ib].G;
+  const Mat2 turning = state.rate[a].G - state.rate[b].G;
   dip_ = kEntrance + range.look_ahead * std::sqrt(contract(turning, turning));
   found_.points.clear(), found_.cover.clear();
   found_.clearance = range.margin;
@@ -638,7 +624,7 @@ const Found& ContactSearch::touch(const BlockSet& blocks, const State& state, in
     return std::find(o.flat.begin(), o.flat.end(), 1) == o.flat.end();
   };
   found_.plain = none_flat(first_) && none_flat(second_);
-  const Vec2 shift = blocks.centroid[ia] - blocks.centroid[ib];
+  const Vec2 shift = blocks.centroid[a] - blocks.centroid[b];
   corners_over_edges(blocks, state, first_, second_, shift);
   corners_over_edges(blocks, state, second_, first_, -shift);
   merge_corner_pairs(first_, second_, shift);

@@ -33,7 +33,7 @@ struct CornerEdge {
 
 inline CornerEdge corner_over_edge(const BlockSet& blocks, const State& state, BlockCorner corner,
                                    BlockEdge on) {  // theory 13.6
-  const auto ia = static_cast<size_t>(corner.block), ib = static_cast<size_t>(on.block);
+  const int ia = corner.block, ib = on.block;
   const Vec2 Xa = blocks.corner(corner), Xb = blocks.corner({on.block, on.edge}),
              E = blocks.corner(blocks.end_of(on)) - Xb;
   // the difference of reference places first, then the difference of displacements: both small

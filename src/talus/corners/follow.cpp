@@ -7,6 +7,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/corners/hand_over.h"
 
 namespace talus {
@@ -61,9 +62,8 @@ void keep_pose(const BlockSet& blocks, const State& s, const ContactPair& p, Fol
 
 // Where the corner of a contact lies now, seen from the reference centroid of block a of its pair.
 Vec2 place_of(const BlockSet& blocks, const State& s, int from, const ContactKey& key) {
-  const auto k = static_cast<size_t>(key.block_a);
-  return (blocks.centroid[k] - blocks.centroid[static_cast<size_t>(from)]) +
-         offset_now(s, k, blocks.corner(key.corner()));
+  const int k = key.block_a;
+  return (blocks.centroid[k] - blocks.centroid[from]) + offset_now(s, k, blocks.corner(key.corner()));
 }
 
 // How far a known contact is now from where it sticks, along its tangent [m]; NaN where it slid.
@@ -90,9 +90,8 @@ class Memory {
         state_(s),
         pair_(pair),
         found_(found),
-        known_(s.contacts.data() + pair.begin, static_cast<size_t>(pair.count)),
-        same_(2 * kSamePlace *
-              std::min(blocks.size[static_cast<size_t>(pair.a)], blocks.size[static_cast<size_t>(pair.b)])) {}
+        known_(s.contacts.data() + pair.begin, pair.count),
+        same_(2 * kSamePlace * std::min(blocks.size[pair.a], blocks.size[pair.b])) {}
 
   Origin of(const ContactPoint& point) const {
     for (const Contact& c : known_)
@@ -172,7 +171,7 @@ class Updater {
       : blocks_(blocks), bonds_(bonds), joints_of_(joints_of), ahead_(ahead), state_(state) {}
 
   SearchReport run(const Workers& workers) {
-    turning_.resize(static_cast<size_t>(blocks_.count));
+    turning_.resize(blocks_.count);
     workers.for_chunks(turning_.size(), 4096, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) turning_[i] = turning_speed(blocks_, ahead_.before, i);
     });
@@ -194,7 +193,7 @@ class Updater {
  private:
   // How far ahead the points of a pair have to be sought in this step [m].
   double needed(const ContactPair& pair) const {
-    const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+    const int a = pair.a, b = pair.b;
     const std::vector<BlockRate>& rate = ahead_.before;
     return 2 * ahead_.clock.dt * (norm(rate[a].a - rate[b].a) + turning_[a] + turning_[b]);
   }
@@ -242,8 +241,7 @@ class Updater {
         throw NumericalError(
             fmt::format("blocks \"{}\" and \"{}\" touch at {} points at t = {:.9g} s; at most {} can "
                         "be followed: give them fewer corners",
-                        blocks_.name[static_cast<size_t>(pair.a)], blocks_.name[static_cast<size_t>(pair.b)],
-                        found.size(), s.time, kMostPoints));
+                        blocks_.name[pair.a], blocks_.name[pair.b], found.size(), s.time, kMostPoints));
       const size_t at = changed.contact.size();
       for (const ContactPoint& p : found)
         changed.contact.push_back(contact_of(blocks_, s, p, memory, sought.plain, joints_of_));
@@ -251,12 +249,11 @@ class Updater {
         pair.shares_face =
             std::any_of(found.begin(), found.end(), [](const ContactPoint& p) { return p.length > 0; });
       hand_over(blocks_, bonds_, s, pair, changed.contact.data() + at, found.size());
-      if (static_cast<int>(found.size()) == pair.count) {
-        std::copy(changed.contact.begin() + static_cast<std::ptrdiff_t>(at), changed.contact.end(),
-                  state_.contacts.begin() + pair.begin);
+      if (count_of(found) == pair.count) {
+        std::copy(changed.contact.begin() + at, changed.contact.end(), state_.contacts.begin() + pair.begin);
         changed.contact.resize(at);
       } else {
-        changed.pair.emplace_back(i, static_cast<int>(found.size()));
+        changed.pair.emplace_back(i, count_of(found));
       }
     }
   }
@@ -298,7 +295,7 @@ class Updater {
     for (auto chunk = runs.rbegin(); chunk != runs.rend(); ++chunk)
       for (auto r = chunk->rbegin(); r != chunk->rend(); ++r)
         if (r->to > r->from) move(*r);
-    state_.contacts.resize(static_cast<size_t>(count));
+    state_.contacts.resize(count);
     for (const Changed& c : changed_) {
       auto from = c.contact.begin();
       for (const auto& [pair, now] : c.pair) {
@@ -344,7 +341,7 @@ class Updater {
 // Theory 13.6.
 SearchReport update_contacts(const BlockSet& blocks, const BondSet& bonds, const Layout& joints_of,
                              const LookAhead& ahead, const Workers& workers, State& state) {
-  TALUS_ASSERT(joints_of.blocks.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(joints_of.blocks) == blocks.count);
   return Updater(blocks, bonds, joints_of, ahead, state).run(workers);
 }
 

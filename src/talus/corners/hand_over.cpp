@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -43,7 +44,7 @@ void hand_over(const BlockSet& blocks, const BondSet& bonds, const State& state,
     }
     if (pair.face < 0) continue;
     c.touched = true;
-    for (auto f = static_cast<size_t>(pair.face); f < bonds.faces.size(); ++f) {
+    for (int f = pair.face; f < count_of(bonds.faces); ++f) {
       const BondFace& face = bonds.faces[f];
       if (face.block_a != pair.a || face.block_b != pair.b) break;
       if (face.joint == c.joint && state.face[f].broken_step + 1 == state.step)

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/json_depth.h"
 #include "talus/base/json_number.h"
 #include "talus/base/text.h"
@@ -38,7 +40,7 @@ class Fingerprint {
   void put(uint64_t v) { text_ += fmt::format("{} ", v); }
   void put(bool v) { text_ += v ? "true " : "false "; }
   void put(Vec2 p) { put(p.x), put(p.y); }
-  void put(const Scattered& s) { put(static_cast<int>(s.kind)), put(s.mean), put(s.spread); }
+  void put(const Scattered& s) { put(place_of(s.kind)), put(s.mean), put(s.spread); }
   template <class T>
   void put(const std::vector<T>& list) {
     for (const T& item : list) put(item);
@@ -80,14 +82,14 @@ Renumbered renumbered(const Cut& cut) {
   for (const CutBlock& b : cut.blocks) {
     FileBlock block{b.id, b.region, b.opening, {}, {}};
     for (const int p : b.point) {
-      int& n = number[static_cast<size_t>(p)];
+      int& n = number[p];
       if (n < 0) {
-        n = static_cast<int>(out.points.size());
-        out.points.push_back(cut.point[static_cast<size_t>(p)]);
+        n = count_of(out.points);
+        out.points.push_back(cut.point[p]);
       }
       block.points.push_back(n);
     }
-    for (const int e : b.edge) block.origins.push_back(cut.edge_origin[static_cast<size_t>(e)]);
+    for (const int e : b.edge) block.origins.push_back(cut.edge_origin[e]);
     out.blocks.push_back(std::move(block));
   }
   return out;
@@ -113,9 +115,9 @@ FileBlock file_block(const Json& in) {
 
 // A block, its edges made known to the cut by their ends.
 CutBlock cut_block(const FileBlock& in, std::map<std::pair<int, int>, int>& edge_of, Cut& cut) {
-  const auto below = [](int i, size_t n) { return i >= 0 && static_cast<size_t>(i) < n; };
+  const auto below = [](int i, size_t n) { return i >= 0 && std::cmp_less(i, n); };
   bool sound = in.id >= 0 && below(in.region, cut.regions.size()) && in.opening >= -1 &&
-               in.opening < static_cast<int>(cut.openings.size()) && in.points.size() >= 3 &&
+               in.opening < count_of(cut.openings) && in.points.size() >= 3 &&
                in.origins.size() == in.points.size();
   for (const int p : in.points) sound = sound && below(p, cut.point.size());
   for (const int o : in.origins) sound = sound && below(o, cut.origins.size());
@@ -124,8 +126,7 @@ CutBlock cut_block(const FileBlock& in, std::map<std::pair<int, int>, int>& edge
     throw std::runtime_error(fmt::format("block {} is damaged", in.id));
   for (size_t k = 0; k < b.point.size(); ++k) {
     const auto ends = std::minmax(b.point[k], b.point[(k + 1) % b.point.size()]);
-    const auto [it, fresh] =
-        edge_of.try_emplace({ends.first, ends.second}, static_cast<int>(cut.edge.size()));
+    const auto [it, fresh] = edge_of.try_emplace({ends.first, ends.second}, count_of(cut.edge));
     if (fresh) {
       cut.edge.push_back({ends.first, ends.second});
       cut.edge_origin.push_back(in.origins[k]);
@@ -156,7 +157,7 @@ std::string cut_fingerprint(const Model& model) {
   Fingerprint f;
   const CutInput& c = model.cut;
   const auto is_glued = [&model](int joint) { return joint == model.bonded_joint; };  // needles of it merge
-  f.add(c.section_azimuth, c.grid, c.seed, static_cast<int>(c.slivers), c.sliver_area, c.sliver_width,
+  f.add(c.section_azimuth, c.grid, c.seed, place_of(c.slivers), c.sliver_area, c.sliver_width,
         c.sliver_area_share, c.sliver_width_share, c.merge_along);
   for (const RegionInput& r : model.regions)
     f.add(std::string("region"), r.name, r.polygon, r.sides, r.sliver_area, r.sliver_width);
@@ -182,7 +183,7 @@ std::string cut_fingerprint(const Model& model) {
     for (const SupportInput& s : model.supports)
       f.add(std::string("support"), s.along, s.block, s.is_edge, Polyline{s.from, s.to});
     for (const BoundaryInput& b : model.boundaries)
-      f.add(std::string("boundary"), b.along, static_cast<int>(b.kind), b.opposite.along);
+      f.add(std::string("boundary"), b.along, place_of(b.kind), b.opposite.along);
   }
   return f.hash();
 }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/cut/selection.h"
 
@@ -32,7 +33,7 @@ void check_contradictions(const Model& model, const Layout& layout, Findings& fi
         findings.error(
             other.where, "support." + other.name,
             fmt::format("moves a corner of \"{}\" otherwise than support \"{}\" does",
-                        layout.blocks[static_cast<size_t>(corner.first)].name, first.name),
+                        layout.blocks[corner.first].name, first.name),
             "make one of them \"free\" along that axis, shorten it, or let them act in different stages");
         return;
       }
@@ -79,7 +80,7 @@ void check_edges(const Layout& layout, const Selection& place, const Where& wher
   if (!names_exist(layout, place, where, path, key, findings)) return;
   const OuterEdges outer = outer_edges(layout, place);
   if (outer.partly.block >= 0) {
-    const auto name = [&layout](int b) { return layout.blocks[static_cast<size_t>(b)].name; };
+    const auto name = [&layout](int b) { return layout.blocks[b].name; };
     findings.error(
         where, path,
         fmt::format("an edge of \"{}\" from ({:g}, {:g}) to ({:g}, {:g}) is covered in part by \"{}\"",
@@ -112,7 +113,7 @@ void check_load(const Layout& layout, const LoadInput& l, Findings& findings) {
   const std::vector<int> loaded = layout.blocks_called(l.block);
   if (loaded.empty()) unknown_block(layout, l.block, l.where, path + ".block", findings);
   const auto held = [&](int i) {
-    const BlockKind kind = layout.blocks[static_cast<size_t>(i)].kind;
+    const BlockKind kind = layout.blocks[i].kind;
     return kind == BlockKind::kFixed || kind == BlockKind::kDriven;
   };
   if (!loaded.empty() && std::all_of(loaded.begin(), loaded.end(), held))
@@ -123,7 +124,7 @@ void check_load(const Layout& layout, const LoadInput& l, Findings& findings) {
 // Every block is excavated once, and what changes is there and not excavated.
 void check_stages(const Model& model, const Layout& layout, Findings& findings) {
   std::map<int, const StageInput*> gone;
-  for (size_t k = 0; k < model.stages.size(); ++k) {
+  for (int k = 0; k < count_of(model.stages); ++k) {
     const StageInput& stage = model.stages[k];
     for (const std::string& name : stage.excavate) {
       const std::vector<int> called = layout.blocks_called(name);
@@ -134,18 +135,18 @@ void check_stages(const Model& model, const Layout& layout, Findings& findings) 
         if (fresh) continue;
         findings.error(stage.where_excavate, path,
                        fmt::format("takes out \"{}\" of \"{}\", which stage \"{}\" has taken out already",
-                                   layout.blocks[static_cast<size_t>(i)].name, name, it->second->name),
+                                   layout.blocks[i].name, name, it->second->name),
                        "name every group and block once");
         break;
       }
     }
     for (const ChangeInput& c : model.changes) {
-      if (c.stage != static_cast<int>(k) || c.block.empty()) continue;
+      if (c.stage != k || c.block.empty()) continue;
       const std::vector<int> called = layout.blocks_called(c.block);
       if (called.empty()) unknown_block(layout, c.block, c.where, "change.block", findings);
       for (const int i : called) {
-        const BlockKind kind = layout.blocks[static_cast<size_t>(i)].kind;
-        const std::string block = layout.blocks[static_cast<size_t>(i)].name;
+        const BlockKind kind = layout.blocks[i].kind;
+        const std::string block = layout.blocks[i].name;
         if (gone.count(i))
           findings.error(c.where, "change.block", fmt::format("\"{}\" is excavated by then", block),
                          "leave it out of the change");
@@ -154,11 +155,10 @@ void check_stages(const Model& model, const Layout& layout, Findings& findings) 
                          fmt::format("\"{}\" is fixed or driven from the start", block),
                          "start with a deformable or rigid block and fix it in the first stage");
         else if (c.material >= 0 && kind == BlockKind::kDeformable &&
-                 std::isnan(model.materials[static_cast<size_t>(c.material)].young +
-                            model.materials[static_cast<size_t>(c.material)].poisson))
+                 std::isnan(model.materials[c.material].young + model.materials[c.material].poisson))
           findings.error(c.where, "change.material",
                          fmt::format("\"{}\" deforms, and material \"{}\" has no young or poisson", block,
-                                     model.materials[static_cast<size_t>(c.material)].name),
+                                     model.materials[c.material].name),
                          "give both in its section");
         else
           continue;

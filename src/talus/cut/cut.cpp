@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/cut/slivers.h"
 #include "talus/geometry/arrangement.h"
 
@@ -75,7 +76,7 @@ class Cutter {
                               [&](Vec2 p) { return regions_.region_at(p, kNear * out.grid) >= 0; });
     out.bridges = net.opened;
     if (net.cuts.empty()) return net;
-    const int construction = static_cast<int>(traces_.origins.size());
+    const int construction = count_of(traces_.origins);
     traces_.origins.push_back({"(construction)", OriginKind::kConstruction, model_.bonded_joint});
     for (const Polyline& line : net.cuts) traces_.traces.push_back({line, construction});
     return net;
@@ -89,8 +90,7 @@ class Cutter {
     out.point = net.point;
     out.edge = net.edge;
     out.edge_line = net.edge_source;
-    for (const int line : net.edge_source)
-      out.edge_origin.push_back(traces_.traces[static_cast<size_t>(line)].origin);
+    for (const int line : net.edge_source) out.edge_origin.push_back(traces_.traces[line].origin);
     out.dead_ends = net.dead_ends;
     for (const Polyline& l : out.dead_ends)
       for (size_t k = 0; k + 1 < l.size(); ++k) out.dead_end_length += norm(l[k + 1] - l[k]);
@@ -103,13 +103,13 @@ class Cutter {
       const Vec2 inside = interior_point(out.polygon(b));
       b.region = regions_.region_at(inside, kNear * out.grid);
       if (b.region < 0) continue;  // between regions
-      for (size_t o = 0; o < opening_boxes.size(); ++o) {
+      for (int o = 0; o < count_of(opening_boxes); ++o) {
         const Box& box = opening_boxes[o];
         if (inside.x >= box.min.x && inside.x <= box.max.x && inside.y >= box.min.y &&
             inside.y <= box.max.y && contains(model_.openings[o].polygon, inside))
-          b.opening = static_cast<int>(o);
+          b.opening = o;
       }
-      b.id = static_cast<int>(out.whole.size());
+      b.id = count_of(out.whole);
       out.whole.push_back(std::move(b));
     }
   }
@@ -119,14 +119,13 @@ class Cutter {
   void name_outline(Cut& out) const {
     std::vector<int> blocks_at(out.edge.size(), 0);
     for (const CutBlock& b : out.whole)
-      for (const int e : b.edge) ++blocks_at[static_cast<size_t>(e)];
+      for (const int e : b.edge) ++blocks_at[e];
     for (size_t e = 0; e < out.edge.size(); ++e) {
       int& origin = out.edge_origin[e];
-      if (blocks_at[e] != 1 || out.origins[static_cast<size_t>(origin)].kind == OriginKind::kSide) continue;
-      const Vec2 p = out.point[static_cast<size_t>(out.edge[e][0])],
-                 q = out.point[static_cast<size_t>(out.edge[e][1])];
+      if (blocks_at[e] != 1 || out.origins[origin].kind == OriginKind::kSide) continue;
+      const Vec2 p = out.point[out.edge[e][0]], q = out.point[out.edge[e][1]];
       for (const Trace& t : traces_.traces) {
-        if (out.origins[static_cast<size_t>(t.origin)].kind != OriginKind::kSide) continue;
+        if (out.origins[t.origin].kind != OriginKind::kSide) continue;
         if (distance_to_segment(p, t.line[0], t.line[1]) > kNear * out.grid ||
             distance_to_segment(q, t.line[0], t.line[1]) > kNear * out.grid)
           continue;
@@ -141,8 +140,8 @@ class Cutter {
     std::vector<bool> used(model_.openings.size(), false);
     std::vector<bool> has_blocks(out.regions.size(), false);
     for (const CutBlock& b : out.whole) {
-      has_blocks[static_cast<size_t>(b.region)] = true;
-      if (b.opening >= 0) used[static_cast<size_t>(b.opening)] = true;
+      has_blocks[b.region] = true;
+      if (b.opening >= 0) used[b.opening] = true;
     }
     for (size_t r = 0; r < model_.regions.size(); ++r)
       if (!has_blocks[r])
@@ -168,7 +167,7 @@ Cut with_slivers(const Model& model, Cut cut) {
   cut.slivers = {};
   treat_slivers(model, cut);
   const auto is_out = [&model](const CutBlock& b) {
-    return b.opening >= 0 && !model.openings[static_cast<size_t>(b.opening)].kept;
+    return b.opening >= 0 && !model.openings[b.opening].kept;
   };
   const size_t before = cut.blocks.size();
   cut.blocks.erase(std::remove_if(cut.blocks.begin(), cut.blocks.end(), is_out), cut.blocks.end());

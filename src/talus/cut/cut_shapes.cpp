@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "talus/base/index.h"
 #include "talus/cut/layout.h"
 #include "talus/geometry/polygon_check.h"
 
@@ -15,8 +16,8 @@ constexpr double kShort = 8;
 // the edges on both sides have one origin.
 void add_cut_block(const Cut& cut, const CutBlock& block, const Model& model, BlockShape& out) {
   const size_t n = block.point.size();
-  const auto place = [&](size_t k) { return cut.point[static_cast<size_t>(block.point[k % n])]; };
-  const auto origin = [&](size_t k) { return cut.edge_origin[static_cast<size_t>(block.edge[k % n])]; };
+  const auto place = [&](size_t k) { return cut.point[block.point[k % n]]; };
+  const auto origin = [&](size_t k) { return cut.edge_origin[block.edge[k % n]]; };
   // between corners k0 and k1 (exclusive) all lie on the chord
   const auto straight = [&](size_t k0, size_t k1) {
     for (size_t k = k0 + 1; k < k1; ++k)
@@ -47,11 +48,11 @@ void add_cut_block(const Cut& cut, const CutBlock& block, const Model& model, Bl
     kept.clear();
     for (size_t k = 0; k < n; ++k) kept.push_back(k);
   }
-  const CutRegion& region = cut.regions[static_cast<size_t>(block.region)];
+  const CutRegion& region = cut.regions[block.region];
   for (const size_t k : kept) {
     out.polygon.push_back(place(k));
     out.edge_origin.push_back(origin(k));
-    const int own = cut.origins[static_cast<size_t>(origin(k))].joint;
+    const int own = cut.origins[origin(k)].joint;
     out.edge_joint.push_back(own >= 0 ? own : region.joint >= 0 ? region.joint : model.default_joint);
   }
   out.material = region.material;
@@ -66,7 +67,7 @@ std::vector<BlockShape> shapes_of(const Model& model, const Cut& cut, const std:
     BlockShape shape;
     shape.name = cut.name(b);
     shape.id = b.id;
-    shape.group = b.opening >= 0 ? static_cast<int>(cut.regions.size()) + b.opening : b.region;
+    shape.group = b.opening >= 0 ? count_of(cut.regions) + b.opening : b.region;
     add_cut_block(cut, b, model, shape);
     shapes.push_back(std::move(shape));
   }

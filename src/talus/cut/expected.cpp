@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/cut/joint_set.h"
 #include "talus/cut/regions.h"
@@ -45,7 +46,7 @@ class Estimate {
       add("masonry." + m.name, m.where, area(m.region) / (m.length * m.height));
     for (const TessellationInput& t : model_.tessellations)
       add("tessellation." + t.name, t.where, (t.triangles ? 2 : 1) * area(t.region) / (t.size * t.size));
-    for (size_t r = 0; r < regions_.list().size(); ++r) add_region(static_cast<int>(r));
+    for (int r = 0; r < count_of(regions_.list()); ++r) add_region(r);
     return std::move(parts_);
   }
 
@@ -56,9 +57,8 @@ class Estimate {
 
   double area(int region) const {
     double sum = 0;
-    for (size_t r = 0; r < regions_.list().size(); ++r)
-      if (region < 0 || region == static_cast<int>(r))
-        sum += std::abs(signed_area(regions_.list()[r].polygon));
+    for (int r = 0; r < count_of(regions_.list()); ++r)
+      if (region < 0 || region == r) sum += std::abs(signed_area(regions_.list()[r].polygon));
     return sum;
   }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/memory.h"
 #include "talus/base/text.h"
 #include "talus/cut/blocks_file.h"
@@ -47,7 +48,7 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
   const auto add = [&](std::string name, Polygon polygon) {
     BlockShape b;
     b.name = std::move(name);
-    b.id = static_cast<int>(layout.blocks.size());
+    b.id = count_of(layout.blocks);
     b.group = group;
     b.polygon = std::move(polygon);
     if (g.place.is_given())
@@ -75,11 +76,11 @@ void add_grid(const GridInput& g, int group, Layout& layout) {
 // Blocks of a mesh, with a group for it and one for each of its physical surfaces; edges are named after
 // their curve, or the mesh.
 void add_mesh(const Model& model, const MeshInput& m, Layout& layout) {
-  const int first_group = static_cast<int>(layout.groups.size());
-  const int first_origin = static_cast<int>(layout.origins.size());
+  const int first_group = count_of(layout.groups);
+  const int first_origin = count_of(layout.origins);
   layout.groups.push_back(m.name);
   for (const std::string& group : m.mesh.surface_groups) {
-    layout.mesh_of[static_cast<int>(layout.groups.size())] = first_group;
+    layout.mesh_of[count_of(layout.groups)] = first_group;
     layout.groups.push_back(m.name + "-" + group);
   }
   layout.group_where.resize(layout.groups.size(), m.where);
@@ -95,15 +96,15 @@ void add_mesh(const Model& model, const MeshInput& m, Layout& layout) {
     const MeshElement& e = m.mesh.elements[i];
     BlockShape b;
     b.name = fmt::format("{}[{}]", m.name, i);
-    b.id = static_cast<int>(layout.blocks.size());
+    b.id = count_of(layout.blocks);
     b.group = first_group + 1 + e.group;
     b.polygon = m.polygon(e);
-    b.material = e.group < 0 ? m.material : m.group_material[static_cast<size_t>(e.group)];
+    b.material = e.group < 0 ? m.material : m.group_material[e.group];
     b.kind = m.kind;
     for (int k = 0; k < e.corners; ++k) {
       const std::pair<int, int> ends = std::minmax(e.at(k), e.at(k + 1));
       const auto curve = curve_of.find(ends);
-      const int joint = curve == curve_of.end() ? -1 : m.curve_joint[static_cast<size_t>(curve->second)];
+      const int joint = curve == curve_of.end() ? -1 : m.curve_joint[curve->second];
       b.edge_origin.push_back(first_origin + (curve == curve_of.end() ? 0 : 1 + curve->second));
       // the outside meets other bodies, as that of a region does
       b.edge_joint.push_back(joint >= 0 ? joint : users.at(ends) > 1 ? between : model.default_joint);
@@ -113,9 +114,9 @@ void add_mesh(const Model& model, const MeshInput& m, Layout& layout) {
 }
 
 void add_cut(const Model& model, const Cut& cut, Layout& layout) {
-  layout.first_cut_group = static_cast<int>(layout.groups.size());
+  layout.first_cut_group = count_of(layout.groups);
   layout.touching = 2 * cut.grid;
-  const int first_origin = static_cast<int>(layout.origins.size());
+  const int first_origin = count_of(layout.origins);
   for (const Origin& o : cut.origins) layout.origins.push_back(o.name);
   const auto add_group = [&](const std::string& name, const Where& where) {
     layout.groups.push_back(name);
@@ -124,7 +125,7 @@ void add_cut(const Model& model, const Cut& cut, Layout& layout) {
   for (const RegionInput& r : model.regions) add_group(r.name, r.where);
   for (const ArchInput& a : model.arches) add_group(a.name, a.where);
   for (const OpeningInput& o : model.openings) add_group(o.name, o.where);
-  const int first_id = static_cast<int>(layout.blocks.size());
+  const int first_id = count_of(layout.blocks);
   for (BlockShape& shape : shapes_of(model, cut, cut.blocks)) {
     shape.id += first_id;
     shape.group += layout.first_cut_group;
@@ -141,21 +142,18 @@ void check_overlaps_of(const std::vector<std::pair<int, int>>& pairs, const std:
   int found = 0;
   for (const auto& [i, j] : pairs) {
     if (found == kEnough) return;
-    const BlockShape &a = layout.blocks[static_cast<size_t>(i)], &b = layout.blocks[static_cast<size_t>(j)];
+    const BlockShape &a = layout.blocks[i], &b = layout.blocks[j];
     const bool cut_a = layout.was_cut(a), cut_b = layout.was_cut(b);
     const bool in_mesh = a.group >= layout.first_mesh_group && !cut_a;  // from outside: anything may be wrong
     if ((a.group == b.group && !in_mesh) || (cut_a && cut_b)) continue;  // these share their corners exactly
     const Overlap overlap = polygon_overlap(a.polygon, b.polygon);
     const double smaller = std::min(signed_area(a.polygon), signed_area(b.polygon));
     // sides of cut blocks lie on the grid, not exactly where they were drawn
-    const double rounding =
-        cut_a || cut_b
-            ? layout.touching * norm(boxes[static_cast<size_t>(j)].max - boxes[static_cast<size_t>(j)].min)
-            : 0;
+    const double rounding = cut_a || cut_b ? layout.touching * norm(boxes[j].max - boxes[j].min) : 0;
     if (overlap.area <= kOverlapShare * smaller + rounding) continue;
     if ((cut_a || cut_b) && !told.insert(std::minmax(a.group, b.group)).second) continue;
     ++found;
-    findings.error(layout.group_where[static_cast<size_t>(b.group)], b.name,
+    findings.error(layout.group_where[b.group], b.name,
                    fmt::format("overlaps \"{}\" by {:.3g} m2 around ({:.6g}, {:.6g})", a.name, overlap.area,
                                overlap.at.x, overlap.at.y),
                    "blocks may touch but not share area; move or trim one of them");
@@ -191,30 +189,27 @@ int Layout::joint_of_pair(int group_a, int group_b) const {
 }
 
 int Layout::joint_at(BlockEdge at_a, BlockEdge at_b) const {
-  const BlockShape &a = blocks[static_cast<size_t>(at_a.block)], &b = blocks[static_cast<size_t>(at_b.block)];
+  const BlockShape &a = blocks[at_a.block], &b = blocks[at_b.block];
   const int pair = joint_of_pair(a.group, b.group);
   return pair != kNoPair ? pair : joint_by_edges(at_a, at_b);
 }
 
 int Layout::joint_by_edges(BlockEdge at_a, BlockEdge at_b) const {
-  const BlockShape &a = blocks[static_cast<size_t>(at_a.block)], &b = blocks[static_cast<size_t>(at_b.block)];
+  const BlockShape &a = blocks[at_a.block], &b = blocks[at_b.block];
   const auto own = [](const BlockShape& shape, int edge) { return edge >= 0 && !shape.edge_joint.empty(); };
   const bool has_a = own(a, at_a.edge), has_b = own(b, at_b.edge);
-  if (has_a && (!has_b || at_a.block < at_b.block)) return a.edge_joint[static_cast<size_t>(at_a.edge)];
-  if (has_b) return b.edge_joint[static_cast<size_t>(at_b.edge)];
+  if (has_a && (!has_b || at_a.block < at_b.block)) return a.edge_joint[at_a.edge];
+  if (has_b) return b.edge_joint[at_b.edge];
   return default_joint;
 }
 
 // Theory 1.7.
 int Layout::joint_at_corner(BlockCorner corner, BlockEdge on) const {
   const int at_edge = joint_at({corner.block, -1}, on);
-  const BlockShape& a = blocks[static_cast<size_t>(corner.block)];
-  const auto is_glued = [this](int joint) {
-    return joint >= 0 && !glued.empty() && glued[static_cast<size_t>(joint)];
-  };
-  if (!is_glued(at_edge) || joint_of_pair(a.group, blocks[static_cast<size_t>(on.block)].group) != kNoPair)
-    return at_edge;
-  const auto v = static_cast<size_t>(corner.corner);
+  const BlockShape& a = blocks[corner.block];
+  const auto is_glued = [this](int joint) { return joint >= 0 && !glued.empty() && glued[joint]; };
+  if (!is_glued(at_edge) || joint_of_pair(a.group, blocks[on.block].group) != kNoPair) return at_edge;
+  const size_t v = corner.corner;
   if (!a.edge_joint.empty())
     for (const size_t edge : {v, v == 0 ? a.edge_joint.size() - 1 : v - 1})
       if (!is_glued(a.edge_joint[edge])) return a.edge_joint[edge];
@@ -238,9 +233,9 @@ std::vector<int> Layout::groups_called(const std::string& name) const {
 std::vector<int> Layout::blocks_called(const std::string& name) const {
   const std::vector<int> called = groups_called(name);
   std::vector<int> list;
-  for (size_t i = 0; i < blocks.size(); ++i)
+  for (int i = 0; i < count_of(blocks); ++i)
     if (std::find(called.begin(), called.end(), blocks[i].group) != called.end() || blocks[i].name == name)
-      list.push_back(static_cast<int>(i));
+      list.push_back(i);
   return list;
 }
 
@@ -272,7 +267,7 @@ bool check_digits(const Layout& layout, Findings& findings) {
                  farthest = std::max(
                      {std::abs(box.min.x), std::abs(box.min.y), std::abs(box.max.x), std::abs(box.max.y)});
     if (farthest * kRoundedTo <= kLeastDigits * size || !told.insert(b.group).second) continue;
-    const auto group = static_cast<size_t>(b.group);
+    const int group = b.group;
     findings.error(
         layout.group_where[group], layout.groups[group],
         fmt::format("block \"{}\" is {:.3g} m across where coordinates reach {:.3g} m: they have no "
@@ -312,8 +307,8 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
     }
     BlockShape b;
     b.name = in.name;
-    b.id = static_cast<int>(layout.blocks.size());
-    b.group = static_cast<int>(layout.groups.size()) - 1;
+    b.id = count_of(layout.blocks);
+    b.group = count_of(layout.groups) - 1;
     b.polygon = in.polygon;
     b.material = in.material;
     b.kind = in.kind;
@@ -325,11 +320,11 @@ Layout make_layout(const Model& model, const Cut& cut, Findings& findings) {
   for (const GridInput& g : model.grids) {
     layout.groups.push_back(g.name);
     layout.group_where.push_back(g.where);
-    const int group = static_cast<int>(layout.groups.size()) - 1;
+    const int group = count_of(layout.groups) - 1;
     add_grid(g, group, layout);
     layout.pair_joint[{group, group}] = g.joint;
   }
-  layout.first_mesh_group = static_cast<int>(layout.groups.size());
+  layout.first_mesh_group = count_of(layout.groups);
   for (const MeshInput& m : model.meshes) add_mesh(model, m, layout);
   add_cut(model, cut, layout);
   for (const ContactPairInput& p : model.contact_pairs) {
@@ -372,12 +367,12 @@ double point_tolerance(const Layout& layout) { return kPointShare * model_size(l
 
 std::vector<int> blocks_at(const Layout& layout, Vec2 point, double tolerance) {
   std::vector<int> list;
-  for (size_t i = 0; i < layout.blocks.size(); ++i) {
+  for (int i = 0; i < count_of(layout.blocks); ++i) {
     const Box box = bounding_box(layout.blocks[i].polygon);
     if (point.x < box.min.x - tolerance || point.x > box.max.x + tolerance ||
         point.y < box.min.y - tolerance || point.y > box.max.y + tolerance)
       continue;
-    if (contains(layout.blocks[i].polygon, point, tolerance)) list.push_back(static_cast<int>(i));
+    if (contains(layout.blocks[i].polygon, point, tolerance)) list.push_back(i);
   }
   return list;
 }

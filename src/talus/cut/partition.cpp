@@ -14,13 +14,12 @@ Cut::~Cut() = default;
 Polygon Cut::polygon(const CutBlock& block) const {
   Polygon out;
   out.reserve(block.point.size());
-  for (const int p : block.point) out.push_back(point[static_cast<size_t>(p)]);
+  for (const int p : block.point) out.push_back(point[p]);
   return out;
 }
 
 std::string Cut::name(const CutBlock& block) const {
-  const std::string& group = block.opening >= 0 ? openings[static_cast<size_t>(block.opening)]
-                                                : regions[static_cast<size_t>(block.region)].name;
+  const std::string& group = block.opening >= 0 ? openings[block.opening] : regions[block.region].name;
   return fmt::format("{}[{}]", group, block.id);
 }
 

@@ -32,7 +32,7 @@ CutRegion from_input(const RegionInput& in) {
 
 CutRegion from_arch(const ArchInput& in) {
   CutRegion r{in.name, arch_polygon(in), {}, in.material, in.joint, in.kind, in.where};
-  const auto n = static_cast<size_t>(in.voussoirs);
+  const int n = in.voussoirs;
   r.sides.assign(n, in.name + "-intrados");
   r.sides.push_back(in.name + "-start");
   r.sides.insert(r.sides.end(), n, in.name + "-extrados");
@@ -77,7 +77,7 @@ int RegionMap::region_at(Vec2 point, double tolerance) const {
 }
 
 Box RegionMap::box(int region) const {
-  if (region >= 0) return boxes_[static_cast<size_t>(region)];
+  if (region >= 0) return boxes_[region];
   Box all = boxes_[0];
   for (const Box& b : boxes_) all = united(all, b);
   return all;
@@ -121,7 +121,7 @@ std::vector<std::vector<Vec2>> RegionMap::uncovered(Vec2 from, Vec2 to, int regi
     return true;
   };
   return parts(from, to, [&](Vec2 middle) {
-    for (size_t later = static_cast<size_t>(region) + 1; later < regions_.size(); ++later)
+    for (size_t later = region + 1; later < regions_.size(); ++later)
       if (holds(boxes_[later], middle, 0) && well_inside(regions_[later].polygon, middle)) return false;
     return true;
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -11,12 +12,12 @@ namespace {
 std::vector<int> candidates_of(const Layout& layout, const Selection& place) {
   if (!place.block.empty()) return layout.blocks_called(place.block);
   std::vector<int> all;
-  for (size_t i = 0; i < layout.blocks.size(); ++i) all.push_back(static_cast<int>(i));
+  for (int i = 0; i < count_of(layout.blocks); ++i) all.push_back(i);
   return all;
 }
 
 bool is_along(const Layout& layout, const BlockShape& b, size_t edge, const std::string& name) {
-  return layout.origins[static_cast<size_t>(b.edge_origin[edge])] == name;
+  return layout.origins[b.edge_origin[edge]] == name;
 }
 
 // Looks at the other side of edges.
@@ -30,12 +31,10 @@ class OtherSide {
   int beyond(const SelectedEdge& e, double share) const {
     const double step = 4 * layout_.touching + kStepShare * e.length();
     const Vec2 p = e.from + share * (e.to - e.from) + step * e.normal();
-    for (size_t i = 0; i < boxes_.size(); ++i) {
+    for (int i = 0; i < count_of(boxes_); ++i) {
       const Box& box = boxes_[i];
-      if (static_cast<int>(i) == e.block || p.x < box.min.x || p.x > box.max.x || p.y < box.min.y ||
-          p.y > box.max.y)
-        continue;
-      if (contains(layout_.blocks[i].polygon, p)) return static_cast<int>(i);
+      if (i == e.block || p.x < box.min.x || p.x > box.max.x || p.y < box.min.y || p.y > box.max.y) continue;
+      if (contains(layout_.blocks[i].polygon, p)) return i;
     }
     return -1;
   }
@@ -56,23 +55,22 @@ std::vector<SelectedCorner> selected_corners(const Layout& layout, const Selecti
   std::vector<SelectedCorner> corners;
   if (!place.along.empty()) {
     for (const int i : candidates) {
-      const BlockShape& b = layout.blocks[static_cast<size_t>(i)];
-      const size_t n = b.edge_origin.size();
-      for (size_t k = 0; k < n; ++k)
+      const BlockShape& b = layout.blocks[i];
+      const int n = count_of(b.edge_origin);
+      for (int k = 0; k < n; ++k)
         if (is_along(layout, b, k, place.along) || is_along(layout, b, (k + n - 1) % n, place.along))
-          corners.push_back({i, static_cast<int>(k), b.polygon[k]});
+          corners.push_back({i, k, b.polygon[k]});
     }
     return corners;
   }
   for (const int i : candidates) {
-    const Polygon& polygon = layout.blocks[static_cast<size_t>(i)].polygon;
+    const Polygon& polygon = layout.blocks[i].polygon;
     const auto on_segment = [&](size_t k) {
       return distance_to_segment(polygon[k % polygon.size()], place.from, place.to) <= tolerance;
     };
-    for (size_t k = 0; k < polygon.size(); ++k) {
+    for (int k = 0; k < count_of(polygon); ++k) {
       const bool edge_here = on_segment(k + 1) || on_segment(k + polygon.size() - 1);
-      if (on_segment(k) && (edge_here || !place.is_edge))
-        corners.push_back({i, static_cast<int>(k), polygon[k]});
+      if (on_segment(k) && (edge_here || !place.is_edge)) corners.push_back({i, k, polygon[k]});
     }
   }
   if (corners.empty() && !place.is_edge) {
@@ -91,16 +89,16 @@ std::vector<SelectedEdge> selected_edges(const Layout& layout, const Selection& 
   const double tolerance = point_tolerance(layout);
   std::vector<SelectedEdge> edges;
   for (const int i : candidates_of(layout, place)) {
-    const BlockShape& b = layout.blocks[static_cast<size_t>(i)];
-    const size_t n = b.polygon.size();
+    const BlockShape& b = layout.blocks[i];
+    const int n = count_of(b.polygon);
     const auto on_segment = [&](size_t k) {
       return distance_to_segment(b.polygon[k % n], place.from, place.to) <= tolerance;
     };
-    for (size_t k = 0; k < n; ++k) {
+    for (int k = 0; k < n; ++k) {
       const bool chosen = place.along.empty()
                               ? on_segment(k) && on_segment(k + 1)
-                              : k < b.edge_origin.size() && is_along(layout, b, k, place.along);
-      if (chosen) edges.push_back({i, static_cast<int>(k), b.polygon[k], b.polygon[(k + 1) % n]});
+                              : k < count_of(b.edge_origin) && is_along(layout, b, k, place.along);
+      if (chosen) edges.push_back({i, k, b.polygon[k], b.polygon[(k + 1) % n]});
     }
   }
   return edges;

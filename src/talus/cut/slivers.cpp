@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "talus/base/index.h"
 #include "talus/base/rank.h"
 
 namespace talus {
@@ -38,11 +39,11 @@ class SliverTreatment {
   SliverTreatment(const Model& model, Cut& cut)
       : model_(model), cut_(cut), table_(cut.slivers), edge_blocks_(cut.edge.size(), {-1, -1}) {
     gone_.assign(cut.blocks.size(), false);
-    for (size_t i = 0; i < cut.blocks.size(); ++i) {
+    for (int i = 0; i < count_of(cut.blocks); ++i) {
       const CutBlock& b = cut.blocks[i];
-      judged_.push_back(b.opening < 0 || model.openings[static_cast<size_t>(b.opening)].kept);
+      judged_.push_back(b.opening < 0 || model.openings[b.opening].kept);
       measures_.push_back(measure(cut.polygon(b)));
-      for (const int e : b.edge) attach(e, static_cast<int>(i));
+      for (const int e : b.edge) attach(e, i);
     }
     find_openings();
   }
@@ -58,7 +59,7 @@ class SliverTreatment {
     for (const auto& [area, i] : waiting_) {
       const bool remove = model_.cut.slivers == SliverPolicy::kDelete;
       note(i, remove ? SliverAction::kDeleted : SliverAction::kKept, -1);
-      if (remove) gone_[static_cast<size_t>(i)] = true;
+      if (remove) gone_[i] = true;
     }
     finish();
   }
@@ -70,16 +71,16 @@ class SliverTreatment {
 
   void set_limits() {
     const CutInput& in = model_.cut;
-    for (size_t r = 0; r < cut_.regions.size(); ++r) {
+    for (int r = 0; r < count_of(cut_.regions); ++r) {
       std::vector<double> areas, widths;
       // of the rock outside openings: limits must not depend on what is taken out
       for (const bool everywhere : {false, true})
         for (size_t i = 0; i < measures_.size() && (!everywhere || areas.empty()); ++i)
-          if (cut_.blocks[i].region == static_cast<int>(r) && (everywhere || cut_.blocks[i].opening < 0))
+          if (cut_.blocks[i].region == r && (everywhere || cut_.blocks[i].opening < 0))
             areas.push_back(measures_[i].area), widths.push_back(measures_[i].width);
       SliverLimits limits;
       if (!areas.empty()) limits.median_area = median(areas), limits.median_width = median(widths);
-      const bool is_arch = r >= model_.regions.size();
+      const bool is_arch = r >= count_of(model_.regions);
       const double area = is_arch ? kUnset : model_.regions[r].sliver_area;
       const double width = is_arch ? kUnset : model_.regions[r].sliver_width;
       limits.area =
@@ -90,30 +91,27 @@ class SliverTreatment {
     }
   }
 
-  const SliverLimits& limits_of(int i) const {
-    return table_.limits[static_cast<size_t>(cut_.blocks[static_cast<size_t>(i)].region)];
-  }
+  const SliverLimits& limits_of(int i) const { return table_.limits[cut_.blocks[i].region]; }
 
   // Theory 10.3.
   bool is_sliver(int i) const {
-    const Measure& m = measures_[static_cast<size_t>(i)];
+    const Measure& m = measures_[i];
     const SliverLimits& limits = limits_of(i);
-    return judged_[static_cast<size_t>(i)] && (m.area < limits.area || m.width < limits.width || is_hair(i));
+    return judged_[i] && (m.area < limits.area || m.width < limits.width || is_hair(i));
   }
 
   // Theory 10.3.
   bool is_hair(int i) const {
-    const Measure& m = measures_[static_cast<size_t>(i)];
-    return judged_[static_cast<size_t>(i)] &&
-           m.width < std::max(kHairCells * cut_.grid, kThinnest * m.length);
+    const Measure& m = measures_[i];
+    return judged_[i] && m.width < std::max(kHairCells * cut_.grid, kThinnest * m.length);
   }
 
   // Thin among its own kind: cells are as small as they were asked for.
   bool is_thin_cell(int i) const {
-    const Measure& m = measures_[static_cast<size_t>(i)];
+    const Measure& m = measures_[i];
     const SliverLimits& limits = limits_of(i);
-    return judged_[static_cast<size_t>(i)] && (m.area < model_.cut.sliver_area_share * limits.median_area ||
-                                               m.width < model_.cut.sliver_width_share * limits.median_width);
+    return judged_[i] && (m.area < model_.cut.sliver_area_share * limits.median_area ||
+                          m.width < model_.cut.sliver_width_share * limits.median_width);
   }
 
   bool is_small(Rule rule, int i) const {
@@ -121,7 +119,7 @@ class SliverTreatment {
       case Rule::kHairs:
         return is_hair(i);
       case Rule::kFacets:
-        return judged_[static_cast<size_t>(i)] && facet_of(i) >= 0;
+        return judged_[i] && facet_of(i) >= 0;
       case Rule::kGlued:
         return is_thin_cell(i);
       case Rule::kJointSets:
@@ -133,44 +131,41 @@ class SliverTreatment {
   // ------------------------------------------------------------------------------------------- what is where
 
   void attach(int edge, int block) {
-    auto& pair = edge_blocks_[static_cast<size_t>(edge)];
+    auto& pair = edge_blocks_[edge];
     pair[pair[0] < 0 ? 0 : 1] = block;
   }
   int across(int edge, int block) const {
-    const auto& pair = edge_blocks_[static_cast<size_t>(edge)];
+    const auto& pair = edge_blocks_[edge];
     return pair[0] == block ? pair[1] : pair[0];
   }
 
-  Vec2 place(int point) const { return cut_.point[static_cast<size_t>(point)]; }
+  Vec2 place(int point) const { return cut_.point[point]; }
   double length(int edge) const {
-    const auto& [a, b] = cut_.edge[static_cast<size_t>(edge)];
+    const auto& [a, b] = cut_.edge[edge];
     return norm(place(b) - place(a));
   }
-  const Origin& origin(int edge) const {
-    return cut_.origins[static_cast<size_t>(cut_.edge_origin[static_cast<size_t>(edge)])];
-  }
+  const Origin& origin(int edge) const { return cut_.origins[cut_.edge_origin[edge]]; }
 
   void find_openings() {
     for (size_t k = 0; k < cut_.origins.size(); ++k) {
       opening_of_.push_back(-1);
-      for (size_t o = 0; o < model_.openings.size(); ++o)
+      for (int o = 0; o < count_of(model_.openings); ++o)
         if (cut_.origins[k].kind == OriginKind::kOpening && cut_.origins[k].name == model_.openings[o].name)
-          opening_of_.back() = static_cast<int>(o);
+          opening_of_.back() = o;
     }
   }
 
   // How far two outlines of one curve lie apart: each strays from it by up to the height of an arc over its
   // chord.
-  double facet_height(int opening) const { return 2 * model_.openings[static_cast<size_t>(opening)].sagitta; }
+  double facet_height(int opening) const { return 2 * model_.openings[opening].sagitta; }
 
   // The opening along whose facets block i lies whole, between the arc and the chord; -1: none.
   int facet_of(int i) const {
-    const CutBlock& b = cut_.blocks[static_cast<size_t>(i)];
+    const CutBlock& b = cut_.blocks[i];
     std::map<int, std::vector<int>> along;
     for (const int e : b.edge) {
-      const int o = opening_of_[static_cast<size_t>(cut_.edge_origin[static_cast<size_t>(e)])];
-      if (o >= 0 && across(e, i) >= 0 && measures_[static_cast<size_t>(i)].width < facet_height(o))
-        along[o].push_back(e);
+      const int o = opening_of_[cut_.edge_origin[e]];
+      if (o >= 0 && across(e, i) >= 0 && measures_[i].width < facet_height(o)) along[o].push_back(e);
     }
     for (const auto& [o, edges] : along) {
       const double height = facet_height(o);
@@ -178,7 +173,7 @@ class SliverTreatment {
       for (const int p : b.point) {
         double distance = std::numeric_limits<double>::infinity();
         for (const int e : edges) {
-          const auto& [from, to] = cut_.edge[static_cast<size_t>(e)];
+          const auto& [from, to] = cut_.edge[e];
           distance = std::min(distance, distance_to_segment(place(p), place(from), place(to)));
         }
         near = near && distance <= height;
@@ -193,27 +188,26 @@ class SliverTreatment {
   // (theory 10.3).
   void find_inside() {
     std::vector<bool> is_free(cut_.point.size(), false), is_end(cut_.point.size(), false);
-    for (size_t e = 0; e < cut_.edge.size(); ++e) {
+    for (int e = 0; e < count_of(cut_.edge); ++e) {
       const auto [a, b] = edge_blocks_[e];
       if (a < 0) continue;  // of no block, or merged away
       const bool is_face =
-          b < 0 || origin(static_cast<int>(e)).kind == OriginKind::kOpening ||
-          cut_.blocks[static_cast<size_t>(a)].opening != cut_.blocks[static_cast<size_t>(b)].opening;
+          b < 0 || origin(e).kind == OriginKind::kOpening || cut_.blocks[a].opening != cut_.blocks[b].opening;
       if (!is_face) continue;
       for (const int p : cut_.edge[e]) {
-        is_end[static_cast<size_t>(p)] = true;
-        if (b >= 0 || !rock_goes_on(origin(static_cast<int>(e)).name)) is_free[static_cast<size_t>(p)] = true;
+        is_end[p] = true;
+        if (b >= 0 || !rock_goes_on(origin(e).name)) is_free[p] = true;
       }
     }
     for (size_t e = 0; e < cut_.edge_line.size(); ++e) {
       if (edge_blocks_[e][0] < 0) continue;
-      const auto line = static_cast<size_t>(cut_.edge_line[e]);
-      if (line >= reaches_.size()) reaches_.resize(line + 1, false);
-      for (const int p : cut_.edge[e]) reaches_[line] = reaches_[line] || is_end[static_cast<size_t>(p)];
+      const int line = cut_.edge_line[e];
+      if (line >= count_of(reaches_)) reaches_.resize(line + 1, false);
+      for (const int p : cut_.edge[e]) reaches_[line] = reaches_[line] || is_end[p];
     }
     for (size_t i = 0; i < cut_.blocks.size(); ++i) {
       const CutBlock& b = cut_.blocks[i];
-      const auto touches = [&is_free](int p) { return is_free[static_cast<size_t>(p)]; };
+      const auto touches = [&is_free](int p) { return is_free[p]; };
       inside_.push_back(std::none_of(b.point.begin(), b.point.end(), touches) && !is_held(b));
     }
   }
@@ -247,14 +241,12 @@ class SliverTreatment {
       case Rule::kHairs:
         return true;
       case Rule::kFacets:
-        return opening_of_[static_cast<size_t>(cut_.edge_origin[static_cast<size_t>(edge)])] == facet &&
-               (from.joint < 0 || is_glued);
+        return opening_of_[cut_.edge_origin[edge]] == facet && (from.joint < 0 || is_glued);
       case Rule::kGlued:
         return from.kind == OriginKind::kConstruction || (from.kind == OriginKind::kTessellation && is_glued);
       case Rule::kJointSets:
-        return from.kind == OriginKind::kJointSet && inside_[static_cast<size_t>(i)] &&
-               inside_[static_cast<size_t>(across(edge, i))] &&
-               (!reaches_[static_cast<size_t>(cut_.edge_line[static_cast<size_t>(edge)])] || is_named(from));
+        return from.kind == OriginKind::kJointSet && inside_[i] && inside_[across(edge, i)] &&
+               (!reaches_[cut_.edge_line[edge]] || is_named(from));
     }
     return false;
   }
@@ -268,9 +260,8 @@ class SliverTreatment {
 
   void wait_for(Rule rule) {
     waiting_.clear();
-    for (size_t i = 0; i < measures_.size(); ++i)
-      if (!gone_[i] && is_small(rule, static_cast<int>(i)))
-        waiting_.insert({measures_[i].area, static_cast<int>(i)});
+    for (int i = 0; i < count_of(measures_); ++i)
+      if (!gone_[i] && is_small(rule, i)) waiting_.insert({measures_[i].area, i});
   }
 
   // Smallest first; those that no neighbour can take wait until a neighbour has changed.
@@ -293,7 +284,7 @@ class SliverTreatment {
   }
 
   bool merge_one(Rule rule, int i) {
-    const CutBlock& block = cut_.blocks[static_cast<size_t>(i)];
+    const CutBlock& block = cut_.blocks[i];
     const int facet = rule == Rule::kFacets ? facet_of(i) : -1;
     struct Border {
       int other = -1;
@@ -305,7 +296,7 @@ class SliverTreatment {
     for (const int e : block.edge) {
       const int other = across(e, i);
       if (other < 0) continue;
-      const CutBlock& o = cut_.blocks[static_cast<size_t>(other)];
+      const CutBlock& o = cut_.blocks[other];
       if (o.region != block.region || (o.opening != block.opening && rule != Rule::kFacets)) continue;
       Border& border = shared[other];
       border.other = other;
@@ -330,23 +321,22 @@ class SliverTreatment {
   }
 
   void merge(Rule rule, int i, int other, CutBlock merged) {
-    const auto o = static_cast<size_t>(other);
-    waiting_.erase({measures_[o].area, other});
+    waiting_.erase({measures_[other].area, other});
     note(i, rule == Rule::kJointSets ? SliverAction::kMerged : SliverAction::kNeedle, other);
-    for (const int e : cut_.blocks[static_cast<size_t>(i)].edge) {
-      auto& pair = edge_blocks_[static_cast<size_t>(e)];
+    for (const int e : cut_.blocks[i].edge) {
+      auto& pair = edge_blocks_[e];
       for (int& b : pair)
         if (b == i) b = other;
       if (pair[0] != pair[1]) continue;
       pair = {-1, -1};
       if (rule == Rule::kJointSets) table_.opened.push_back(e);
     }
-    gone_[static_cast<size_t>(i)] = true;
+    gone_[i] = true;
     receiver_[other] = true;
-    cut_.blocks[o].point = std::move(merged.point);
-    cut_.blocks[o].edge = std::move(merged.edge);
-    measures_[o] = measure(cut_.polygon(cut_.blocks[o]));
-    if (is_small(rule, other)) waiting_.insert({measures_[o].area, other});
+    cut_.blocks[other].point = std::move(merged.point);
+    cut_.blocks[other].edge = std::move(merged.edge);
+    measures_[other] = measure(cut_.polygon(cut_.blocks[other]));
+    if (is_small(rule, other)) waiting_.insert({measures_[other].area, other});
   }
 
   // The ring around both blocks; false when it is not one simple ring.
@@ -356,14 +346,14 @@ class SliverTreatment {
     };
     std::map<int, Step> from;  // start point -> its edge of the ring
     for (const auto& [block, other] : {std::pair(i, j), std::pair(j, i)}) {
-      const CutBlock& b = cut_.blocks[static_cast<size_t>(block)];
+      const CutBlock& b = cut_.blocks[block];
       for (size_t k = 0; k < b.edge.size(); ++k) {
         if (across(b.edge[k], block) == other) continue;
         if (!from.insert({b.point[k], {b.edge[k], b.point[(k + 1) % b.point.size()]}}).second) return false;
       }
     }
     if (from.empty()) return false;
-    const CutBlock& receiver = cut_.blocks[static_cast<size_t>(j)];
+    const CutBlock& receiver = cut_.blocks[j];
     int start = -1;  // a corner of the receiver keeps its place as the first
     for (const int p : receiver.point)
       if (start < 0 && from.count(p)) start = p;
@@ -380,9 +370,9 @@ class SliverTreatment {
   }
 
   void note(int i, SliverAction action, int into) {
-    const Measure& m = measures_[static_cast<size_t>(i)];
-    table_.rows.push_back({cut_.blocks[static_cast<size_t>(i)].id, m.area, m.width, m.centroid, action,
-                           into < 0 ? -1 : cut_.blocks[static_cast<size_t>(into)].id});
+    const Measure& m = measures_[i];
+    table_.rows.push_back(
+        {cut_.blocks[i].id, m.area, m.width, m.centroid, action, into < 0 ? -1 : cut_.blocks[into].id});
     table_.needles += action == SliverAction::kNeedle;
     table_.merged += action == SliverAction::kMerged;
     table_.kept += action == SliverAction::kKept;
@@ -392,9 +382,9 @@ class SliverTreatment {
 
   void finish() {
     std::vector<CutBlock> left;
-    for (size_t i = 0; i < cut_.blocks.size(); ++i) {
+    for (int i = 0; i < count_of(cut_.blocks); ++i) {
       if (gone_[i]) continue;
-      table_.receivers += receiver_.count(static_cast<int>(i)) > 0;
+      table_.receivers += receiver_.count(i) > 0;
       left.push_back(std::move(cut_.blocks[i]));
     }
     cut_.blocks = std::move(left);

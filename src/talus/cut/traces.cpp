@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "talus/base/index.h"
 #include "talus/cut/joint_set.h"
 #include "talus/cut/tessellate.h"
 
@@ -58,11 +59,11 @@ class TraceMaker {
   }
 
   void add_sides() {
-    for (size_t i = 0; i < regions_.list().size(); ++i) {
+    for (int i = 0; i < count_of(regions_.list()); ++i) {
       const CutRegion& r = regions_.list()[i];
       for (size_t k = 0; k < r.polygon.size(); ++k) {
         const Vec2 a = r.polygon[k], b = r.polygon[(k + 1) % r.polygon.size()];
-        for (auto& part : regions_.uncovered(a, b, static_cast<int>(i)))
+        for (auto& part : regions_.uncovered(a, b, i))
           out_.traces.push_back({std::move(part), origin(r.sides[k], OriginKind::kSide)});
       }
     }
@@ -83,7 +84,7 @@ class TraceMaker {
   void add_surveys() {
     for (const TracesInput& t : model_.traces) {
       const int o = origin(t.name, OriginKind::kSurveyed);
-      SurveyNote note{t.name, static_cast<int>(t.lines.size()), 0, 0};
+      SurveyNote note{t.name, count_of(t.lines), 0, 0};
       for (const Polyline& line : t.lines) {
         double length = 0;
         for (size_t k = 0; k + 1 < line.size(); ++k) length += add_clipped(line[k], line[k + 1], -1, o);
@@ -125,16 +126,14 @@ class TraceMaker {
       const Polygon ring = arch_polygon(arch);
       // joint i runs from the intrados to the extrados: corners are shared to the last bit
       for (int i = 1; i < arch.voussoirs; ++i)
-        out_.traces.push_back({{ring[static_cast<size_t>(arch.voussoirs - i)],
-                                ring[static_cast<size_t>(arch.voussoirs + 1 + i)]},
-                               o});
+        out_.traces.push_back({{ring[arch.voussoirs - i], ring[arch.voussoirs + 1 + i]}, o});
     }
   }
 
   void add_tessellations() {
     for (const TessellationInput& t : model_.tessellations) {
       const int o = origin(t.name, OriginKind::kTessellation);
-      const Polygon& polygon = regions_.list()[static_cast<size_t>(t.region)].polygon;
+      const Polygon& polygon = regions_.list()[t.region].polygon;
       for (const auto& [a, b] : tessellate(t, polygon, model_.cut.seed)) add_clipped(a, b, t.region, o);
     }
   }

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/random.h"
 #include "talus/geometry/geos.h"
 #include "talus/geometry/open_holes.h"
@@ -32,7 +33,7 @@ struct NodeHash {
   size_t operator()(const Node& n) const {
     const uint64_t x = static_cast<uint64_t>(n[0]) * 0x9E3779B97F4A7C15ULL;
     const uint64_t y = static_cast<uint64_t>(n[1]) * 0xC2B2AE3D27D4EB4FULL;
-    return static_cast<size_t>((x ^ (x >> 29)) + (y ^ (y >> 31)));
+    return (x ^ (x >> 29)) + (y ^ (y >> 31));
   }
 };
 
@@ -41,8 +42,8 @@ class LineIndex {
  public:
   LineIndex(const std::vector<Polyline>& lines, double cell, double reach)
       : lines_(lines), cell_(cell), reach_(reach) {
-    for (size_t l = 0; l < lines.size(); ++l)
-      for (size_t k = 0; k + 1 < lines[l].size(); ++k) add(static_cast<int>(l), static_cast<int>(k));
+    for (int l = 0; l < count_of(lines); ++l)
+      for (int k = 0; k + 1 < count_of(lines[l]); ++k) add(l, k);
     std::sort(entries_.begin(), entries_.end());
     entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
   }
@@ -52,8 +53,8 @@ class LineIndex {
     const Node square = square_of(0.5 * (a + b));
     auto it = std::lower_bound(entries_.begin(), entries_.end(), Entry{square, -1, -1});
     for (; it != entries_.end() && it->square == square; ++it) {
-      const Polyline& line = lines_[static_cast<size_t>(it->line)];
-      const Vec2 p = line[static_cast<size_t>(it->part)], q = line[static_cast<size_t>(it->part) + 1];
+      const Polyline& line = lines_[it->line];
+      const Vec2 p = line[it->part], q = line[it->part + 1];
       if (distance_to_segment(a, p, q) <= near && distance_to_segment(b, p, q) <= near) return it->line;
     }
     return -1;
@@ -72,8 +73,8 @@ class LineIndex {
 
   // in pieces no longer than a square, so that few squares are touched in vain
   void add(int line, int part) {
-    const Polyline& l = lines_[static_cast<size_t>(line)];
-    const Vec2 p = l[static_cast<size_t>(part)], q = l[static_cast<size_t>(part) + 1];
+    const Polyline& l = lines_[line];
+    const Vec2 p = l[part], q = l[part + 1];
     const auto pieces = static_cast<int64_t>(std::ceil(norm(q - p) / cell_)) + 1;
     for (int64_t i = 0; i < pieces; ++i) {
       const Vec2 a = p + (static_cast<double>(i) / static_cast<double>(pieces)) * (q - p);
@@ -148,10 +149,10 @@ std::vector<Polyline> node_again(std::vector<Polyline> lines, const std::vector<
   std::vector<Box> boxes;
   for (const Polyline& line : lines) boxes.push_back(bounding_box(line));
   for (const Polyline& cut : cuts) boxes.push_back(bounding_box(cut));
-  const auto first_cut = static_cast<int>(lines.size());
+  const auto first_cut = count_of(lines);
   std::vector<bool> is_near(lines.size(), false);
   for (const auto& [i, j] : close_pairs(boxes, kMovedTwice * grid))
-    if (i < first_cut && j >= first_cut) is_near[static_cast<size_t>(i)] = true;
+    if (i < first_cut && j >= first_cut) is_near[i] = true;
   std::vector<Polyline> near = cuts, out;
   for (size_t i = 0; i < lines.size(); ++i) (is_near[i] ? near : out).push_back(std::move(lines[i]));
   for (Polyline& line : node(near, grid)) out.push_back(std::move(line));
@@ -255,7 +256,7 @@ Noded node_and_open(const std::vector<Polyline>& lines, double grid, Vec2 origin
       return out;
     }
     left = holes;
-    const std::vector<Polyline> fresh(cuts.begin() + static_cast<std::ptrdiff_t>(before), cuts.end());
+    const std::vector<Polyline> fresh(cuts.begin() + before, cuts.end());
     noded = node_again(live_lines(std::move(noded), out, grid), fresh, grid);
   }
 }
@@ -294,7 +295,7 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
   std::unordered_map<Node, int, NodeHash> edge_of;
   const auto point_number = [&](Vec2 p) {
     const Node node{std::llround(p.x / grid), std::llround(p.y / grid)};
-    const auto [it, fresh] = number_of.try_emplace(node, static_cast<int>(out.point.size()));
+    const auto [it, fresh] = number_of.try_emplace(node, count_of(out.point));
     if (fresh) out.point.push_back(p);
     return it->second;
   };
@@ -302,17 +303,16 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
   for (const Polygon& ring : noded.rings) {
     Arrangement::Face face;
     for (const Vec2 p : ring) face.point.push_back(point_number(p));
-    const int f = static_cast<int>(out.face.size());
+    const int f = count_of(out.face);
     for (size_t k = 0; k < face.point.size(); ++k) {
       const int a = face.point[k], b = face.point[(k + 1) % face.point.size()];
-      const auto [it, fresh] =
-          edge_of.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(out.edge.size()));
+      const auto [it, fresh] = edge_of.try_emplace({std::min(a, b), std::max(a, b)}, count_of(out.edge));
       if (fresh) {
         out.edge.push_back({std::min(a, b), std::max(a, b)});
         out.edge_face.push_back({-1, -1});
         total += norm(ring[(k + 1) % ring.size()] - ring[k]);
       }
-      int& side = out.edge_face[static_cast<size_t>(it->second)][a < b ? 0 : 1];
+      int& side = out.edge_face[it->second][a < b ? 0 : 1];
       if (side >= 0) throw std::runtime_error("two faces between the joints overlap");
       side = f;
       face.edge.push_back(it->second);
@@ -330,7 +330,7 @@ Arrangement arrange(const std::vector<Polyline>& lines, double grid, Vec2 origin
   const double cell = std::max({total / edges, length / all, 4 * grid});
   const LineIndex index(local, cell, kMovedTwice * grid);
   for (const auto& [a, b] : out.edge) {
-    const Vec2 p = out.point[static_cast<size_t>(a)], q = out.point[static_cast<size_t>(b)];
+    const Vec2 p = out.point[a], q = out.point[b];
     int source = index.first_along(p, q, kMoved * grid);
     if (source < 0) source = index.first_along(p, q, kMovedTwice * grid);
     out.edge_source.push_back(source);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -131,14 +132,14 @@ SomePairs some_close_pairs(const std::vector<Box>& boxes, double margin, size_t 
     return static_cast<int64_t>(std::floor((x - x0) / cell));
   };
   const int64_t columns = index(all.max.x + margin, all.min.x - margin) + 2;
-  for (size_t i = 0; i < boxes.size(); ++i) {
+  for (int i = 0; i < count_of(boxes); ++i) {
     const Box& b = boxes[i];
     const int64_t x0 = index(b.min.x - margin / 2, all.min.x - margin),
                   x1 = index(b.max.x + margin / 2, all.min.x - margin);
     const int64_t y0 = index(b.min.y - margin / 2, all.min.y - margin),
                   y1 = index(b.max.y + margin / 2, all.min.y - margin);
     for (int64_t y = y0; y <= y1; ++y)
-      for (int64_t x = x0; x <= x1; ++x) entries.push_back({y * columns + x, static_cast<int>(i)});
+      for (int64_t x = x0; x <= x1; ++x) entries.push_back({y * columns + x, i});
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.cell != b.cell ? a.cell < b.cell : a.box < b.box;
@@ -149,8 +150,7 @@ SomePairs some_close_pairs(const std::vector<Box>& boxes, double margin, size_t 
     while (end < entries.size() && entries[end].cell == entries[begin].cell) ++end;
     for (size_t i = begin; i < end && pairs.size() < most; ++i) {
       for (size_t j = i + 1; j < end; ++j) {
-        const Box &a = boxes[static_cast<size_t>(entries[i].box)],
-                  &b = boxes[static_cast<size_t>(entries[j].box)];
+        const Box &a = boxes[entries[i].box], &b = boxes[entries[j].box];
         if (a.min.x <= b.max.x + margin && b.min.x <= a.max.x + margin && a.min.y <= b.max.y + margin &&
             b.min.y <= a.max.y + margin) {
           pairs.emplace_back(entries[i].box, entries[j].box);

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "talus/base/index.h"
+
 namespace talus::maps {
 
 namespace {
@@ -197,21 +199,21 @@ class Cleaner {
   bool join_ends() {
     segments_.clear();
     std::vector<Box> boxes;
-    for (size_t i = 0; i < lines_.size(); ++i) {
+    for (int i = 0; i < count_of(lines_); ++i) {
       const Polyline& p = lines_[i].points;
-      for (size_t k = 0; k + 1 < p.size(); ++k) {
-        segments_.push_back({static_cast<int>(i), static_cast<int>(k)});
+      for (int k = 0; k + 1 < count_of(p); ++k) {
+        segments_.push_back({i, k});
         boxes.push_back(bounding_box(std::vector<Vec2>{p[k], p[k + 1]}));
       }
     }
     const size_t first_end = boxes.size();
     const double reach = std::max(limits_.snap, limits_.round);
     std::vector<std::pair<int, bool>> ends;  // line, whether its last point
-    for (size_t i = 0; i < lines_.size(); ++i) {
+    for (int i = 0; i < count_of(lines_); ++i) {
       const Polyline& p = lines_[i].points;
       if (lines_[i].fixed || p.front() == p.back()) continue;
       for (const bool last : {false, true}) {
-        ends.push_back({static_cast<int>(i), last});
+        ends.push_back({i, last});
         const Vec2 end = last ? p.back() : p.front();
         boxes.push_back({end, end});
       }
@@ -306,7 +308,7 @@ class Cleaner {
 
   // --- helpers ---
 
-  static size_t at(int i) { return static_cast<size_t>(i); }
+  static size_t at(int i) { return i; }
 
   std::vector<Box> boxes_of_lines() const {
     std::vector<Box> boxes;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
 
@@ -113,8 +114,7 @@ MapSections import_map(const ImportRequest& request, const DrawingReader& reader
     for (const auto& [what, holds] : content) {
       const MapUse use = guessed_use(what, holds);
       add(what, use);
-      findings.warning({}, what,
-                       fmt::format("taken for {} (a guess)", map_use_names()[static_cast<size_t>(use)]),
+      findings.warning({}, what, fmt::format("taken for {} (a guess)", map_use_names()[place_of(use)]),
                        fmt::format("--as \"{}=...\" says what it is{}", what,
                                    holds.areas ? ": outline, opening, stone for areas" : ""));
     }

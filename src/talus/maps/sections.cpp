@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/geometry/polygon_check.h"
 
@@ -64,7 +65,7 @@ class SectionMaker {
     const int errors = findings_.error_count();
     for (const MapInput& m : maps_.list) {
       MapNote note;
-      note.name = m.name, note.use = map_use_names()[static_cast<size_t>(m.use)], note.file = m.file;
+      note.name = m.name, note.use = map_use_names()[place_of(m.use)], note.file = m.file;
       out_.report.maps.push_back(note);
     }
     read_files(folder, reader);
@@ -106,7 +107,7 @@ class SectionMaker {
         drawing.leave_out(f.layer, f.is_point ? "point" : "line", "no [[map]] takes it");
         continue;
       }
-      ++count[static_cast<size_t>(map)];
+      ++count[map];
       take(map, f, drawing);
     }
     bool unit_known = true;
@@ -125,15 +126,15 @@ class SectionMaker {
   }
 
   int map_of(const std::string& file, const Feature& f) const {
-    for (size_t i = 0; i < maps_.list.size(); ++i)
-      if (maps_.list[i].file == file && takes(maps_.list[i], f)) return static_cast<int>(i);
+    for (int i = 0; i < count_of(maps_.list); ++i)
+      if (maps_.list[i].file == file && takes(maps_.list[i], f)) return i;
     return -1;
   }
 
   // A feature of the right sort; others are left out with the reason.
   void take(int map, const Feature& f, Drawing& drawing) {
-    const MapInput& m = maps_.list[static_cast<size_t>(map)];
-    const std::string& use = map_use_names()[static_cast<size_t>(m.use)];
+    const MapInput& m = maps_.list[map];
+    const std::string& use = map_use_names()[place_of(m.use)];
     if (m.use == MapUse::kIgnored)
       return drawing.leave_out(f.layer, f.is_point ? "point" : "line", "\"ignored\"");
     if (f.points.size() < (f.is_point ? 1 : 2))
@@ -215,7 +216,7 @@ class SectionMaker {
   }
 
   void to_metres(Taken& t, double unit_of_file) {
-    const double given = maps_.list[static_cast<size_t>(t.map)].unit;
+    const double given = maps_.list[t.map].unit;
     const double unit = std::isfinite(given) ? given : unit_of_file;
     for (Vec2& p : t.points) p = unit * p;
   }
@@ -250,7 +251,7 @@ class SectionMaker {
 
   void check_shapes() {
     for (Taken& t : taken_) {
-      const MapInput& m = maps_.list[static_cast<size_t>(t.map)];
+      const MapInput& m = maps_.list[t.map];
       const auto wrong = [&](const std::string& text, const std::string& hint) {
         findings_.error(m.where, "map." + m.name,
                         fmt::format("{} at ({:g}, {:g}) {}", t.id, t.points[0].x, t.points[0].y, text), hint);
@@ -298,28 +299,28 @@ class SectionMaker {
   void clean() {
     std::vector<MapLine> lines;
     std::vector<const Polygon*> outlines;
-    for (size_t i = 0; i < taken_.size(); ++i) {
+    for (int i = 0; i < count_of(taken_); ++i) {
       const Taken& t = taken_[i];
-      const MapUse use = maps_.list[static_cast<size_t>(t.map)].use;
+      const MapUse use = maps_.list[t.map].use;
       if (use == MapUse::kOutline) outlines.push_back(&t.points);
       if (use == MapUse::kOutline || use == MapUse::kOpening) {
         Polyline ring = t.points;
         ring.push_back(ring.front());
         out_.report.outlines.push_back(ring);
-        lines.push_back({ring, static_cast<int>(i), 0, true});
+        lines.push_back({ring, i, 0, true});
       } else if (use == MapUse::kJoints || use == MapUse::kFault) {
-        lines.push_back({t.points, static_cast<int>(i), use == MapUse::kFault ? 1 : 0, false});
+        lines.push_back({t.points, i, use == MapUse::kFault ? 1 : 0, false});
         out_.report.before.push_back({t.points, t.map, 0, false});
       }
     }
     for (Mend mend : clean_lines(lines, {maps_.snap, maps_.shortest, 2 * round_})) {
-      mend.source = taken_[static_cast<size_t>(mend.source)].map;
+      mend.source = taken_[mend.source].map;
       ++note(mend.source).mended[mend.kind];
       out_.report.mends.push_back(mend);
     }
     // ends on an outline go through it: what is outside is clipped, and no rounding can leave them short
     for (MapLine& line : lines) {
-      const auto i = static_cast<size_t>(line.source);
+      const int i = line.source;
       if (line.fixed) continue;
       pass_outline(line.points, outlines);
       round_points(line.points);
@@ -330,7 +331,7 @@ class SectionMaker {
       if (!line.fixed) continue;
       Polygon ring(line.points.begin(), line.points.end() - 1);
       round_points(ring);
-      rings_.emplace(static_cast<size_t>(line.source), std::move(ring));
+      rings_.emplace(line.source, std::move(ring));
     }
   }
 
@@ -355,7 +356,7 @@ class SectionMaker {
     for (Vec2& p : line) p = {std::round(p.x * steps) / steps, std::round(p.y * steps) / steps};
   }
 
-  MapNote& note(int map) { return out_.report.maps[static_cast<size_t>(map)]; }
+  MapNote& note(int map) { return out_.report.maps[map]; }
 
   // --- writing ---
 
@@ -364,7 +365,7 @@ class SectionMaker {
     if (out_.report.shifted)
       out += fmt::format("# ({}, {}) of the map is (0, 0) here\n", number(out_.report.origin.x),
                          number(out_.report.origin.y));
-    for (size_t m = 0; m < maps_.list.size(); ++m) write_map(static_cast<int>(m), maps_.list[m]);
+    for (int m = 0; m < count_of(maps_.list); ++m) write_map(m, maps_.list[m]);
   }
 
   void write_map(int map, const MapInput& m) {
@@ -372,7 +373,7 @@ class SectionMaker {
     std::vector<size_t> of_map;
     for (size_t i = 0; i < taken_.size(); ++i)
       if (taken_[i].map == map) of_map.push_back(i);
-    note(map).features = static_cast<int>(of_map.size());
+    note(map).features = count_of(of_map);
     std::string& out = out_.text;
     out += fmt::format("\n# {}, layer {}{}\n", m.file, quoted(m.layer),
                        m.attribute.empty() ? "" : fmt::format(", {}", m.attribute));
@@ -454,7 +455,7 @@ class SectionMaker {
       out += (out.empty() ? "" : ", ") + point(line[k]);
       if (k > 0) note(map).length += norm(line[k] - line[k - 1]);
     }
-    note(map).points += static_cast<int>(line.size());
+    note(map).points += count_of(line);
     return "[" + out + "]";
   }
 

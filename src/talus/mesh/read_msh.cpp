@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -196,7 +197,7 @@ class MshReader {
     if (std::abs(z - level_) > kLevel * reach_)
       words_.fail(
           fmt::format("node {} is not in the plane of the first: z = {:g}, not {:g}", tag, z, level_));
-    if (!node_of_.emplace(tag, static_cast<int>(out_.node.size())).second)
+    if (!node_of_.emplace(tag, count_of(out_.node)).second)
       words_.fail(fmt::format("node {} comes twice", tag));
     out_.node.push_back(p);
   }
@@ -265,7 +266,7 @@ class MshReader {
   }
 
   int group_index(std::vector<std::string>& list, int64_t dimension, int64_t tag) {
-    const auto [it, fresh] = group_number_.try_emplace({dimension, tag}, static_cast<int>(list.size()));
+    const auto [it, fresh] = group_number_.try_emplace({dimension, tag}, count_of(list));
     if (fresh) {
       const auto name = names_.find({dimension, tag});
       list.push_back(name == names_.end() || name->second.empty() ? fmt::format("{}", tag) : name->second);
@@ -299,14 +300,12 @@ class MshReader {
     e.corners = corners;
     e.tag = static_cast<int>(tag);
     if (group != 0) e.group = group_index(out_.surface_groups, 2, group);
-    for (int k = 0; k < corners; ++k) e.node[static_cast<size_t>(k)] = node();
+    for (int k = 0; k < corners; ++k) e.node[k] = node();
     double twice_area = 0;
-    const auto at = [&](int k) {
-      return out_.node[static_cast<size_t>(e.node[static_cast<size_t>(k % corners)])];
-    };
+    const auto at = [&](int k) { return out_.node[e.node[k % corners]]; };
     for (int k = 1; k + 1 < corners; ++k) twice_area += cross(at(k) - at(0), at(k + 1) - at(0));
     if (twice_area == 0) words_.fail(fmt::format("element {} has no area", tag));
-    if (twice_area < 0) std::swap(e.node[1], e.node[static_cast<size_t>(corners - 1)]);
+    if (twice_area < 0) std::swap(e.node[1], e.node[corners - 1]);
     out_.elements.push_back(e);
   }
 

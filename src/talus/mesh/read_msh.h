@@ -17,7 +17,7 @@ struct MeshElement {
   int tag = 0;                              // of the file
 
   /// Node at corner k, counted around.
-  int at(int k) const { return node[static_cast<size_t>(k % corners)]; }
+  int at(int k) const { return node[k % corners]; }
 };
 
 struct MeshEdge {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 enum class BoundaryKind { kViscous, kFreeField, kTied };
@@ -31,9 +33,7 @@ inline constexpr std::array kBoundaries{
                   "tied sides bring none in; give it to the base", true},
 };
 
-inline constexpr const BoundaryEntry& entry(BoundaryKind kind) {
-  return kBoundaries[static_cast<size_t>(kind)];
-}
+inline constexpr const BoundaryEntry& entry(BoundaryKind kind) { return kBoundaries[place_of(kind)]; }
 
 /// The kind called `name`; the first when there is none.
 inline constexpr BoundaryKind boundary_called(std::string_view name) {

@@ -68,7 +68,7 @@ std::string Findings::render() const {
     out += fmt::format("{}: {}: {}{}{}\n", place, level, f.key, f.key.empty() ? "" : ": ", f.text);
     if (!f.where.override_text.empty())
       out += fmt::format("   from {}\n", shortened(f.where.override_text, kMostSaid));
-    const size_t line = static_cast<size_t>(f.where.line);
+    const size_t line = f.where.line;
     if (line > 0 && line <= lines_.size()) {
       const int column = std::max(f.where.column, 1);
       out += fmt::format("{:>5} | {}\n", f.where.line, shortened(lines_[line - 1], kMostLine));

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 /// Where a key or value stands in the model file. line 0: not in the file (a default, or given by --set).
@@ -35,7 +37,7 @@ class Findings {
                const std::string& hint = "");
 
   int error_count() const;
-  int warning_count() const { return static_cast<int>(list_.size()) - error_count(); }
+  int warning_count() const { return count_of(list_) - error_count(); }
   /// More than anyone reads: what takes time to find out for each is left out from here on.
   bool many() const { return list_.size() > 1000; }
   bool has_errors() const { return error_count() > 0; }

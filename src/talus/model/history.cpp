@@ -9,7 +9,7 @@ namespace {
 // Index i of the piece [time[i], time[i+1]] holding t. @pre inside the table
 size_t piece_of(const std::vector<double>& time, double t) {
   const auto after = std::upper_bound(time.begin(), time.end(), t);
-  const auto i = static_cast<size_t>(after - time.begin());
+  const size_t i = after - time.begin();
   return std::min(std::max<size_t>(i, 1), time.size() - 1) - 1;
 }
 
@@ -35,8 +35,8 @@ double History::integral_at(double t) const {
 }
 
 double Motion::displacement_at(double t, const std::vector<History>& histories) const {
-  if (kind == kVelocity) return histories[static_cast<size_t>(history)].integral_at(t);
-  if (kind == kDisplacement) return histories[static_cast<size_t>(history)].value_at(t);
+  if (kind == kVelocity) return histories[history].integral_at(t);
+  if (kind == kDisplacement) return histories[history].value_at(t);
   return 0;
 }
 

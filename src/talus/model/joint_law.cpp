@@ -31,7 +31,7 @@ JointLaw::JointLaw(const JointProperty& joint)
       stiffness_{joint.normal_stiffness, joint.shear_stiffness},
       damping_time_(joint.damping_time),
       restitution_(joint.restitution),
-      worn_(joint_kinds().at(static_cast<size_t>(joint.kind)).worn),
+      worn_(joint_kinds().at(joint.kind).worn),
       own_(joint.own),
       scatters_(joint.friction_scatter.given() || joint.cohesion_scatter.given() ||
                 joint.tension_scatter.given()),
@@ -99,8 +99,7 @@ std::vector<JointDefect> JointLaw::defects(const JointProperty& joint) {
                    .bound = "",
                    .text = "has no meaning without dilation_angle",
                    .hint = "give dilation_angle, or leave it out"});
-  if (const JointKind& kind = joint_kinds().at(static_cast<size_t>(joint.kind)); kind.check)
-    kind.check(joint, out);
+  if (const JointKind& kind = joint_kinds().at(joint.kind); kind.check) kind.check(joint, out);
   return out;
 }
 

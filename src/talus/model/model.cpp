@@ -11,7 +11,7 @@ Model::~Model() = default;
 
 double Model::history_time_at(int stage) const {
   double sum = 0;
-  for (size_t k = 0; k < static_cast<size_t>(stage); ++k)
+  for (int k = 0; k < stage; ++k)
     sum += stages[k].kind == StageKind::kDynamic ? stages[k].duration : stages[k].path;
   return sum;
 }

@@ -85,7 +85,7 @@ struct Signal {
 
   bool is_given() const { return history >= 0 || factor != 0; }
   double value_at(double t, const std::vector<History>& histories) const {
-    return history < 0 ? factor : factor * histories[static_cast<size_t>(history)].value_at(t);
+    return history < 0 ? factor : factor * histories[history].value_at(t);
   }
 };
 

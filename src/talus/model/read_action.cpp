@@ -146,7 +146,7 @@ class ActionReader : private SectionReader {
   // The last value of a history is held.
   void warn_still_moving(const Fields& f, std::string_view key, int history) {
     if (history < 0) return;
-    const History& h = model_.histories[static_cast<size_t>(history)];
+    const History& h = model_.histories[history];
     double largest = 0;
     for (const double v : h.value) largest = std::max(largest, std::abs(v));
     if (std::abs(h.value.back()) > kStillMoving * largest)

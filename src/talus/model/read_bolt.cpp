@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "talus/base/index.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {
@@ -40,10 +41,10 @@ class BoltReader : private SectionReader {
     for_named("bolt_type", [this](const std::string& name, const Fields& f) { read_type(name, f); });
     for_list("bolt", [this](const Fields& f) { read_bolt(f); });
     for_list("bolt_pattern", [this](const Fields& f) { read_pattern(f); });
-    for (size_t i = 0; i < model_.bolt_types.size(); ++i) {
+    for (int i = 0; i < count_of(model_.bolt_types); ++i) {
       const std::string& name = model_.bolt_types[i].name;
       const bool used = std::any_of(model_.bolts.begin(), model_.bolts.end(),
-                                    [i](const BoltInput& b) { return b.type == static_cast<int>(i); });
+                                    [i](const BoltInput& b) { return b.type == i; });
       if (!used && !is_left_out("bolt", "type", name) && !is_left_out("bolt_pattern", "type", name))
         findings_.warning(model_.bolt_types[i].where, "bolt_type." + name, "is used by no bolt",
                           "name it in a [[bolt]] or [[bolt_pattern]]");
@@ -107,12 +108,11 @@ class BoltReader : private SectionReader {
     b.where = f.where();
     b.type = refer(f, "type", model_.bolt_types, "bolt_type");
     if (f.has("stage")) b.stage = refer(f, "stage", model_.stages, "stage");
-    if (b.type >= 0 && b.stage >= 0 && static_cast<size_t>(b.stage) < model_.stages.size() &&
-        model_.stages[static_cast<size_t>(b.stage)].kind == StageKind::kDynamic &&
-        model_.bolt_types[static_cast<size_t>(b.type)].pretension > 0)
+    if (b.type >= 0 && b.stage >= 0 && b.stage < count_of(model_.stages) &&
+        model_.stages[b.stage].kind == StageKind::kDynamic && model_.bolt_types[b.type].pretension > 0)
       findings_.warning(f.where(), f.path(),
                         fmt::format("is tensioned at once at the start of dynamic stage \"{}\": a blow",
-                                    model_.stages[static_cast<size_t>(b.stage)].name),
+                                    model_.stages[b.stage].name),
                         "install it in a static stage");
     return b.type >= 0 && b.stage >= 0;
   }
@@ -166,7 +166,7 @@ class BoltReader : private SectionReader {
     Lines lines;
     for (const double angle : angles) {
       const Vec2 ray{std::cos(angle), std::sin(angle)};
-      const Polygon* outline = circle ? nullptr : &model_.openings[static_cast<size_t>(opening)].polygon;
+      const Polygon* outline = circle ? nullptr : &model_.openings[opening].polygon;
       if (outline && outline->size() < 3) return {};  // told where it was read
       const Vec2 head = circle ? f.get<Vec2>("center") + f.get<double>("radius") * ray
                                : on_outline(*outline, polygon_moments(*outline).centroid, ray);

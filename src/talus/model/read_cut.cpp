@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "talus/base/index.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/geometry/shapes.h"
 #include "talus/model/joint_law.h"
@@ -317,7 +318,7 @@ class CutReader : private SectionReader {
   // Cells that are larger than their region divide nothing.
   void check_divides(const Fields& f, const TessellationInput& t) {
     if (t.region < 0 || !f.has("size")) return;
-    const Polygon& polygon = model_.regions[static_cast<size_t>(t.region)].polygon;
+    const Polygon& polygon = model_.regions[t.region].polygon;
     if (polygon.empty()) return;
     const Box box = bounding_box(polygon);
     const double across = norm(box.max - box.min);
@@ -333,7 +334,7 @@ class CutReader : private SectionReader {
   // A region of known size must not be divided into more cells than any machine takes.
   void check_cells(const Fields& f, std::string_view key, int region, double length, double height) {
     if (region < 0) return incomplete();
-    const Polygon& polygon = model_.regions[static_cast<size_t>(region)].polygon;
+    const Polygon& polygon = model_.regions[region].polygon;
     if (polygon.empty()) return;
     // over the box, as they are drawn
     const Box box = bounding_box(polygon);
@@ -419,7 +420,7 @@ class CutReader : private SectionReader {
     JointProperty glue;
     glue.name = "(glued)";
     glue.kind = kBondedJoint, glue.bonded = true;
-    model_.bonded_joint = static_cast<int>(model_.joints.size());
+    model_.bonded_joint = count_of(model_.joints);
     model_.joints.push_back(glue);
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "talus/base/index.h"
 #include "talus/model/section_reader.h"
 
 namespace talus {
@@ -65,7 +66,7 @@ class MapsReader : private SectionReader {
         {"rock", {MapUse::kOpening}}};
     for (const auto& [key, uses] : belongs) {
       const bool has = std::find(uses.begin(), uses.end(), use) != uses.end();
-      const std::string& word = map_use_names()[static_cast<size_t>(use)];
+      const std::string& word = map_use_names()[place_of(use)];
       if (f.given(key) && !has)
         findings_.error(f.where(key), f.path_of(key), fmt::format("has no meaning for \"{}\"", word),
                         "leave it out");

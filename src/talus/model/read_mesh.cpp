@@ -119,8 +119,7 @@ class MeshReader : private SectionReader {
 
 Polygon MeshInput::polygon(const MeshElement& e) const {
   Polygon out;
-  for (int k = 0; k < e.corners; ++k)
-    out.push_back(mesh.node[static_cast<size_t>(e.node[static_cast<size_t>(k)])]);
+  for (int k = 0; k < e.corners; ++k) out.push_back(mesh.node[e.node[k]]);
   return out;
 }
 

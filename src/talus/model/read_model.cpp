@@ -1,4 +1,5 @@
 #include "talus/model/read_model.h"
+#include "talus/base/index.h"
 #include "talus/model/read_as_printed.h"
 
 #include <fmt/format.h>
@@ -161,7 +162,7 @@ class ModelReader : private SectionReader {
 
   void check_material_of(BlockKind kind, int material, const Where& where, const std::string& path) {
     if (kind != BlockKind::kDeformable || material < 0) return;
-    const Material& m = model_.materials[static_cast<size_t>(material)];
+    const Material& m = model_.materials[material];
     // one message per material, at its first user
     if (!(std::isnan(m.young) || std::isnan(m.poisson)) || !incomplete_.insert(m.name).second) return;
     findings_.error(where, path,
@@ -173,12 +174,12 @@ class ModelReader : private SectionReader {
   // The kind of a joint, and the keys that it alone has.
   void read_kind(const Fields& f, JointProperty& j) {
     const std::vector<JointKind>& kinds = joint_kinds();
-    for (size_t k = 0; k < kinds.size(); ++k)
-      if (kinds[k].name == f.get<std::string>("kind")) j.kind = static_cast<int>(k);
-    j.bonded = kinds[static_cast<size_t>(j.kind)].bonded;
-    for (size_t k = 0; k < kinds.size(); ++k)
+    for (int k = 0; k < count_of(kinds); ++k)
+      if (kinds[k].name == f.get<std::string>("kind")) j.kind = k;
+    j.bonded = kinds[j.kind].bonded;
+    for (int k = 0; k < count_of(kinds); ++k)
       for (const KeySpec& key : kinds[k].keys) {
-        if (static_cast<int>(k) == j.kind)
+        if (k == j.kind)
           j.own.push_back(f.get(key.name, std::numeric_limits<double>::quiet_NaN()));
         else if (f.given(key.name))
           findings_.error(f.where(key.name), f.path_of(key.name),
@@ -584,7 +585,7 @@ class ModelReader : private SectionReader {
                                   : SafetyBy::kStrength;
     // strength and loads by factors, a tilt in degrees, an acceleration in shares of gravity
     const double usual[4][3] = {{0.5, 4, 0.01}, {0.5, 4, 0.01}, {1, 60, 0.05}, {0.01, 1, 0.001}};
-    const auto& [lowest, highest, tolerance] = usual[static_cast<size_t>(s.by)];
+    const auto& [lowest, highest, tolerance] = usual[place_of(s.by)];
     s.lowest = f.get("lowest", lowest), s.highest = f.get("highest", highest);
     s.tolerance = f.get("tolerance", tolerance);
     if (f.given("load") != (s.by == SafetyBy::kLoad))
@@ -598,11 +599,11 @@ class ModelReader : private SectionReader {
     s.from_start = f.get<std::string>("from") == "start";
     s.at = refer(f, "at", model_.stages, "stage");
     for (int k = 0; k <= s.at; ++k)
-      if (model_.stages[static_cast<size_t>(k)].kind != StageKind::kStatic) {
+      if (model_.stages[k].kind != StageKind::kStatic) {
         findings_.error(
             f.where("at"), f.path_of("at"),
             fmt::format("stage \"{}\" is not static, or one before it is not: there is no rest to go on from",
-                        model_.stages[static_cast<size_t>(s.at)].name),
+                        model_.stages[s.at].name),
             "name one of the static stages that the model begins with");
         break;
       }
@@ -624,7 +625,7 @@ class ModelReader : private SectionReader {
       const int i = refer_name(name, f.where("joints"), f.path_of("joints"), model_.joints, "joint");
       if (i < 0) continue;
       s.joints.push_back(i);
-      if (model_.joints[static_cast<size_t>(i)].bonded)
+      if (model_.joints[i].bonded)
         findings_.error(f.where("joints"), f.path_of("joints"),
                         fmt::format("joint \"{}\" is bonded: it has no strength to reduce", name),
                         "leave it out");

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/model/joint_law.h"
 #include "talus/model/section_reader.h"
 #include "talus/model/units.h"
@@ -244,7 +245,7 @@ class StageReader : private SectionReader {
     else if (f.given("material") && !f.given("block") && (of_joint || f.given("kind") || !of_material))
       findings_.error(f.where(), f.path(), "a material changes its density, young or poisson", hint);
     if (c.joint < 0) return;
-    const JointProperty& joint = model_.joints[static_cast<size_t>(c.joint)];
+    const JointProperty& joint = model_.joints[c.joint];
     if (joint.bonded)
       error(f, "joint", fmt::format("\"{}\" is bonded: it has no strength to change", joint.name),
             "give the joint cohesion and tensile_strength instead of kind = \"bonded\"");
@@ -259,17 +260,17 @@ class StageReader : private SectionReader {
   // made.
   void check_changed_joints() {
     std::vector<JointProperty> joints = model_.joints;
-    for (int stage = 0; stage < static_cast<int>(model_.stages.size()); ++stage) {
+    for (int stage = 0; stage < count_of(model_.stages); ++stage) {
       const std::vector<JointProperty> before = joints;
       for (const auto& [c, f] : joint_changes_) {
-        JointProperty& joint = joints[static_cast<size_t>(c.joint)];
+        JointProperty& joint = joints[c.joint];
         if (c.stage == stage) joint = changed(joint, c);
       }
-      for (size_t j = 0; j < joints.size(); ++j) {
+      for (int j = 0; j < count_of(joints); ++j) {
         std::set<std::string_view> known;
         for (const JointDefect& d : JointLaw::defects(before[j])) known.insert(d.key);
         for (const JointDefect& d : JointLaw::defects(joints[j]))
-          if (!known.count(d.key)) tell_defect(stage, static_cast<int>(j), joints[j].name, d);
+          if (!known.count(d.key)) tell_defect(stage, j, joints[j].name, d);
       }
     }
   }

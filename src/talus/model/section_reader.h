@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "talus/base/index.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/model/model.h"
@@ -86,8 +87,8 @@ class SectionReader {
 
   template <class List>
   static int index_of(const List& list, const std::string& name) {
-    for (size_t i = 0; i < list.size(); ++i)
-      if (list[i].name == name) return static_cast<int>(i);
+    for (int i = 0; i < count_of(list); ++i)
+      if (list[i].name == name) return i;
     return -1;
   }
 
@@ -151,11 +152,10 @@ class SectionReader {
     Motion out;
     out.kind = static_cast<Motion::Kind>(m.kind);
     const int given = index_of(histories, m.history);
-    if (m.kind == MotionText::kDisplacement && given >= 0 &&
-        histories[static_cast<size_t>(given)].value_at(0) != 0)
+    if (m.kind == MotionText::kDisplacement && given >= 0 && histories[given].value_at(0) != 0)
       findings_.error(f.where(key), f.path_of(key),
                       fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
-                                  m.history, histories[static_cast<size_t>(given)].value_at(0)),
+                                  m.history, histories[given].value_at(0)),
                       "let it begin at 0");
     if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
       out.history = refer_name(m.history, f.where(key), f.path_of(key), histories, "history");
@@ -168,7 +168,7 @@ class SectionReader {
   void check_quantity(const Fields& f, std::string_view key, int history,
                       const std::vector<History>& histories, std::string_view wanted) {
     if (history < 0) return;
-    const History& h = histories[static_cast<size_t>(history)];
+    const History& h = histories[history];
     if (h.quantity.empty() || h.quantity == wanted) return;
     const auto a = [](std::string_view what) {
       return fmt::format("{} {}", what == "acceleration" ? "an" : "a", what);

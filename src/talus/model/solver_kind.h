@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 /// kAuto: what is faster for a step.
@@ -13,9 +15,9 @@ enum class SolverKind { kAuto, kNewton, kGaussSeidel, kPrimalNewton, kPivoting }
 
 inline constexpr std::array<std::string_view, 5> kSolverName{"auto", "newton", "gauss_seidel",
                                                              "primal_newton", "pivoting"};
-static_assert(kSolverName.size() == static_cast<size_t>(SolverKind::kPivoting) + 1);
+static_assert(count_of(kSolverName) == place_of(SolverKind::kPivoting) + 1);
 
-inline constexpr std::string_view name_of(SolverKind kind) { return kSolverName[static_cast<size_t>(kind)]; }
+inline constexpr std::string_view name_of(SolverKind kind) { return kSolverName[place_of(kind)]; }
 
 /// The solver called `name`; kAuto when there is none.
 inline constexpr SolverKind solver_called(std::string_view name) {

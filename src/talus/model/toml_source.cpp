@@ -25,10 +25,10 @@ int first_bad_line(const std::string& text) {
     const int more = c >= 0xf0 && c < 0xf5 ? 3 : c >= 0xe0 ? 2 : c >= 0xc2 ? 1 : -1;
     if (more < 0 || c >= 0xf5) return line;
     for (int k = 1; k <= more; ++k) {
-      const size_t at = i + static_cast<size_t>(k);
+      const size_t at = i + k;
       if (at >= text.size() || (static_cast<unsigned char>(text[at]) & 0xc0) != 0x80) return line;
     }
-    i += static_cast<size_t>(more);
+    i += more;
   }
   return 0;
 }

@@ -109,7 +109,7 @@ class Substitution {
         if (!text)
           put_in(item, path);
         else if (const Held value = value_of(*text, place_of(item, path), path))
-          list->replace(list->cbegin() + static_cast<std::ptrdiff_t>(i), *value->get(0));
+          list->replace(list->cbegin() + i, *value->get(0));
       }
     }
   }

@@ -103,7 +103,7 @@ std::string image_of(const Archive& archive) {
   if (!file.ok() || !put_all(file, archive)) return "";
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size <= 0) return "";
-  std::string image(static_cast<size_t>(size), '\0');
+  std::string image(size, '\0');
   return H5Fget_file_image(file, image.data(), image.size()) == size ? image : "";
 }
 
@@ -132,7 +132,7 @@ bool get(hid_t file, const std::string& name, size_t most, Archive& a) {
   }
   if (H5Tequal(type, H5T_IEEE_F64LE) <= 0) return false;
   std::vector<double>& values = a.numbers[name];
-  values.resize(static_cast<size_t>(count));
+  values.resize(count);
   return count == 0 || H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
 }
 
@@ -250,7 +250,7 @@ void check_length(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::string header(kHeader, '\0');
   in.read(header.data(), static_cast<std::streamsize>(header.size()));
-  header.resize(static_cast<size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  header.resize(std::max<std::streamsize>(in.gcount(), 0));
   std::error_code ec;
   const uintmax_t length = fs::file_size(path, ec);
   if (!ec && header.size() == kHeader) check_header(path.string(), header, length - kHeader);

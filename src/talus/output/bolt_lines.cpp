@@ -42,7 +42,7 @@ const Columns<BoltRow, Cell>& bolt_columns() {
       {"axial_force", "N", [](const R& r) { return r.line.axial; }, Over::kLast, 9},
       {"shear_force", "N", [](const R& r) { return r.line.shear; }, Over::kLast, 9},
       {"elongation", "m", [](const R& r) { return r.line.elongation; }, Over::kLast, 9},
-      {"state", "", [](const R& r) { return kBoltConditions.at(static_cast<size_t>(r.line.condition)); }}};
+      {"state", "", [](const R& r) { return kBoltConditions.at(r.line.condition); }}};
   return columns;
 }
 

@@ -73,7 +73,7 @@ void CsvWriter::check() const {
 
 const std::vector<double>& CsvTable::column(const std::string& name) const {
   const auto exact = std::find(columns.begin(), columns.end(), name);
-  if (exact != columns.end()) return values[static_cast<size_t>(exact - columns.begin())];
+  if (exact != columns.end()) return values[exact - columns.begin()];
   std::vector<std::string> matches;
   size_t at = 0;
   for (size_t i = 0; i < columns.size(); ++i) {

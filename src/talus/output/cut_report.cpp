@@ -139,7 +139,7 @@ BlockStatistics block_statistics(const Model& model, const std::vector<BlockShap
   std::vector<double> area, width, aspect, edges, step;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < set.count; ++i) {
-    const BlockShape& b = blocks[static_cast<size_t>(i)];
+    const BlockShape& b = blocks[i];
     const BlockNumbers n = numbers_of(b.polygon);
     area.push_back(n.area), width.push_back(n.width), aspect.push_back(n.aspect);
     edges.push_back(static_cast<double>(b.polygon.size()));
@@ -160,7 +160,7 @@ BlockStatistics block_statistics(const Model& model, const std::vector<BlockShap
 CutStatistics cut_statistics(const Model& model, const Cut& cut) {
   std::vector<CutBlock> whole;
   for (const CutBlock& b : cut.whole)
-    if (b.opening < 0 || model.openings[static_cast<size_t>(b.opening)].kept) whole.push_back(b);
+    if (b.opening < 0 || model.openings[b.opening].kept) whole.push_back(b);
   return {block_statistics(model, shapes_of(model, cut, whole)),
           block_statistics(model, shapes_of(model, cut, cut.blocks))};
 }
@@ -233,9 +233,8 @@ std::vector<BlockRow> block_rows(const Model& model, const std::vector<BlockShap
   const BlockSet set = block_set_of(model, blocks);
   std::vector<BlockRow> rows;
   for (int i = 0; i < set.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    const BlockNumbers n = numbers_of(blocks[k].polygon);
-    rows.push_back({set.centroid[k], n.area, n.width, n.aspect, stable_step_of(set, i)});
+    const BlockNumbers n = numbers_of(blocks[i].polygon);
+    rows.push_back({set.centroid[i], n.area, n.width, n.aspect, stable_step_of(set, i)});
   }
   return rows;
 }

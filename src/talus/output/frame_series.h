@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "talus/base/descriptor.h"
+#include "talus/base/index.h"
 #include "talus/output/result_folder.h"
 
 namespace talus {
@@ -20,7 +21,7 @@ class FrameSeries {
   /// Goes on behind frames written before; later ones are removed.
   void go_on(const std::vector<double>& times);
   const std::vector<double>& times() const { return times_; }
-  int count() const { return static_cast<int>(times_.size()); }
+  int count() const { return count_of(times_); }
 
  private:
   std::string file(size_t i) const;

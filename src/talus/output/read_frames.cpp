@@ -8,6 +8,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/geometry/polygon.h"
 #include "talus/output/block_quantity.h"
 #include "talus/output/vtk.h"
@@ -148,19 +149,19 @@ BlockFrame FrameReader::read(const VtkFrame& vtk) {
   for (size_t v = 0; v < now.size(); ++v) zero[v] = now[v] - moved[v];
 
   std::set<int> seen;
-  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
+  for (size_t k = 0, begin = 0; k < id.size(); begin = end[k], ++k) {
     if (end[k] < static_cast<int>(begin) + 3 || end[k] > corners || id[k] < 0)
       refuse(file, "a block has less than three corners, or no number");
     if (!seen.insert(id[k]).second) refuse(file, "a block is there twice");
   }
-  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
-    const double area = signed_area(std::span(zero).subspan(begin, static_cast<size_t>(end[k]) - begin));
+  for (size_t k = 0, begin = 0; k < id.size(); begin = end[k], ++k) {
+    const double area = signed_area(std::span(zero).subspan(begin, end[k] - begin));
     if (!std::isfinite(area) || area == 0) refuse(file, "a block has no area");
   }
 
   // do the shapes still hold?
   bool same = !shapes_.empty();
-  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
+  for (size_t k = 0, begin = 0; k < id.size(); begin = end[k], ++k) {
     if (!same) break;
     const Shapes& s = shapes_.back();
     const auto it = s.place.find(id[k]);
@@ -168,8 +169,8 @@ BlockFrame FrameReader::read(const VtkFrame& vtk) {
       same = false;
       break;
     }
-    const auto first = static_cast<size_t>(s.begin[it->second]);
-    const size_t count = static_cast<size_t>(s.begin[it->second + 1]) - first;
+    const int first = s.begin[it->second];
+    const size_t count = s.begin[it->second + 1] - first;
     if (count != static_cast<size_t>(end[k]) - begin) refuse(file, "a block has other corners than before");
     const double size = norm(s.corner[first + 1] - s.corner[first]);
     for (size_t v = 0; v < count; ++v) same = same && same_place(zero[begin + v], s.corner[first + v], size);
@@ -182,7 +183,7 @@ BlockFrame FrameReader::read(const VtkFrame& vtk) {
       next.place[block] = next.id.size();
       next.id.push_back(block);
       next.corner.insert(next.corner.end(), corner, corner + count);
-      next.begin.push_back(static_cast<int>(next.corner.size()));
+      next.begin.push_back(count_of(next.corner));
       next.centre.push_back(polygon_moments(std::span<const Vec2>(corner, count)).centroid);
     };
     std::map<int, size_t> here;
@@ -191,12 +192,11 @@ BlockFrame FrameReader::read(const VtkFrame& vtk) {
       for (const auto& [block, at] : shapes_.back().place)
         if (!here.count(block)) {
           const Shapes& s = shapes_.back();
-          add(block, &s.corner[static_cast<size_t>(s.begin[at])],
-              static_cast<size_t>(s.begin[at + 1] - s.begin[at]));
+          add(block, &s.corner[s.begin[at]], s.begin[at + 1] - s.begin[at]);
         }
     for (size_t k = 0; k < id.size(); ++k) {
-      const size_t begin = k == 0 ? 0 : static_cast<size_t>(end[k - 1]);
-      add(id[k], &zero[begin], static_cast<size_t>(end[k]) - begin);
+      const size_t begin = k == 0 ? 0 : end[k - 1];
+      add(id[k], &zero[begin], end[k] - begin);
     }
     shapes_.push_back(std::move(next));
   }
@@ -220,9 +220,9 @@ BlockFrame FrameReader::read(const VtkFrame& vtk) {
   out.present.assign(s.id.size(), 0), out.kind.assign(s.id.size(), 0);
   out.displacement.resize(s.id.size()), out.gradient.resize(s.id.size());
   out.velocity.resize(s.id.size()), out.stress.resize(s.id.size());
-  for (size_t k = 0, begin = 0; k < id.size(); begin = static_cast<size_t>(end[k]), ++k) {
+  for (size_t k = 0, begin = 0; k < id.size(); begin = end[k], ++k) {
     const size_t at = s.place.at(id[k]), count = static_cast<size_t>(end[k]) - begin;
-    const Vec2* corner = &s.corner[static_cast<size_t>(s.begin[at])];
+    const Vec2* corner = &s.corner[s.begin[at]];
     LinearField u, v;
     if (fields.known()) {
       u = fields.displacement(k), v.value = fields.velocity(k);
@@ -265,7 +265,7 @@ std::optional<FrameMotion> motion_at(const Against& against, const Shapes& shape
   const auto above = std::upper_bound(g->height.begin(), g->height.end(), height);
   if (above == g->height.begin()) return FrameMotion{g->displacement.front(), g->velocity.front()};
   if (above == g->height.end()) return FrameMotion{g->displacement.back(), g->velocity.back()};
-  const auto k = static_cast<size_t>(above - g->height.begin());
+  const size_t k = above - g->height.begin();
   const double share = (height - g->height[k - 1]) / (g->height[k] - g->height[k - 1]);
   const auto between = [share, k](const std::vector<Vec2>& v) {
     return v[k - 1] + share * (v[k] - v[k - 1]);

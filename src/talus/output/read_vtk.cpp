@@ -44,10 +44,10 @@ constexpr std::array<int8_t, 256> digit_values() {
   std::array<int8_t, 256> values{};
   for (auto& v : values) v = -1;
   for (int i = 0; i < 26; ++i) {
-    values[static_cast<size_t>('A' + i)] = static_cast<int8_t>(i);
-    values[static_cast<size_t>('a' + i)] = static_cast<int8_t>(26 + i);
+    values['A' + i] = static_cast<int8_t>(i);
+    values['a' + i] = static_cast<int8_t>(26 + i);
   }
-  for (int i = 0; i < 10; ++i) values[static_cast<size_t>('0' + i)] = static_cast<int8_t>(52 + i);
+  for (int i = 0; i < 10; ++i) values['0' + i] = static_cast<int8_t>(52 + i);
   values['+'] = 62, values['/'] = 63;
   return values;
 }
@@ -143,7 +143,7 @@ VtkFrame parse_vtk(const std::string& name, const std::string& text) {
         refuse(name, fmt::format("\"{}\" has \"{}\" components", title, count));
       if (attribute(head, "format") != "binary") refuse(name, fmt::format("\"{}\" is not binary", title));
       array.values = values_of(name, attribute(head, "type"), content);
-      if (array.values.size() % static_cast<size_t>(array.components) != 0)
+      if (array.values.size() % array.components != 0)
         refuse(name, fmt::format("\"{}\" has a number too many", title));
       frame.arrays[title] = std::move(array);
     }

@@ -15,7 +15,7 @@ struct VtkFrame {
   struct Array {
     int components = 1;
     std::vector<double> values;  // [tuples][components]
-    size_t tuples() const { return values.size() / static_cast<size_t>(components); }
+    size_t tuples() const { return values.size() / components; }
   };
   std::string file;  // for messages
   double time = 0;   // [s]

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text_file.h"
 #include "talus/output/folder_lock.h"
 #include "talus/output/paraview_view.h"
@@ -29,7 +30,7 @@ constexpr std::array<const char*, 5> kKindName{"run", "cut", "record", "safety",
 constexpr std::array<const char*, 5> kVerb{"run", "cut", "record", "safety", "check"};
 constexpr std::string_view kBegin = "results of talus ";
 
-const char* verb_of(ResultKind kind) { return kVerb[static_cast<size_t>(kind)]; }
+const char* verb_of(ResultKind kind) { return kVerb[place_of(kind)]; }
 
 struct Manifest {
   std::optional<ResultKind> kind;
@@ -158,9 +159,7 @@ const std::array<std::vector<std::string>, 5> kFixedNames{
      {"safety.json", "safety.csv", "model.toml"},
      {"cut.svg", "cut.png", "section.html"}}};
 
-const std::vector<std::string>& fixed_names(ResultKind kind) {
-  return kFixedNames[static_cast<size_t>(kind)];
-}
+const std::vector<std::string>& fixed_names(ResultKind kind) { return kFixedNames[place_of(kind)]; }
 
 // Files by the names of docs/file_format.md: what a talus without manifest left.
 bool is_result(const std::string& folder, const std::string& name, ResultKind kind) {
@@ -356,7 +355,7 @@ ResultFolder::ResultFolder(const fs::path& folder, bool force, ResultKind kind) 
     remove_results(folder, *there);
   else
     remove_unfinished_in(folder);
-  open_manifest(fmt::format("{}{}\n", kBegin, kKindName[static_cast<size_t>(kind)]));
+  open_manifest(fmt::format("{}{}\n", kBegin, kKindName[place_of(kind)]));
 }
 
 ResultFolder ResultFolder::go_on(const fs::path& folder) {

@@ -5,13 +5,14 @@
 #include <cstdint>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/output/vtk_arrays.h"
 
 namespace talus {
 
 std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& rate,
                        const std::vector<GroundMotion>& grounds) {
-  TALUS_ASSERT(rate.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(rate) == blocks.count);
   std::vector<double> points, displacement, velocity, centroid, gradient, centroid_rate, rate_gradient;
   std::array<std::vector<double>, 3> stress;
   std::vector<int32_t> connectivity, offsets, id, kind, material, group;
@@ -20,27 +21,26 @@ std::string blocks_vtu(const BlockSet& blocks, const State& state, const std::ve
   };
   std::vector<uint8_t> types;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (blocks.removed(i)) continue;
     for (int v = 0; v < blocks.vertex_count(i); ++v) {
       const Vec2 X = blocks.corner({i, v});
       connectivity.push_back(static_cast<int32_t>(connectivity.size()));
-      push3(points, blocks.centroid[k] + offset_now(state, k, X));
-      push3(displacement, displacement_shown(state, k, X));
-      push3(velocity, velocity_at(rate[k], acting_arm(blocks, state, k, X)));
+      push3(points, blocks.centroid[i] + offset_now(state, i, X));
+      push3(displacement, displacement_shown(state, i, X));
+      push3(velocity, velocity_at(rate[i], acting_arm(blocks, state, i, X)));
     }
     const Mat2 s = cauchy_stress(blocks, state, i);
     stress[0].push_back(s.xx), stress[1].push_back(s.yy), stress[2].push_back(s.xy);
-    const Vec2 u = displacement_shown(state, k, {});
+    const Vec2 u = displacement_shown(state, i, {});
     centroid.insert(centroid.end(), {u.x, u.y});
-    push(gradient, gradient_shown(state, k));
-    centroid_rate.insert(centroid_rate.end(), {rate[k].a.x, rate[k].a.y});
-    const bool deforms = blocks.kind[k] == BlockKind::kDeformable;
-    push(rate_gradient, deforms ? rate[k].G * inverse(kIdentity + state.strain_part[k]) : rate[k].G);
+    push(gradient, gradient_shown(state, i));
+    centroid_rate.insert(centroid_rate.end(), {rate[i].a.x, rate[i].a.y});
+    const bool deforms = blocks.kind[i] == BlockKind::kDeformable;
+    push(rate_gradient, deforms ? rate[i].G * inverse(kIdentity + state.strain_part[i]) : rate[i].G);
     offsets.push_back(static_cast<int32_t>(connectivity.size()));
     types.push_back(7);  // polygon
-    id.push_back(i), kind.push_back(static_cast<int>(blocks.kind[k]));
-    material.push_back(blocks.material[k]), group.push_back(blocks.group[k]);
+    id.push_back(i), kind.push_back(place_of(blocks.kind[i]));
+    material.push_back(blocks.material[i]), group.push_back(blocks.group[i]);
   }
   std::string motions;
   for (const GroundMotion& g : grounds) {

@@ -54,8 +54,7 @@ std::string data_array(const std::string& type, const std::string& name, int com
 inline std::string field_array(const std::string& name, int components, const std::vector<double>& values) {
   std::string out = data_array("Float64", in_markup(name), components, values);
   const std::string place = " format=";
-  return out.insert(out.find(place),
-                    fmt::format(" NumberOfTuples=\"{}\"", values.size() / static_cast<size_t>(components)));
+  return out.insert(out.find(place), fmt::format(" NumberOfTuples=\"{}\"", values.size() / components));
 }
 
 inline std::string doubles(const std::string& name, int components, const std::vector<double>& v) {

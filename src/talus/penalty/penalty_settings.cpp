@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -20,14 +22,14 @@ double penalty_of(const Scene& scene) {
   double young = 0;
   for (const BlockShape& b : scene.layout.blocks) {
     if (b.kind != BlockKind::kDeformable || b.material < 0) continue;
-    const double e = scene.model.materials[static_cast<size_t>(b.material)].young;
+    const double e = scene.model.materials[b.material].young;
     if (e > young) young = e;
   }
   if (young > 0) return kPenaltyOfYoung * young * scene.blocks.thickness;
   double stiffness = 0;
   const double g = std::max(norm(scene.model.gravity), 1.0);
-  for (size_t i = 0; i < scene.blocks.mass.size(); ++i)
-    if (scene.blocks.moves_freely(static_cast<int>(i)))
+  for (int i = 0; i < count_of(scene.blocks.mass); ++i)
+    if (scene.blocks.moves_freely(i))
       stiffness = std::max(stiffness, scene.blocks.mass[i] * g / (kSinking * scene.blocks.size[i]));
   return stiffness;
 }
@@ -37,7 +39,7 @@ double half_height(const BlockSet& blocks) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int i = 0; i < blocks.count; ++i)
     for (int v = 0; v < blocks.vertex_count(i); ++v) {
-      const double y = blocks.centroid[static_cast<size_t>(i)].y + blocks.corner({i, v}).y;
+      const double y = blocks.centroid[i].y + blocks.corner({i, v}).y;
       low = std::min(low, y), high = std::max(high, y);
     }
   return high > low ? 0.5 * (high - low) : std::numeric_limits<double>::infinity();

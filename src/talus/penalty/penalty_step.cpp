@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/corners/follow.h"
 #include "talus/rows/rows.h"
 #include "talus/supports/loads.h"
@@ -27,7 +28,7 @@ constexpr int kFirmIterations = 6, kWidenings = 9;
 
 Six part_of(const std::vector<double>& x, size_t block) {
   Six d;
-  std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * block), 6, d.begin());
+  std::copy_n(x.begin() + (6 * block), 6, d.begin());
   return d;
 }
 
@@ -42,9 +43,9 @@ Six velocity_of(const BlockSet& blocks, const State& state, size_t i) {
 }  // namespace
 
 void begin_penalty(const Scene& scene, const Newmark& scheme, State& state) {
-  const auto n = static_cast<size_t>(scene.blocks.count);
+  const int n = scene.blocks.count;
   state.carried_stress.resize(n);
-  for (size_t i = 0; i < n; ++i) state.carried_stress[i] = initial_stress_of(state, i);
+  for (int i = 0; i < n; ++i) state.carried_stress[i] = initial_stress_of(state, i);
   // Shi's scheme does not ask for them
   if (scheme.beta != 0.5 || scheme.gamma != 1) state.acceleration.resize(n);
 }
@@ -112,7 +113,7 @@ void PenaltySteps::stand(const PenaltySettings& settings, double dt, State& stat
 void PenaltySteps::show(const PenaltySettings& settings, double dt, State& state) {
   gather_springs(scene_, state, settings.stiffness, springs_);
   for (Spring& s : springs_) {
-    const auto k = static_cast<size_t>(s.index);
+    const int k = s.index;
     s.force = s.glued ? state.bond_force[k] : state.contacts[k].force;
     s.gap_after = s.gap;
   }
@@ -122,7 +123,7 @@ void PenaltySteps::show(const PenaltySettings& settings, double dt, State& state
 void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& state) {
   const BlockSet& blocks = scene_.blocks;
   const Model& model = scene_.model;
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   work_.rate_before = state.rate;
   seek_contacts(state);
   gather_springs(scene_, state, settings.stiffness, springs_);
@@ -136,9 +137,9 @@ void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& sta
 
   own_.assign(n, Tile{}), pushed_.assign(n, Six{}), outside_.assign(n, Six{});
   const auto [beta, gamma] = settings.scheme;
-  for (size_t i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i) {
     Tile& k = own_[i];
-    const int block = static_cast<int>(i);
+    const int block = i;
     if (!blocks.moves_freely(block)) continue;  // below
     const Mat2 F = shape_of(state, i);
     const bool deforms = blocks.kind[i] == BlockKind::kDeformable;
@@ -178,19 +179,19 @@ void PenaltySteps::gather(const PenaltySettings& settings, double dt, State& sta
   // rows of what does not move: in the scale of the others
   double scale = 0;
   for (const Tile& k : own_) scale = std::max(scale, k[0]);
-  for (size_t i = 0; i < n; ++i)
-    if (!blocks.moves_freely(static_cast<int>(i)))
+  for (int i = 0; i < n; ++i)
+    if (!blocks.moves_freely(i))
       for (size_t j = 0; j < 6; ++j) own_[i][7 * j] = scale > 0 ? scale : 1;
   held_.clear();
-  for (size_t p = 0; p < scene_.supported.size(); ++p) {
+  for (int p = 0; p < count_of(scene_.supported); ++p) {
     const SupportedPoint& point = scene_.supported[p];
-    const auto i = static_cast<size_t>(point.block);
+    const int i = point.block;
     if (!point.active || !blocks.moves_freely(point.block)) continue;
-    const SupportInput& input = model.supports[static_cast<size_t>(point.support)];
+    const SupportInput& input = model.supports[point.support];
     const Vec2 arm = shape_of(state, i) * point.arm,
                moved = displacement_at(state, i, point.arm) - state.supports[p].hold;
     Held held;
-    held.point = static_cast<int>(p);
+    held.point = p;
     const auto hold = [&](size_t k, const Motion& motion, Vec2 axis, double at) {
       if (motion.kind == Motion::kFree) return;
       held.row[k] = along(axis, arm);
@@ -231,7 +232,7 @@ void PenaltySteps::find_pattern() {
 // A force along a row of a block, onto the right-hand side.
 void PenaltySteps::push(int block, const Six& row, double force) {
   if (!scene_.blocks.moves_freely(block)) return;
-  for (size_t j = 0; j < 6; ++j) solution_[6 * static_cast<size_t>(block) + j] += force * row[j];
+  for (size_t j = 0; j < 6; ++j) solution_[6 * block + j] += force * row[j];
 }
 
 void PenaltySteps::assemble(const BlockSet& blocks) {
@@ -239,7 +240,7 @@ void PenaltySteps::assemble(const BlockSet& blocks) {
   beside_.assign(pairs_.size(), Tile{});
   solution_.assign(6 * own_.size(), 0);
   for (size_t i = 0; i < pushed_.size(); ++i)
-    std::copy(pushed_[i].begin(), pushed_[i].end(), solution_.begin() + static_cast<std::ptrdiff_t>(6 * i));
+    std::copy(pushed_[i].begin(), pushed_[i].end(), solution_.begin() + (6 * i));
   for (size_t k = 0; k < springs_.size(); ++k) {
     const Spring& s = springs_[k];
     if (s.state == SpringState::kOpen) continue;
@@ -248,14 +249,11 @@ void PenaltySteps::assemble(const BlockSet& blocks) {
     for (size_t r = 0; r < 2; ++r) {
       if (r == 1 && s.state == SpringState::kSliding) continue;  // friction: solve_with_friction()
       const double p = s.stiffness[r];
-      if (blocks.moves_freely(s.block_a))
-        add(diagonal_[static_cast<size_t>(s.block_a)], rows.a[r], rows.a[r], p);
-      if (blocks.moves_freely(s.block_b))
-        add(diagonal_[static_cast<size_t>(s.block_b)], rows.b[r], rows.b[r], p);
+      if (blocks.moves_freely(s.block_a)) add(diagonal_[s.block_a], rows.a[r], rows.a[r], p);
+      if (blocks.moves_freely(s.block_b)) add(diagonal_[s.block_b], rows.b[r], rows.b[r], p);
       if (pair_of_[k] >= 0) {
         const bool in_order = s.block_a < s.block_b;
-        add(beside_[static_cast<size_t>(pair_of_[k])], in_order ? rows.a[r] : rows.b[r],
-            in_order ? rows.b[r] : rows.a[r], p);
+        add(beside_[pair_of_[k]], in_order ? rows.a[r] : rows.b[r], in_order ? rows.b[r] : rows.a[r], p);
       }
       push(s.block_a, rows.a[r], -p * off[r]), push(s.block_b, rows.b[r], -p * off[r]);
     }
@@ -283,8 +281,7 @@ bool PenaltySteps::solve_with_friction() {
     for (size_t k = 0; k < springs_.size(); ++k) {
       const Spring& s = springs_[k];
       if (s.state != SpringState::kSliding) continue;
-      pressure_[k] = pressure_after(displacement_[static_cast<size_t>(s.block_a)],
-                                    displacement_[static_cast<size_t>(s.block_b)], rows_[k], s);
+      pressure_[k] = pressure_after(displacement_[s.block_a], displacement_[s.block_b], rows_[k], s);
       const double change = std::abs(pressure_[k] - s.pressing);
       same = same && change <= kSamePressure * pressure_[k] + s.stiffness[0] * s.same[0];
       off = std::max(off, s.bears.friction * change);
@@ -305,7 +302,7 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool dyn
   const BlockSet& blocks = scene_.blocks;
   work_.clock = {dt, dt, 0, state.history_time, dynamic ? dt : 0, dynamic, false};
   gather(settings, dt, state);
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   displacement_.resize(n);
   for (int turn = 0; turn < settings.most_iterations; ++turn) {
     assemble(blocks);
@@ -319,12 +316,12 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool dyn
       for (Spring& s : springs_) s.same[0] *= 2, s.same[1] *= 2;
     int changes = 0;
     for (size_t k = 0; k < springs_.size(); ++k)
-      changes += follow(displacement_[static_cast<size_t>(springs_[k].block_a)],
-                        displacement_[static_cast<size_t>(springs_[k].block_b)], rows_[k], springs_[k]);
+      changes += follow(displacement_[springs_[k].block_a], displacement_[springs_[k].block_b], rows_[k],
+                        springs_[k]);
     report.changes += changes;
     if (changes > 0 || !friction) continue;
     double farthest = 0;
-    for (size_t i = 0; i < n; ++i)
+    for (int i = 0; i < n; ++i)
       farthest = std::max(farthest, std::hypot(displacement_[i][0], displacement_[i][1]));
     if (farthest > settings.largest_displacement) return false;
     report.largest_displacement = std::max(report.largest_displacement, farthest);
@@ -338,7 +335,7 @@ bool PenaltySteps::try_part(const PenaltySettings& settings, double dt, bool dyn
 // Theory 13.5.
 void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& state, PenaltyReport& report) {
   const BlockSet& blocks = scene_.blocks;
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   const auto [beta, gamma] = settings.scheme;
   WorkDone& work = state.work;
   state.judged.unbalanced = state.judged.worst_force = state.judged.moving = state.judged.nudge = 0,
@@ -347,10 +344,9 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
   int moving = 0;
   std::vector<double> by_springs(n, 0);
   for (const Spring& s : springs_)
-    for (const int block : {s.block_a, s.block_b})
-      by_springs[static_cast<size_t>(block)] += std::hypot(s.force[0], s.force[1]);
-  for (size_t i = 0; i < n; ++i) {
-    if (!blocks.moves_freely(static_cast<int>(i))) continue;
+    for (const int block : {s.block_a, s.block_b}) by_springs[block] += std::hypot(s.force[0], s.force[1]);
+  for (int i = 0; i < n; ++i) {
+    if (!blocks.moves_freely(i)) continue;
     const Six& d = displacement_[i];
     for (const double v : d)
       if (!std::isfinite(v))
@@ -370,7 +366,7 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
     const double unbalanced =
         std::hypot(inertia[0], inertia[1]) + std::abs(inertia[2]) / std::max(blocks.size[i], 1e-300);
     if (unbalanced > state.judged.worst_force)
-      state.judged.worst_force = unbalanced, state.judged.worst_block = static_cast<int>(i);
+      state.judged.worst_force = unbalanced, state.judged.worst_block = i;
     const double acting = 0.5 * (std::hypot(outside_[i][0], outside_[i][1]) + by_springs[i]);
     forces += acting, ++moving;
     state.judged.nudge += 0.125 * dt * dt * acting * acting / blocks.mass[i];
@@ -411,26 +407,26 @@ void PenaltySteps::finish(const PenaltySettings& settings, double dt, State& sta
   }
   state.judged.unbalanced = forces > 0 ? state.judged.worst_force / (forces / moving) : 0;
   for (const Held& held : held_) {
-    const auto i = static_cast<size_t>(scene_.supported[static_cast<size_t>(held.point)].block);
+    const int i = scene_.supported[held.point].block;
     std::array<double, 2> force{};
     for (size_t k = 0; k < 2; ++k) {
       const double moved = dot(held.row[k], displacement_[i]);
       force[k] = -held.stiffness[k] * (held.off[k] + moved);
       work[Cause::kSupports] += force[k] * moved;
     }
-    state.supports[static_cast<size_t>(held.point)].force = force;
+    state.supports[held.point].force = force;
   }
   for (const Spring& s : springs_) {
     const double closing = s.gap_after - s.gap;
     if (s.glued) {
       work[Cause::kBonds] += s.force[0] * closing + s.force[1] * s.slip_step;
-      state.bond_force[static_cast<size_t>(s.index)] = s.force;
+      state.bond_force[s.index] = s.force;
       continue;
     }
     work[Cause::kContactClosing] += s.force[0] * closing;
     work[s.state == SpringState::kSliding ? Cause::kFriction : Cause::kJoints] += s.force[1] * s.slip_step;
     if (s.force[0] > 0) report.penetration = std::max(report.penetration, -s.gap_after);
-    Contact& c = state.contacts[static_cast<size_t>(s.index)];
+    Contact& c = state.contacts[s.index];
     c.force = s.force;
     const bool closed = s.state != SpringState::kOpen;
     c.touched = c.touched || closed;
@@ -460,11 +456,11 @@ void PenaltySteps::write_rows(double dt, State& state) {
   RowSet& rows = work_.rows;
   rows.restart();
   work_.gaps.assign(state.contacts.size(), 0);
-  state.row_force.assign(static_cast<size_t>(blocks.count), {});
+  state.row_force.assign(blocks.count, {});
   for (const Spring& s : springs_) {
     PointRows p;
     p.block_a = s.block_a, p.block_b = s.block_b;
-    const auto a = static_cast<size_t>(s.block_a), b = static_cast<size_t>(s.block_b);
+    const int a = s.block_a, b = s.block_b;
     // springs hang on arms as they lay before the step: in the reference of a deformable block
     const auto acting = [&](size_t i, Vec2 arm) {
       return blocks.kind[i] == BlockKind::kDeformable ? inverse(shape_of(state, i)) * arm : arm;
@@ -475,17 +471,17 @@ void PenaltySteps::write_rows(double dt, State& state) {
     p.friction = s.bears.friction, p.cohesion = s.bears.cohesion * dt;
     for (size_t k = 0; k < 2; ++k) p.row[k].compliance = 1 / (s.stiffness[k] * dt * dt);
     rows.add(p, {s.force[0] * dt, s.force[1] * dt}, {s.glued ? Family::kFace : Family::kContact, s.index});
-    if (!s.glued) work_.gaps[static_cast<size_t>(s.index)] = s.gap_after;
+    if (!s.glued) work_.gaps[s.index] = s.gap_after;
   }
-  for (size_t i = 0; i < scene_.supported.size(); ++i) {
+  for (int i = 0; i < count_of(scene_.supported); ++i) {
     const SupportedPoint& point = scene_.supported[i];
     if (!point.active || !blocks.moves_freely(point.block)) continue;
     PointRows p;
     p.block_a = point.block;
-    p.arm_a = acting_arm(blocks, state, static_cast<size_t>(point.block), point.arm);
+    p.arm_a = acting_arm(blocks, state, point.block, point.arm);
     p.normal = {1, 0};
     const auto& force = state.supports[i].force;
-    rows.add(p, {force[0] * dt, -force[1] * dt}, {Family::kSupport, static_cast<int>(i)});
+    rows.add(p, {force[0] * dt, -force[1] * dt}, {Family::kSupport, i});
   }
   rows.finish();
 }
@@ -493,14 +489,13 @@ void PenaltySteps::write_rows(double dt, State& state) {
 StepReport PenaltySteps::report(const State& state) const {
   const BlockSet& blocks = scene_.blocks;
   StepReport r;
-  r.contacts = static_cast<int>(state.contacts.size());
+  r.contacts = count_of(state.contacts);
   for (const Contact& c : state.contacts) r.closed += c.force[0] != 0;
   r.solve.iterations = state.judged.iterations;
   const RowRange contacts = work_.rows.range(Family::kContact);
   for (size_t row = contacts.begin; row < contacts.end; ++row) {
     const PointRows& p = work_.rows.points[row];
-    const double thin = std::min(blocks.thinness[static_cast<size_t>(p.block_a)],
-                                 blocks.thinness[static_cast<size_t>(p.block_b)]);
+    const double thin = std::min(blocks.thinness[p.block_a], blocks.thinness[p.block_b]);
     const double closed = -work_.gaps[work_.rows.owner[row].at()] / thin;
     if (closed > r.closed_share) r.closed_share = closed, r.closed_row = static_cast<int>(row);
   }
@@ -510,8 +505,8 @@ StepReport PenaltySteps::report(const State& state) const {
   e.kinetic = kinetic_energy(blocks, state.rate);
   e.moving = std::max(state.judged.moving, e.kinetic);
   e.strain = state.strain_work;
-  for (size_t i = 0; i < state.displacement.size(); ++i)
-    if (blocks.moves_freely(static_cast<int>(i)))
+  for (int i = 0; i < count_of(state.displacement); ++i)
+    if (blocks.moves_freely(i))
       e.gravity += blocks.mass[i] * dot(scene_.model.gravity, state.displacement[i]);
   e.work = state.work;
   e.left_over = e.kinetic + e.strain - state.energy_start - e.gravity - e.work.total();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/index.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/corners/find.h"
 
@@ -15,9 +16,7 @@ namespace {
 // that its blocks are measured by. What hardly touches would open and close without end.
 constexpr double kSamePlace = 1e-13, kSameForce = 1e-4;
 
-Vec2 arm_now(const State& state, int block, Vec2 X) {
-  return X + state.strain_part[static_cast<size_t>(block)] * X;
-}
+Vec2 arm_now(const State& state, int block, Vec2 X) { return X + state.strain_part[block] * X; }
 
 // Whether nothing holds it, whatever presses.
 bool is_smooth(const Spring& s) { return s.bears.limit(1) == 0; }
@@ -43,9 +42,8 @@ void gather_face(const Scene& scene, const State& state, size_t f, const std::ar
     s.gap = apart.opening[end], s.slip = apart.tangential[end];
     s.stiffness = stiffness;
     if (!face.unbreakable) {
-      const JointLaw& law = scene.laws[static_cast<size_t>(face.joint)];
-      for (int k = 0; k < 2; ++k)
-        s.stiffness[static_cast<size_t>(k)] = stiffness_of(law, k, area, s.stiffness[static_cast<size_t>(k)]);
+      const JointLaw& law = scene.laws[face.joint];
+      for (int k = 0; k < 2; ++k) s.stiffness[k] = stiffness_of(law, k, area, s.stiffness[k]);
     }
     springs.push_back(s);
   }
@@ -58,7 +56,7 @@ Vec2 closure_of(const Scene& scene, const ContactPair& pair, const Contact& c, c
   const bool carries = pair.shares_face || (pair.from_start && c.length > 0);
   const double area = c.length * scene.blocks.thickness;
   if (!carries || !model.in_situ.given || area <= 0) return {};
-  const double height = scene.blocks.centroid[static_cast<size_t>(c.key.block_b)].y + at.y;
+  const double height = scene.blocks.centroid[c.key.block_b].y + at.y;
   const Vec2 normal = turn_right(edge) / norm(edge),
              traction = in_situ_stress(model.in_situ, model.gravity, height) * normal;
   return {dot(normal, traction) * area / s.stiffness[0],
@@ -71,10 +69,9 @@ std::vector<double> force_of(const Scene& scene, const State& state) {
   std::vector<double> force(scene.blocks.mass.size());
   for (size_t i = 0; i < force.size(); ++i) force[i] = scene.blocks.mass[i] * g;
   for (const Contact& c : state.contacts)
-    for (const int block : {c.key.block_a, c.key.block_b})
-      force[static_cast<size_t>(block)] = std::max(force[static_cast<size_t>(block)], c.force[0]);
-  for (size_t i = 0; i < force.size(); ++i)  // what does not move says nothing
-    if (!scene.blocks.moves_freely(static_cast<int>(i))) force[i] = std::numeric_limits<double>::infinity();
+    for (const int block : {c.key.block_a, c.key.block_b}) force[block] = std::max(force[block], c.force[0]);
+  for (int i = 0; i < count_of(force); ++i)  // what does not move says nothing
+    if (!scene.blocks.moves_freely(i)) force[i] = std::numeric_limits<double>::infinity();
   return force;
 }
 
@@ -84,7 +81,7 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   static const JointLaw kNone;
   const BlockSet& blocks = scene.blocks;
   const Contact& c = state.contacts[i];
-  const JointLaw& law = c.joint < 0 ? kNone : scene.laws[static_cast<size_t>(c.joint)];
+  const JointLaw& law = c.joint < 0 ? kNone : scene.laws[c.joint];
   const CornerEdge over = corner_over_edge(blocks, state, c.key.corner(), c.key.on());
   const Vec2 b0 = blocks.corner({c.key.block_b, c.key.edge}),
              edge = blocks.corner(blocks.end_of(c.key.on())) - b0,
@@ -96,9 +93,9 @@ void gather_contact(const Scene& scene, const State& state, const ContactPair& p
   s.normal = over.normal;
   s.arm_a = arm_now(state, c.key.block_a, blocks.corner(c.key.corner()));
   s.arm_b = arm_now(state, c.key.block_b, foot);
-  const auto a = static_cast<size_t>(s.block_a), b = static_cast<size_t>(s.block_b);
-  for (size_t k = 0; k < 2; ++k) {
-    s.stiffness[k] = stiffness_of(law, static_cast<int>(k), area, stiffness[k]);
+  const int a = s.block_a, b = s.block_b;
+  for (int k = 0; k < 2; ++k) {
+    s.stiffness[k] = stiffness_of(law, k, area, stiffness[k]);
     s.same[k] = kSamePlace * std::min(blocks.size[a], blocks.size[b]) +
                 kSameForce * std::min(force[a], force[b]) / s.stiffness[k];
   }
@@ -138,7 +135,7 @@ void gather_springs(const Scene& scene, const State& state, const std::array<dou
   const std::vector<double> force = force_of(scene, state);
   for (const ContactPair& pair : state.pairs)
     for (int k = 0; k < pair.count; ++k)
-      gather_contact(scene, state, pair, static_cast<size_t>(pair.begin + k), stiffness, force, springs);
+      gather_contact(scene, state, pair, pair.begin + k, stiffness, force, springs);
 }
 
 SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {
@@ -148,7 +145,7 @@ SpringRows rows_of(const Spring& spring, const BlockSet& blocks) {
     Six r{};
     if (!blocks.moves_freely(block)) return r;
     r = along(n, arm);
-    if (blocks.kind[static_cast<size_t>(block)] == BlockKind::kRigid) r[3] = r[4] = r[5] = 0;
+    if (blocks.kind[block] == BlockKind::kRigid) r[3] = r[4] = r[5] = 0;
     return r;
   };
   for (size_t k = 0; k < 2; ++k) {

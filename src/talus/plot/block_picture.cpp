@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/output/colours.h"
 #include "talus/output/files.h"
 #include "talus/plot/animated_png.h"
@@ -311,9 +312,8 @@ void draw_foot(cairo_t* cr, const Sheet& sheet, const Scenery& s) {
     y += kRow;
   } else {
     double at = x;
-    for (size_t k = 0; k < kBlockKinds.size(); ++k) {
-      if (std::none_of(s.shapes.begin(), s.shapes.end(),
-                       [k](const auto& one) { return one.kind == static_cast<int>(k); }))
+    for (int k = 0; k < count_of(kBlockKinds); ++k) {
+      if (std::none_of(s.shapes.begin(), s.shapes.end(), [k](const auto& one) { return one.kind == k; }))
         continue;
       set_color(cr, of(kKindColours[k]));
       cairo_rectangle(cr, at, y - 6, 12, 12);

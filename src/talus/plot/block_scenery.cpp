@@ -19,7 +19,7 @@ void take_blocks(const BlockPicture& picture, const BlockFrame& f, size_t quanti
     const Vec2 centre = shapes.centre[k];
     // what is told against something moves with that; the rest of it is drawn several times
     const Vec2 carried = picture.blocks.displacement[k] - f.displacement[k];
-    for (auto v = static_cast<size_t>(shapes.begin[k]); v < static_cast<size_t>(shapes.begin[k + 1]); ++v) {
+    for (int v = shapes.begin[k]; v < shapes.begin[k + 1]; ++v) {
       const Vec2 u = f.displacement[k] + f.gradient[k] * (shapes.corner[v] - centre);
       shape.polygon.push_back(shapes.corner[v] + carried + picture.deformation * u);
     }
@@ -114,8 +114,7 @@ void take_bolts(const BlockPicture& picture, const BlockFrame& f, Scenery& s) {
   for (const auto& [id, k] : picture.shapes.place) {
     if (picture.deformation == 1 || !picture.blocks.present[k]) continue;
     Outline o{id, {}, {}};
-    for (auto v = static_cast<size_t>(picture.shapes.begin[k]);
-         v < static_cast<size_t>(picture.shapes.begin[k + 1]); ++v) {
+    for (int v = picture.shapes.begin[k]; v < picture.shapes.begin[k + 1]; ++v) {
       const Vec2 zero = picture.shapes.corner[v];
       o.polygon.push_back(zero + picture.blocks.displacement[k] +
                           picture.blocks.gradient[k] * (zero - picture.shapes.centre[k]));

@@ -171,7 +171,7 @@ void add_supports(const Model& model, const Places& places, Collection& all) {
 void add_boundaries(const Model& model, const Places& places, Collection& all) {
   for (const BoundaryInput& b : model.boundaries) {
     const BoundaryEntry& kind = entry(b.kind);
-    const Color& color = kBoundaryColors.at(static_cast<size_t>(b.kind) % kBoundaryColors.size());
+    const Color& color = kBoundaryColors.at(place_of(b.kind) % kBoundaryColors.size());
     Condition& band = all.add(Symbol::kBand, color, kind.title, b.name, b.stages);
     const auto add_edges = [&](const Selection& selection) {
       for (const auto& [from, to] : places.edges(selection))

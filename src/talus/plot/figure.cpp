@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "talus/base/index.h"
 #include "talus/plot/canvas.h"
 #include "talus/plot/scale.h"
 
@@ -97,7 +98,7 @@ void set_pen(cairo_t* cr, const Curve& curve) {
   cairo_set_line_width(cr, curve.style == Style::kThin ? 0.8 : curve.style == Style::kDashed ? 1.5 : 2);
   cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cr, dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-  cairo_set_dash(cr, dashes.data(), static_cast<int>(dashes.size()), 0);
+  cairo_set_dash(cr, dashes.data(), count_of(dashes), 0);
 }
 
 void set_rule(cairo_t* cr, double grey) {

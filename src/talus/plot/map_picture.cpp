@@ -99,14 +99,13 @@ void draw_mark(cairo_t* cr, const Mark& mark, Vec2 at, double size) {
 
 void draw(cairo_t* cr, const Sheet& s, const maps::MapReport& report) {
   std::array<int, kMarks.size()> count{};
-  for (const maps::Mend& m : report.mends) ++count[static_cast<size_t>(m.kind)];
+  for (const maps::Mend& m : report.mends) ++count[m.kind];
   // smaller where there are many
   const double size =
       std::clamp(kMarker * std::sqrt(300 / (1.0 + static_cast<double>(report.mends.size()))), 1.5, kMarker);
   draw_lines(cr, s.left, report, report.before);
   draw_lines(cr, s.right, report, report.after);
-  for (const maps::Mend& m : report.mends)
-    draw_mark(cr, kMarks[static_cast<size_t>(m.kind)], s.left.to_sheet(m.at), size);
+  for (const maps::Mend& m : report.mends) draw_mark(cr, kMarks[m.kind], s.left.to_sheet(m.at), size);
   draw_axes(cr, s.left, s.x, s.y);
   draw_axes(cr, s.right, s.x, s.y);
   set_color(cr, kText);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/base/vec2.h"
 #include "talus/plot/canvas.h"
 #include "talus/plot/scale.h"
@@ -61,7 +62,7 @@ inline void set_pen(cairo_t* cr, const Pen& pen) {
   cairo_set_line_width(cr, pen.width);
   cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cr, pen.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-  cairo_set_dash(cr, pen.dashes.data(), static_cast<int>(pen.dashes.size()), 0);
+  cairo_set_dash(cr, pen.dashes.data(), count_of(pen.dashes), 0);
 }
 
 /// A coordinate [px] such that a line of width 1 there fills whole pixels in both files. Rounding of `v` must

@@ -33,7 +33,7 @@ std::vector<double> filter(const std::vector<double>& samples, double dt, const 
   for (size_t k = 0; k < spectrum.size(); ++k)
     spectrum[k] *= butterworth_gain(band, static_cast<double>(k) / (static_cast<double>(padded.size()) * dt));
   const std::vector<double> out = transform_back(spectrum);
-  return {out.begin() + begin, out.begin() + begin + static_cast<std::ptrdiff_t>(samples.size())};
+  return {out.begin() + begin, out.begin() + begin + samples.size()};
 }
 
 }  // namespace talus::record

@@ -33,7 +33,7 @@ std::vector<double> squares_so_far(const Motion& m) {
 // When a sum that never falls passes `level`, linear between samples [s].
 double time_of(const std::vector<double>& sum, double level, double dt) {
   const auto after = std::lower_bound(sum.begin(), sum.end(), level);
-  const auto i = static_cast<size_t>(after - sum.begin());
+  const size_t i = after - sum.begin();
   if (i == 0) return 0;
   return dt * (static_cast<double>(i) - (sum[i] - level) / (sum[i] - sum[i - 1]));
 }

@@ -65,8 +65,7 @@ std::vector<double> cut_window(const std::vector<double>& a, double dt, double b
                                double taper) {
   const size_t first = steps_in(begin, dt),
                last = duration > 0 ? first + steps_in(duration, dt) : a.size() - 1;
-  std::vector<double> out(a.begin() + static_cast<std::ptrdiff_t>(first),
-                          a.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  std::vector<double> out(a.begin() + first, a.begin() + last + 1);
   const size_t m = std::min(steps_in(taper, dt), out.size());
   for (size_t i = 0; i < m; ++i) {
     out[out.size() - 1 - i] *= rise(i, m);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text_file.h"
 #include "talus/record/formats.h"
 
@@ -79,13 +80,13 @@ void check_known(const Lines& lines) {
 std::string_view name_of(Format format) {
   constexpr std::array<std::string_view, 9> names{"PEER",   "K-NET", "JMA",    "CSV", "ESM",
                                                   "GeoNet", "CSMIP", "COSMOS", "SMC"};
-  return names[static_cast<size_t>(format)];
+  return names[place_of(format)];
 }
 
 Format recognised(const Lines& lines) {
   const size_t n = std::min(lines.count(), kLongestHeader);
   const auto any = [&](std::string_view word) {
-    return std::any_of(lines.line.begin(), lines.line.begin() + static_cast<std::ptrdiff_t>(n),
+    return std::any_of(lines.line.begin(), lines.line.begin() + n,
                        [&](const std::string& l) { return holds(l, word); });
   };
   const std::string first = lower_case(lines.line[0].substr(0, 200));
@@ -123,7 +124,7 @@ Record read_record_text(const std::string& file, const std::string& text, const 
   using Reader = Record (*)(const Lines&, const ReadOptions&);
   constexpr std::array<Reader, 9> kReaders{read_peer,   read_knet,  read_jma,    read_plain_csv, read_esm,
                                            read_geonet, read_csmip, read_cosmos, read_smc};
-  Record record = kReaders[static_cast<size_t>(format)](lines, options);
+  Record record = kReaders[place_of(format)](lines, options);
   record.format = format;
   if (record.value.size() < 2)
     fail(lines, lines.count(),

@@ -80,7 +80,7 @@ double between(const std::vector<double>& periods, const std::vector<double>& va
   const auto after = std::upper_bound(periods.begin(), periods.end(), period);
   if (after == periods.begin()) return values.front();
   if (after == periods.end()) return values.back();
-  const auto i = static_cast<size_t>(after - periods.begin()) - 1;
+  const size_t i = after - periods.begin() - 1;
   const double s = std::log(period / periods[i]) / std::log(periods[i + 1] / periods[i]);
   return values[i] + s * (values[i + 1] - values[i]);
 }

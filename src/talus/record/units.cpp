@@ -1,4 +1,5 @@
 #include "talus/record/units.h"
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 
 #include <array>
@@ -59,12 +60,12 @@ bool split_suffix(std::string_view title, std::string_view& name, std::string_vi
 
 std::string_view name_of(Quantity quantity) {
   constexpr std::array<std::string_view, 3> names{"acceleration", "velocity", "displacement"};
-  return names[static_cast<size_t>(quantity)];
+  return names[place_of(quantity)];
 }
 
 std::string_view si_symbol(Quantity quantity) {
   constexpr std::array<std::string_view, 3> symbols{"m/s2", "m/s", "m"};
-  return symbols[static_cast<size_t>(quantity)];
+  return symbols[place_of(quantity)];
 }
 
 std::optional<Quantity> quantity_called(std::string_view word) {

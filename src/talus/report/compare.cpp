@@ -47,8 +47,8 @@ struct Rows {
   size_t from = 0, to = 0;
 };
 Rows rows_of(const std::vector<double>& time, const Stage& s) {
-  const auto after = [&time](double t) {
-    return static_cast<size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin());
+  const auto after = [&time](double t) -> size_t {
+    return std::upper_bound(time.begin(), time.end(), t) - time.begin();
   };
   return {after(s.begin), after(s.end)};
 }
@@ -64,11 +64,10 @@ std::optional<size_t> row_at_clock(const std::vector<double>& clock, const Rows&
 // Value at a time between rows [from, to); at or outside the ends that of the end.
 double value_at(const std::vector<double>& time, const std::vector<double>& value, const Rows& rows,
                 double t) {
-  const auto begin = time.begin() + static_cast<std::ptrdiff_t>(rows.from),
-             end = time.begin() + static_cast<std::ptrdiff_t>(rows.to);
+  const auto begin = time.begin() + rows.from, end = time.begin() + rows.to;
   const auto next = std::lower_bound(begin, end, t);
   if (next == end) return value[rows.to - 1];
-  const auto k = static_cast<size_t>(next - time.begin());
+  const size_t k = next - time.begin();
   if (k == rows.from || *next == t) return value[k];
   const double share = (t - time[k - 1]) / (time[k] - time[k - 1]);
   return value[k - 1] + share * (value[k] - value[k - 1]);
@@ -104,7 +103,7 @@ void compare_histories(const RunFolder& a, const RunFolder& b, Comparison& out) 
       const auto at = std::find(b.histories.columns.begin(), b.histories.columns.end(), title);
       if (at == b.histories.columns.end()) continue;
       const std::vector<double>&va = a.histories.values[c],
-            &vb = b.histories.values[static_cast<size_t>(at - b.histories.columns.begin())];
+            &vb = b.histories.values[at - b.histories.columns.begin()];
       Difference d{"history", s.name, title};
       double squares = 0;
       size_t count = 0;
@@ -151,9 +150,9 @@ std::map<std::pair<std::string, std::string>, std::array<double, 2>> joint_sums(
             shear = table.find("shear_force [N]");
   if (stage < 0 || joint < 0 || normal < 0 || shear < 0) return out;
   for (const auto& row : table.rows) {
-    auto& sum = out[{row[static_cast<size_t>(stage)], row[static_cast<size_t>(joint)]}];
-    sum[0] += std::atof(row[static_cast<size_t>(normal)].c_str());
-    sum[1] += std::abs(std::atof(row[static_cast<size_t>(shear)].c_str()));
+    auto& sum = out[{row[stage], row[joint]}];
+    sum[0] += std::atof(row[normal].c_str());
+    sum[1] += std::abs(std::atof(row[shear].c_str()));
   }
   return out;
 }
@@ -195,8 +194,8 @@ void compare_ledgers(const RunFolder& a, const RunFolder& b, Comparison& out) {
     const auto at = std::find(b.steps.columns.begin(), b.steps.columns.end(), title);
     if (at == b.steps.columns.end()) continue;
     Difference d{"ledger", "", title};
-    take(d, a.steps.values[c].back(),
-         b.steps.values[static_cast<size_t>(at - b.steps.columns.begin())].back(), a.steps.values[0].back());
+    take(d, a.steps.values[c].back(), b.steps.values[at - b.steps.columns.begin()].back(),
+         a.steps.values[0].back());
     out.list.push_back(d);
   }
 }

@@ -31,8 +31,7 @@ std::string packed(const Shapes& s) {
   for (size_t i = 0; i + 1 < s.begin.size(); ++i) corners.push_back(s.begin[i + 1] - s.begin[i]);
   std::vector<Vec2> arm(s.corner.size());
   for (size_t i = 0; i + 1 < s.begin.size(); ++i)
-    for (auto v = static_cast<size_t>(s.begin[i]); v < static_cast<size_t>(s.begin[i + 1]); ++v)
-      arm[v] = s.corner[v] - s.centre[i];
+    for (int v = s.begin[i]; v < s.begin[i + 1]; ++v) arm[v] = s.corner[v] - s.centre[i];
   p.integers(s.id), p.integers(corners);
   p.doubles(component(s.centre, &Vec2::x)), p.doubles(component(s.centre, &Vec2::y));
   p.floats(component(arm, &Vec2::x)), p.floats(component(arm, &Vec2::y));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "talus/base/error.h"
 #include "talus/base/spread.h"
@@ -63,7 +64,7 @@ std::set<size_t> worst_rows(const CsvTable& steps) {
   for (const char* name : {"contact error [m]", "iterations", "drift [m]", "failed steps", "loose steps"}) {
     const auto it = std::find(steps.columns.begin(), steps.columns.end(), name);
     if (it == steps.columns.end()) continue;
-    const std::vector<double>& v = steps.values[static_cast<size_t>(it - steps.columns.begin())];
+    const std::vector<double>& v = steps.values[it - steps.columns.begin()];
     std::vector<size_t> order(v.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;
     const size_t count = std::min<size_t>(10, order.size());
@@ -85,9 +86,8 @@ json texts_of(const TextTable& table, size_t most) {
 TextTable of_last_stage(TextTable table) {
   const int stage = table.find("stage");
   if (stage < 0 || table.rows.empty()) return table;
-  const auto c = static_cast<size_t>(stage);
-  const std::string last = table.rows.back()[c];
-  std::erase_if(table.rows, [&](const auto& row) { return row[c] != last; });
+  const std::string last = table.rows.back()[stage];
+  std::erase_if(table.rows, [&](const auto& row) { return row[stage] != last; });
   return table;
 }
 
@@ -234,8 +234,8 @@ json frames_of(const RunFolder& run, const PageOptions& options, double room, Ch
   const double rest = shapes + static_cast<double>(contacts) * contact_size;
   size_t count = std::min(there, static_cast<size_t>(std::max(2.0, (room - rest) / block_size)));
   if (count < there) note.reason = "for the size of the page";
-  if (options.frames > 0 && static_cast<size_t>(options.frames) < count) {
-    count = static_cast<size_t>(options.frames);
+  if (options.frames > 0 && std::cmp_less(options.frames, count)) {
+    count = options.frames;
     note.reason = "as asked for";
   }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "talus/base/index.h"
 #include "talus/base/version.h"
 #include "talus/output/cut_report.h"
 #include "talus/output/read_frames.h"
@@ -77,11 +78,11 @@ const char* symbol_word(plot::Symbol symbol) {
 Shapes shapes_in(const Layout& layout, const std::vector<BlockRow>& rows) {
   Shapes s;
   s.begin.push_back(0);
-  for (size_t i = 0; i < layout.blocks.size(); ++i) {
+  for (int i = 0; i < count_of(layout.blocks); ++i) {
     const Polygon& polygon = layout.blocks[i].polygon;
-    s.id.push_back(static_cast<int>(i));
+    s.id.push_back(i);
     s.corner.insert(s.corner.end(), polygon.begin(), polygon.end());
-    s.begin.push_back(static_cast<int>(s.corner.size()));
+    s.begin.push_back(count_of(s.corner));
     s.centre.push_back(rows[i].centroid);
   }
   return s;
@@ -106,7 +107,7 @@ json blocks_json(const Layout& layout, const std::vector<BlockRow>& rows, Chunks
   for (size_t i = 0; i < layout.blocks.size(); ++i) {
     const BlockShape& b = layout.blocks[i];
     names.push_back(b.name);
-    kinds.push_back(static_cast<int>(b.kind)), materials.push_back(b.material), groups.push_back(b.group);
+    kinds.push_back(place_of(b.kind)), materials.push_back(b.material), groups.push_back(b.group);
     area.push_back(rows[i].area), width.push_back(rows[i].width), aspect.push_back(rows[i].aspect);
     step.push_back(std::isfinite(rows[i].step) ? rows[i].step : 0);
   }
@@ -257,16 +258,16 @@ std::string section_page(const std::string& page, const Model& model, const Cut&
   for (const auto& [two, joint] : layout.pair_joint) pairs.push_back({two.first, two.second, joint});
   std::vector<std::pair<Vec2, Vec2>> merged;
   for (const int e : cut.slivers.opened) {
-    const auto& [a, b] = cut.edge[static_cast<size_t>(e)];
-    merged.push_back({cut.point[static_cast<size_t>(a)], cut.point[static_cast<size_t>(b)]});
+    const auto& [a, b] = cut.edge[e];
+    merged.push_back({cut.point[a], cut.point[b]});
   }
   json dead = segments_json(plot::visible_dead_ends(model, cut), origin, chunks);
   dead["pen"] = pen_json(plot::dead_end_pen(joint_width),
                          fmt::format("dead ends removed: {:.4g} m", cut.dead_end_length));
   json red = segments_json(merged, origin, chunks);
-  red["pen"] = pen_json(plot::merged_pen(joint_width),
-                        fmt::format("{} merged: joints removed",
-                                    plot::counted(static_cast<size_t>(cut.slivers.merged), "sliver")));
+  red["pen"] =
+      pen_json(plot::merged_pen(joint_width),
+               fmt::format("{} merged: joints removed", plot::counted(cut.slivers.merged, "sliver")));
 
   const std::string file = std::filesystem::path(model.file).filename().string();
   const json section = {{"title", model.title.empty() ? file : model.title},

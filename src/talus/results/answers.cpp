@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -76,8 +77,7 @@ std::string Answers::csv() const {
   std::string out = csv_head(answer_columns());
   for (const Stage& s : stages_)
     for (size_t k = 0; k < titles_.size(); ++k)
-      out += csv_row(answer_columns(),
-                     AnswerRow{scene_.model.stages[static_cast<size_t>(s.stage)], titles_[k], s.asked[k]});
+      out += csv_row(answer_columns(), AnswerRow{scene_.model.stages[s.stage], titles_[k], s.asked[k]});
   return out;
 }
 
@@ -104,8 +104,7 @@ void Answers::load(Loader& from) {
   exchange(from, *this, count);
   int before = -1;
   for (const Stage& s : stages_) {
-    if (s.stage <= before || s.stage >= static_cast<int>(scene_.model.stages.size()) ||
-        s.asked.size() != asked_.size())
+    if (s.stage <= before || s.stage >= count_of(scene_.model.stages) || s.asked.size() != asked_.size())
       throw FileError("the answers of the saved state are not those of these monitors and stages");
     before = s.stage;
   }

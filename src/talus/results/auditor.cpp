@@ -6,6 +6,7 @@
 #include "talus/audit/check_frame.h"
 #include "talus/audit/read_results.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/model/joint_law.h"
 #include "talus/results/joint_report.h"
@@ -40,12 +41,12 @@ double closed_by_ground(const Scene& scene, const ContactPair& pair, const Conta
   const Model& model = scene.model;
   if (!model.in_situ.given || c.joint < 0 || !(pair.shares_face || (pair.from_start && c.length > 0)))
     return 0;
-  const auto b = static_cast<size_t>(c.key.block_b);
+  const int b = c.key.block_b;
   const int next = c.key.edge + 1 == scene.blocks.vertex_count(c.key.block_b) ? 0 : c.key.edge + 1;
   const Vec2 from = scene.blocks.corner({c.key.block_b, c.key.edge}),
              side = scene.blocks.corner({c.key.block_b, next}) - from;
   const Mat2 stress = in_situ_stress(model.in_situ, model.gravity, scene.blocks.centroid[b].y + from.y);
-  const JointLaw law(model.joints[static_cast<size_t>(c.joint)]);
+  const JointLaw law(model.joints[c.joint]);
   return std::abs(law.closure(stress, turn_right(side) / norm(side)).x);
 }
 
@@ -108,9 +109,8 @@ void Auditor::look_at_stage(const Instant& i) {
   rules_.tolerance = std::max(scene_.model.solver.tolerance * tolerance_size(b), loosest_);
   blocks_.clear();
   for (int k = 0; k < b.count; ++k) {
-    const auto n = static_cast<size_t>(k);
-    const double area = b.volume[n] / b.thickness;
-    blocks_.push_back({b.size[n], b.radius[n], area / (2 * b.radius[n]), hold_of(b, k)});
+    const double area = b.volume[k] / b.thickness;
+    blocks_.push_back({b.size[k], b.radius[k], area / (2 * b.radius[k]), hold_of(b, k)});
   }
   if (i.stage_start) watch_.forget();
   fresh_ = false;
@@ -122,18 +122,18 @@ void Auditor::watch(const Instant& i) {
   points_.reserve(state.contacts.size() + 2 * state.patches.size());
   for (size_t k = 0; k < state.patches.size(); ++k) {
     const Patch& c = state.patches[k];
-    const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
+    const bool hard = c.joint < 0 || scene_.model.joints[c.joint].normal_stiffness == 0;
     for (int end = 0; end < 2; ++end) {
       const auto [corner, edge] = patch_numbers(scene_, state.patches, k, end);
       points_.push_back(
-          {c.block_a, corner, c.block_b, edge, c.force[static_cast<size_t>(end)][0],
-           c.gap[static_cast<size_t>(end)], hard, place_of(state, c, end), c.normal,
+          {c.block_a, corner, c.block_b, edge, c.force[end][0], c.gap[end], hard, place_of(state, c, end),
+           c.normal,
            hard ? 0 : i.work.clock.dashpot_time(mixed_damping_time(scene_.blocks, scene_.laws, c, 0))});
     }
   }
   for (size_t k = 0; k < state.contacts.size(); ++k) {
     const Contact& c = state.contacts[k];
-    const bool hard = c.joint < 0 || scene_.model.joints[static_cast<size_t>(c.joint)].normal_stiffness == 0;
+    const bool hard = c.joint < 0 || scene_.model.joints[c.joint].normal_stiffness == 0;
     points_.push_back(
         {c.key.block_a, c.key.vertex, c.key.block_b, c.key.edge, c.force[0], i.work.gaps[k], hard});
   }
@@ -146,41 +146,39 @@ void Auditor::watch(const Instant& i) {
 }
 
 Vec2 Auditor::place_of(const State& state, const Patch& c, int end) const {
-  const auto a = static_cast<size_t>(c.block_a);
-  return scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[static_cast<size_t>(end)]);
+  const int a = c.block_a;
+  return scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[end]);
 }
 
 audit::Point Auditor::patch_point(const Instant& i, size_t patch, int end) const {
   const Patch& c = i.state.patches[patch];
-  const auto e = static_cast<size_t>(end);
   audit::Point p;
   const auto [corner, edge] = patch_numbers(scene_, i.state.patches, patch, end);
   p.block_a = c.block_a, p.block_b = c.block_b, p.corner = corner, p.edge = edge;
-  p.place = place_of(i.state, c, end), p.normal = c.normal, p.gap = c.gap[e];
-  p.normal_force = c.force[e][0], p.shear_force = c.force[e][1];
+  p.place = place_of(i.state, c, end), p.normal = c.normal, p.gap = c.gap[end];
+  p.normal_force = c.force[end][0], p.shear_force = c.force[end][1];
   p.joint = law_number(c);
   if (c.joint >= 0) {
-    const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];  // as law_of
-    p.rise = std::tan(joint.dilation_angle) * std::min(c.slip[e], joint.dilation_slip);
+    const JointProperty& joint = scene_.model.joints[c.joint];  // as law_of
+    p.rise = std::tan(joint.dilation_angle) * std::min(c.slip[end], joint.dilation_slip);
   }
-  p.in_situ = std::max(0.0, c.closure[e] + c.gap[e]);
-  p.closing = closing_at(i, i.work.rows.range(Family::kContact).begin + 2 * patch + e);
+  p.in_situ = std::max(0.0, c.closure[end] + c.gap[end]);
+  p.closing = closing_at(i, i.work.rows.range(Family::kContact).begin + 2 * patch + end);
   return p;
 }
 
 audit::Block Auditor::shape(const Instant& i, int block) const {
   const BlockSet& b = scene_.blocks;
-  const auto k = static_cast<size_t>(block);
   audit::Block out;
   out.hold = hold_of(b, block);
   if (out.hold == audit::Hold::kRemoved) return out;
-  const BlockRate rate = rate_now(i.work, i.state, k);
+  const BlockRate rate = rate_now(i.work, i.state, block);
   for (int v = 0; v < b.vertex_count(block); ++v) {
     const Vec2 X = b.corner({block, v});
-    out.polygon.push_back(b.centroid[k] + offset_now(i.state, k, X));
-    const Vec2 arm = acting_arm(b, i.state, k, X);
+    out.polygon.push_back(b.centroid[block] + offset_now(i.state, block, X));
+    const Vec2 arm = acting_arm(b, i.state, block, X);
     out.velocity.push_back(velocity_at(rate, arm));
-    out.next.push_back(velocity_at(i.state.rate[k], arm));
+    out.next.push_back(velocity_at(i.state.rate[block], arm));
   }
   return out;
 }
@@ -204,11 +202,11 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
   for (size_t k = 0; k < i.state.patches.size(); ++k)
     for (int end = 0; end < 2; ++end) {
       frame.points.push_back(patch_point(i, k, end));
-      frame.points.back().partner = static_cast<int>(frame.points.size()) - (end == 0 ? 0 : 2);
+      frame.points.back().partner = count_of(frame.points) - (end == 0 ? 0 : 2);
     }
   for (const ContactPair& pair : i.state.pairs) {
     for (int n = 0; n < pair.count && i.state.patches.empty(); ++n) {
-      const auto k = static_cast<size_t>(pair.begin + n);
+      const int k = pair.begin + n;
       const Contact& c = i.state.contacts[k];
       audit::Point p;
       p.block_a = c.key.block_a, p.corner = c.key.vertex, p.block_b = c.key.block_b, p.edge = c.key.edge;
@@ -216,7 +214,7 @@ audit::Frame Auditor::frame_of(const Instant& i) const {
       p.normal_force = c.force[0], p.shear_force = c.force[1];
       p.joint = c.joint < 0 ? audit::kNoJoint : c.joint;
       if (c.joint >= 0) {
-        const JointProperty& joint = scene_.model.joints[static_cast<size_t>(c.joint)];  // as law_of
+        const JointProperty& joint = scene_.model.joints[c.joint];  // as law_of
         p.rise = std::tan(joint.dilation_angle) * std::min(c.slip, joint.dilation_slip);
       }
       p.in_situ = closed_by_ground(scene_, pair, c);

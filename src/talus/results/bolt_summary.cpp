@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 BoltSummary BoltSummary::of(const std::vector<BoltLine>& lines) {
@@ -15,7 +17,7 @@ BoltSummary BoltSummary::of(const std::vector<BoltLine>& lines) {
     own = std::max(own, line.condition);
     if (line.axial > s.tension) s.tension = line.axial, s.tension_in = line.bolt;
   }
-  s.bolts = static_cast<int>(worst.size());
+  s.bolts = count_of(worst);
   for (const auto& [bolt, condition] : worst) s.yielded += condition == 1, s.ruptured += condition == 2;
   return s;
 }

@@ -90,10 +90,10 @@ std::string check_report(const std::string& file, int warnings, const PreparedRu
   const bool at_most = std::any_of(run.scene.model.stages.begin(), run.scene.model.stages.end(),
                                    [](const auto& s) { return s.kind == StageKind::kStatic; });
   const int joint = run.scene.model.default_joint;
-  text += fmt::format("  contact    {}\n",
-                      joint < 0 ? "pairs without a joint of their own are frictionless"
-                                : fmt::format("joint \"{}\" between pairs without their own",
-                                              run.scene.model.joints[static_cast<size_t>(joint)].name));
+  text +=
+      fmt::format("  contact    {}\n", joint < 0 ? "pairs without a joint of their own are frictionless"
+                                                 : fmt::format("joint \"{}\" between pairs without their own",
+                                                               run.scene.model.joints[joint].name));
   if (const ContactGive& give = run.scene.give;
       give.stress > 0 && meets_hard(run.scene.layout, run.scene.laws))
     text += fmt::format(

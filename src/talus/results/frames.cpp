@@ -1,5 +1,6 @@
 #include "talus/results/frames.h"
 
+#include "talus/base/index.h"
 #include "talus/output/contact_points.h"
 #include "talus/output/vtk.h"
 #include "talus/plot/block_picture.h"
@@ -12,10 +13,10 @@ namespace talus {
 std::vector<BoltLine> bolt_lines(const Scene& scene, const State& state, int stage) {
   std::vector<BoltLine> lines;
   for (const BoltPart& p : bolt_parts(scene.blocks, state)) {
-    const BoltInput& bolt = scene.model.bolts[static_cast<size_t>(p.input)];
+    const BoltInput& bolt = scene.model.bolts[p.input];
     if (bolt.stage <= stage)
       lines.push_back({bolt.name, p.piece, p.crossing, p.from, p.to, p.axial, p.shear, p.elongation,
-                       static_cast<int>(p.condition)});
+                       place_of(p.condition)});
   }
   return lines;
 }

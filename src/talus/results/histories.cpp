@@ -36,11 +36,9 @@ const std::vector<std::pair<const char*, const char*>> kMotion{
 constexpr double kShortestPeriod = 0.02, kLongestPeriod = 5;
 constexpr int kPeriods = 100;
 
-double path_of(const Instant& i) { return i.scene.model.stages[static_cast<size_t>(i.stage)].path; }
+double path_of(const Instant& i) { return i.scene.model.stages[i.stage].path; }
 
-bool is_dynamic(const Instant& i) {
-  return i.scene.model.stages[static_cast<size_t>(i.stage)].kind == StageKind::kDynamic;
-}
+bool is_dynamic(const Instant& i) { return i.scene.model.stages[i.stage].kind == StageKind::kDynamic; }
 
 }  // namespace
 
@@ -54,8 +52,8 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
     switch (m.kind) {
       case MonitorKind::kPoint: {
         const int block = block_of_point(scene.layout, m.point);
-        points_.push_back({block, m.point - blocks.centroid[static_cast<size_t>(block)],
-                           Reference(scene, m, m.point.y), 0, nullptr});
+        points_.push_back(
+            {block, m.point - blocks.centroid[block], Reference(scene, m, m.point.y), 0, nullptr});
         if (m.spectrum) points_.back().spectrum = &spectra_.emplace_back(Spectrum{m.name, {}, {}, {}});
         add_columns(m.name, kMotion);
         break;
@@ -65,10 +63,10 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
         c.blocks = scene.layout.blocks_called(m.target_a);
         double mass = 0;
         Vec2 middle;
-        for (const int b : c.blocks) mass += blocks.mass[static_cast<size_t>(b)];
+        for (const int b : c.blocks) mass += blocks.mass[b];
         for (const int b : c.blocks) {
-          c.weight.push_back(blocks.mass[static_cast<size_t>(b)] / mass);
-          middle += c.weight.back() * blocks.centroid[static_cast<size_t>(b)];
+          c.weight.push_back(blocks.mass[b] / mass);
+          middle += c.weight.back() * blocks.centroid[b];
         }
         c.reference = Reference(scene, m, middle.y);
         if (m.spectrum) c.spectrum = &spectra_.emplace_back(Spectrum{m.name, {}, {}, {}});
@@ -79,16 +77,15 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
       }
       case MonitorKind::kCrack: {
         const int a = block_of_point(scene.layout, m.point), b = block_of_point(scene.layout, m.other);
-        cracks_.push_back({a, b, m.point - blocks.centroid[static_cast<size_t>(a)],
-                           m.other - blocks.centroid[static_cast<size_t>(b)],
+        cracks_.push_back({a, b, m.point - blocks.centroid[a], m.other - blocks.centroid[b],
                            (m.other - m.point) / norm(m.other - m.point)});
         add_columns(m.name, {{"opening", "m"}, {"sliding", "m"}});
         break;
       }
       case MonitorKind::kConvergence: {
         const int a = block_of_point(scene.layout, m.point), b = block_of_point(scene.layout, m.other);
-        pairs_.push_back({a, b, m.point - blocks.centroid[static_cast<size_t>(a)],
-                          m.other - blocks.centroid[static_cast<size_t>(b)], m.other - m.point});
+        pairs_.push_back(
+            {a, b, m.point - blocks.centroid[a], m.other - blocks.centroid[b], m.other - m.point});
         add_columns(m.name, {{"convergence", "m"}});
         break;
       }
@@ -98,7 +95,7 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
         break;
       case MonitorKind::kSupport: {
         int index = 0;
-        while (scene.model.supports[static_cast<size_t>(index)].name != m.target_a) ++index;
+        while (scene.model.supports[index].name != m.target_a) ++index;
         supports_.push_back(index);
         add_columns(m.name, {{"reaction_x", "N"}, {"reaction_y", "N"}});
         break;
@@ -121,10 +118,10 @@ Histories::Histories(const Scene& scene, Sink sink) : scene_(scene), sink_(std::
 
 void Histories::set_up_contact(const MonitorInput& m) {
   Impulses c;
-  c.in_a.resize(static_cast<size_t>(scene_.blocks.count));
-  c.in_b.resize(static_cast<size_t>(scene_.blocks.count));
-  for (const int b : scene_.layout.blocks_called(m.target_a)) c.in_a[static_cast<size_t>(b)] = 1;
-  for (const int b : scene_.layout.blocks_called(m.target_b)) c.in_b[static_cast<size_t>(b)] = 1;
+  c.in_a.resize(scene_.blocks.count);
+  c.in_b.resize(scene_.blocks.count);
+  for (const int b : scene_.layout.blocks_called(m.target_a)) c.in_a[b] = 1;
+  for (const int b : scene_.layout.blocks_called(m.target_b)) c.in_b[b] = 1;
   c.window = m.window;
   add_columns(m.name, {{"force_x", "N"},
                        {"force_y", "N"},
@@ -141,24 +138,22 @@ void Histories::set_up_contact(const MonitorInput& m) {
 
 // Absolute, of the material point: what an instrument on it reads, gravity left out. A step from rest has none.
 Vec2 Histories::acceleration_of(const Instant& i, int block, Vec2 arm) {
-  const auto k = static_cast<size_t>(block);
   const StepClock& clock = i.work.clock;
   if (clock.from_rest || !(clock.dt_kick > 0)) return {};
-  const Vec2 acting = acting_arm(i.scene.blocks, i.state, k, arm);
-  const BlockRate& before = i.work.rate_before[k];
-  const BlockRate& after = i.state.rate[k];
-  const Mat2 G = rate_now(i.work, i.state, k).G;
+  const Vec2 acting = acting_arm(i.scene.blocks, i.state, block, arm);
+  const BlockRate& before = i.work.rate_before[block];
+  const BlockRate& after = i.state.rate[block];
+  const Mat2 G = rate_now(i.work, i.state, block).G;
   // the arm of a block that does not deform turns with it
-  const bool turns = i.scene.blocks.kind[k] != BlockKind::kDeformable;
+  const bool turns = i.scene.blocks.kind[block] != BlockKind::kDeformable;
   return (velocity_at(after, acting) - velocity_at(before, acting)) / clock.dt_kick +
          (turns ? G * (G * acting) : Vec2{});
 }
 
 // Of blocks that deform that of the rotation in their deformation gradient; since the start [rad].
 double Histories::rotation_of(const State& s, int block) const {
-  const auto k = static_cast<size_t>(block);
-  if (scene_.blocks.kind[k] != BlockKind::kDeformable) return s.angle[k];
-  const Mat2& E = s.strain_part[k];
+  if (scene_.blocks.kind[block] != BlockKind::kDeformable) return s.angle[block];
+  const Mat2& E = s.strain_part[block];
   return std::atan2(E.yx - E.xy, 2 + E.xx + E.yy);
 }
 
@@ -201,7 +196,7 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
   double step[3] = {0, 0, 0};
   for (size_t r = 0; r < rows.range(Family::kContact).end; ++r) {
     const PointRows& p = rows.points[r];
-    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    const int a = p.block_a, b = p.block_b;
     const bool forward = c.in_a[a] && c.in_b[b], backward = c.in_b[a] && c.in_a[b];
     if (forward == backward) continue;
     const Vec2 f = impulse_on(p, rows.impulse[r], forward ? 1 : -1).f;
@@ -230,7 +225,7 @@ void Histories::sample_contact(const Instant& instant, Impulses& c, std::vector<
 void Histories::sample_bolt(const Instant& instant, const std::string& name, std::vector<double>& row) const {
   double axial = 0, shear = 0, elongation = 0, ruptured = 0;
   for (const BoltPart& p : bolt_parts(scene_.blocks, instant.state)) {
-    if (!scene_.model.bolts[static_cast<size_t>(p.input)].belongs_to(name)) continue;
+    if (!scene_.model.bolts[p.input].belongs_to(name)) continue;
     axial = std::max(axial, p.axial), shear = std::max(shear, std::abs(p.shear));
     elongation = std::max(elongation, p.elongation);
     ruptured += p.condition == BoltPart::kRuptured;
@@ -257,7 +252,7 @@ void Histories::at_even(const Instant& instant, double interval, Even& even) {
   bool kept = false;
   if (!before_.empty() && (begins || !on_path)) {
     // what a stage resets is not between two instants: the last values stand until then
-    const bool resets = begins && scene_.model.stages[static_cast<size_t>(instant.stage)].reset_displacements;
+    const bool resets = begins && scene_.model.stages[instant.stage].reset_displacements;
     const std::vector<double>& after = resets ? before_ : row;
     for (;; even.rows += 1) {
       const double at = even.begin + even.rows * interval;
@@ -294,8 +289,8 @@ std::vector<double> Histories::sample(const Instant& instant) {
         break;
       case MonitorKind::kCrack: {
         const Crack& c = cracks_[crack++];
-        const Vec2 apart = displacement_shown(s, static_cast<size_t>(c.block_b), c.arm_b) -
-                           displacement_shown(s, static_cast<size_t>(c.block_a), c.arm_a);
+        const Vec2 apart =
+            displacement_shown(s, c.block_b, c.arm_b) - displacement_shown(s, c.block_a, c.arm_a);
         row.insert(row.end(), {dot(c.along, apart), dot(turn_left(c.along), apart)});
         break;
       }
@@ -352,7 +347,7 @@ void Histories::release(double known_until, bool all) {
 }
 
 double Histories::nearer(const Pair& p, const State& s) {
-  const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+  const int a = p.block_a, b = p.block_b;
   const Vec2 u = displacement_at(s, b, p.arm_b) - displacement_at(s, a, p.arm_a);
   const Vec2 shown = displacement_shown(s, b, p.arm_b) - displacement_shown(s, a, p.arm_a);
   const Vec2 before = p.apart + (u - shown), now = p.apart + u;  // before: when displacements were last reset

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/blocks/in_situ.h"
 #include "talus/contact/bonds.h"
 #include "talus/corners/find.h"
@@ -16,16 +18,16 @@ namespace talus {
 
 namespace {
 
-static_assert(kJointStates.size() == static_cast<size_t>(last_of(JointState())) + 1);
+static_assert(count_of(kJointStates) == place_of(last_of(JointState())) + 1);
 
 constexpr double kMoved = 0.1;  // of its size: a block that has gone so far is one that moved
 
 // What an edge of a block was cut along.
 std::string set_of(const Scene& scene, int block, int edge) {
-  const std::vector<int>& origin = scene.layout.blocks[static_cast<size_t>(block)].edge_origin;
+  const std::vector<int>& origin = scene.layout.blocks[block].edge_origin;
   if (origin.empty() || edge < 0) return {};
-  const int which = origin[static_cast<size_t>(edge)];
-  return which < 0 ? std::string() : scene.layout.origins[static_cast<size_t>(which)];
+  const int which = origin[edge];
+  return which < 0 ? std::string() : scene.layout.origins[which];
 }
 
 // An intact end of a face: what parts it is elastic, unless it stands open or slid at its limit.
@@ -38,7 +40,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
   out.joint = face.joint;
   out.set = set_of(scene, face.block_b, face.edge_b);
   out.length = 0.5 * face.length;
-  out.state = static_cast<int>(JointState::kIntact);
+  out.state = place_of(JointState::kIntact);
   out.opening = std::max(0.0, face_offset(scene.blocks, i.state, face).opening[owner % 2]);
   out.slip_signed = i.state.face[owner / 2].slip[owner % 2], out.slip = std::abs(out.slip_signed);
   return out;
@@ -48,7 +50,7 @@ std::optional<JointPoint> face_point(const Scene& scene, const Instant& i, size_
 const ContactPair& pair_of(const State& state, size_t contact) {
   const auto after =
       std::upper_bound(state.pairs.begin(), state.pairs.end(), contact,
-                       [](size_t k, const ContactPair& p) { return k < static_cast<size_t>(p.begin); });
+                       [](size_t k, const ContactPair& p) { return std::cmp_less(k, p.begin); });
   auto pair = after - 1;
   while (pair->count == 0) --pair;  // those without points begin where the next one does
   return *pair;
@@ -57,7 +59,7 @@ const ContactPair& pair_of(const State& state, size_t contact) {
 // Whether the corner of a contact lay at its side when the run began: else it has no place there to count from.
 bool lay_there(const BlockSet& blocks, const ContactKey& key) {
   constexpr double kNear = 0.02;  // of the smaller block, as far as contacts are sought
-  const auto a = static_cast<size_t>(key.block_a), b = static_cast<size_t>(key.block_b);
+  const int a = key.block_a, b = key.block_b;
   const Vec2 from = blocks.corner({key.block_b, key.edge}),
              side = blocks.corner(blocks.end_of(key.on())) - from;
   const Vec2 at = (blocks.centroid[a] - blocks.centroid[b]) + blocks.corner(key.corner()) - from;
@@ -75,7 +77,7 @@ double residual_slip(const Scene& scene, const Instant& i, size_t k) {
   const ContactPair& pair = pair_of(state, k);
   if (!pair.from_start || !lay_there(scene.blocks, c.key)) return c.slip_signed;
   const BlockSet& blocks = scene.blocks;
-  const auto a = static_cast<size_t>(c.key.block_a), b = static_cast<size_t>(c.key.block_b);
+  const int a = c.key.block_a, b = c.key.block_b;
   const Vec2 corner = blocks.corner(c.key.corner()), b0 = blocks.corner({c.key.block_b, c.key.edge}),
              edge = blocks.corner(blocks.end_of(c.key.on())) - b0;
   const CornerEdge over = corner_over_edge(blocks, state, c.key.corner(), c.key.on());
@@ -85,7 +87,7 @@ double residual_slip(const Scene& scene, const Instant& i, size_t k) {
   double closure = 0;  // elastic slip by the stress of the ground, at the start
   if (scene.model.in_situ.given && c.joint >= 0 && (pair.shares_face || c.length > 0)) {
     const double height = blocks.centroid[b].y + b0.y + std::clamp(over.along, 0.0, 1.0) * edge.y;
-    closure = scene.laws[static_cast<size_t>(c.joint)]
+    closure = scene.laws[c.joint]
                   .closure(in_situ_stress(scene.model.in_situ, scene.model.gravity, height),
                            turn_right(edge) / norm(edge))
                   .y;
@@ -108,7 +110,7 @@ bool lies_on(const BlockSet& blocks, BlockEdge edge, Vec2 place, double near) {
 }
 
 bool is_corner(const BlockSet& blocks, int block, Vec2 arm) {
-  const double same = 2e-3 * blocks.size[static_cast<size_t>(block)];  // chords end a closure off
+  const double same = 2e-3 * blocks.size[block];  // chords end a closure off
   for (int v = 0; v < blocks.vertex_count(block); ++v)
     if (norm(blocks.corner({block, v}) - arm) <= same) return true;
   return false;
@@ -119,7 +121,7 @@ bool is_corner(const BlockSet& blocks, int block, Vec2 arm) {
 double residual_slip(const Scene& scene, const Instant& i, const Patch& c, size_t end, size_t row) {
   const State& state = i.state;
   const BlockSet& blocks = scene.blocks;
-  const auto a = static_cast<size_t>(c.block_a), b = static_cast<size_t>(c.block_b);
+  const int a = c.block_a, b = c.block_b;
   const double near = 0.02 * std::min(blocks.size[a], blocks.size[b]);
   const Vec2 apart = blocks.centroid[a] - blocks.centroid[b];
   // on the side of b where the end is a corner of a; level ends are corners of both
@@ -140,7 +142,7 @@ double residual_slip(const Scene& scene, const Instant& i, const Patch& c, size_
     const Vec2 side = blocks.corner(blocks.end_of(edge)) - blocks.corner({edge.block, edge.edge});
     const Mat2 stress =
         in_situ_stress(scene.model.in_situ, scene.model.gravity, blocks.centroid[b].y + in_b.y);
-    closure = scene.laws[static_cast<size_t>(c.joint)].closure(stress, turn_right(side) / norm(side)).y;
+    closure = scene.laws[c.joint].closure(stress, turn_right(side) / norm(side)).y;
   }
   // what patches remember is already that of the end of the step
   const double to_come = i.work.clock.dt * relative_velocity(i.work.rows.points[row], state.rate)[1];
@@ -158,11 +160,10 @@ JointPoint patch_point(const Scene& scene, const Instant& i, size_t k) {
   out.length = 0.5 * c.length;
   out.slip = c.slip[end];
   out.slip_signed = residual_slip(scene, i, c, end, i.work.rows.range(Family::kContact).begin + k);
-  if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip[end]);
+  if (c.joint >= 0) out.rise = scene.laws[c.joint].rise(c.slip[end]);
   out.opening = std::max(0.0, i.work.gaps[k] - out.rise);
-  const double noticed =
-      noticeable(scene.blocks, static_cast<size_t>(c.block_a), static_cast<size_t>(c.block_b));
-  out.state = static_cast<int>(joint_state(c.touched, c.force[end][0], out.slip, out.opening, noticed));
+  const double noticed = noticeable(scene.blocks, c.block_a, c.block_b);
+  out.state = place_of(joint_state(c.touched, c.force[end][0], out.slip, out.opening, noticed));
   return out;
 }
 
@@ -176,11 +177,10 @@ JointPoint contact_point(const Scene& scene, const Instant& i, size_t k) {
   if (out.set.empty()) out.set = set_of(scene, c.key.block_a, c.key.vertex);
   out.length = c.length;
   out.slip = c.slip, out.slip_signed = residual_slip(scene, i, k);
-  if (c.joint >= 0) out.rise = scene.laws[static_cast<size_t>(c.joint)].rise(c.slip);
+  if (c.joint >= 0) out.rise = scene.laws[c.joint].rise(c.slip);
   out.opening = std::max(0.0, i.work.gaps[k] - out.rise);
-  const double noticed =
-      noticeable(scene.blocks, static_cast<size_t>(c.key.block_a), static_cast<size_t>(c.key.block_b));
-  out.state = static_cast<int>(joint_state(c.touched, c.force[0], out.slip, out.opening, noticed));
+  const double noticed = noticeable(scene.blocks, c.key.block_a, c.key.block_b);
+  out.state = place_of(joint_state(c.touched, c.force[0], out.slip, out.opening, noticed));
   return out;
 }
 
@@ -192,9 +192,8 @@ std::pair<int, int> patch_numbers(const Scene& scene, const std::vector<Patch>& 
   int piece = 0;
   for (size_t i = k; i > 0 && same_parts(patches[i - 1]); --i) ++piece;
   const std::vector<int>& first = scene.outlines.part_begin;
-  const int part = c.part_a - first[static_cast<size_t>(c.block_a)];
-  return {2 * (part + piece * scene.outlines.parts_of(c.block_a)) + end,
-          -2 - (c.part_b - first[static_cast<size_t>(c.block_b)])};
+  const int part = c.part_a - first[c.block_a];
+  return {2 * (part + piece * scene.outlines.parts_of(c.block_a)) + end, -2 - (c.part_b - first[c.block_b])};
 }
 
 int law_number(const Patch& patch) {
@@ -223,7 +222,7 @@ double closing_at(const Instant& i, size_t row) {
 }
 
 Vec2 point_now(const Scene& scene, const State& state, const PointRows& p) {
-  const auto a = static_cast<size_t>(p.block_a);
+  const int a = p.block_a;
   // the acting arm of a deformable block is the reference one
   const bool deforms = scene.blocks.kind[a] == BlockKind::kDeformable;
   const Vec2 from_centroid = deforms ? p.arm_a + state.strain_part[a] * p.arm_a : p.arm_a;
@@ -236,7 +235,7 @@ namespace {
 int kind_of(Family family) {
   constexpr int kKind[] = {1, 0, 2, 3, 3, 4};
   static_assert(std::size(kKind) == kFamilies.size());
-  return kKind[static_cast<size_t>(family)];
+  return kKind[place_of(family)];
 }
 
 // What any row tells of its point.
@@ -310,10 +309,8 @@ std::vector<std::pair<size_t, size_t>> joint_ends(const Instant& i) {
   if (!i.state.patches.empty()) return out;
   for (const ContactPair& pair : i.state.pairs) {
     for (int k = 0; k < pair.count && !i.state.contacts.empty(); ++k) {
-      const int partner = i.state.contacts[static_cast<size_t>(pair.begin + k)].partner;
-      if (partner > k)
-        out.emplace_back(first + static_cast<size_t>(pair.begin + k),
-                         first + static_cast<size_t>(pair.begin + partner));
+      const int partner = i.state.contacts[pair.begin + k].partner;
+      if (partner > k) out.emplace_back(first + pair.begin + k, first + pair.begin + partner);
     }
   }
   return out;
@@ -329,13 +326,12 @@ void JointSummary::look(const Scene& scene, const State& state) {
   }
   broken_by_set.assign(by_set.begin(), by_set.end());
   for (int b = 0; b < scene.blocks.count; ++b) {
-    const auto k = static_cast<size_t>(b);
     if (scene.blocks.removed(b)) continue;
-    const double share = norm(state.displacement[k]) / scene.blocks.size[k];
+    const double share = norm(state.displacement[b]) / scene.blocks.size[b];
     if (share > moved_share) moved_share = share, moved_most = b;
-    if (const double way = norm(state.displacement[k]); way > moved_way) moved_way = way, moved_far = b;
+    if (const double way = norm(state.displacement[b]); way > moved_way) moved_way = way, moved_far = b;
     if (share < kMoved) continue;
-    moved_area += scene.blocks.size[k] * scene.blocks.size[k];
+    moved_area += scene.blocks.size[b] * scene.blocks.size[b];
     ++moved_blocks;
   }
 }
@@ -414,8 +410,7 @@ void JointSummary::load(Loader& from, const std::string& name, const Scene& scen
   exchange_summary(from, *this, name);
   const auto known = [&scene](const JointPoint& p) {
     return p.block_a >= 0 && p.block_a < scene.blocks.count && p.block_b >= 0 &&
-           p.block_b < scene.blocks.count && p.joint >= -1 &&
-           p.joint < static_cast<int>(scene.model.joints.size());
+           p.block_b < scene.blocks.count && p.joint >= -1 && p.joint < count_of(scene.model.joints);
   };
   // the others have no place
   if ((!(largest.slip <= 0) && !known(largest)) || (slipped_joints != 0 && !known(most_residual)) ||
@@ -427,7 +422,7 @@ void JointSummary::load(Loader& from, const std::string& name, const Scene& scen
 
 const Columns<JointRow, Cell>& joint_columns() {
   static const Columns<JointRow, Cell> columns = [] {
-    const auto block = [](const JointRow& r, int b) { return r.scene.blocks.name[static_cast<size_t>(b)]; };
+    const auto block = [](const JointRow& r, int b) { return r.scene.blocks.name[b]; };
     Columns<JointRow, Cell> out{
         {"stage", "", [](const JointRow& r) { return r.stage; }},
         {"time", "s", [](const JointRow& r) { return r.time; }},
@@ -435,16 +430,13 @@ const Columns<JointRow, Cell>& joint_columns() {
         {"block_a", "", [block](const JointRow& r) { return block(r, r.point.block_a); }},
         {"block_b", "", [block](const JointRow& r) { return block(r, r.point.block_b); }},
         {"joint", "",
-         [](const JointRow& r) {
-           return r.point.joint < 0 ? "" : r.scene.model.joints[static_cast<size_t>(r.point.joint)].name;
-         }},
+         [](const JointRow& r) { return r.point.joint < 0 ? "" : r.scene.model.joints[r.point.joint].name; }},
         {"x", "m", [](const JointRow& r) { return r.point.point.x; }},
         {"y", "m", [](const JointRow& r) { return r.point.point.y; }}};
     for (const ContactColumn& c : contact_columns())
       if (c.in_joints_csv)
         out.push_back({c.name, c.unit, [&c](const JointRow& r) { return c.of(r.point); }, c.over, c.digits});
-    out.push_back(
-        {"state", "", [](const JointRow& r) { return kJointStates.at(static_cast<size_t>(r.point.state)); }});
+    out.push_back({"state", "", [](const JointRow& r) { return kJointStates.at(r.point.state); }});
     return out;
   }();
   return columns;
@@ -467,7 +459,7 @@ std::string free_field_side(const Scene& scene, const JointSummary& joints) {
   if (joints.slipped_joints == 0) return "";
   const JointPoint& p = joints.most_residual;
   for (const BoundaryPoint& side : scene.boundaries.points) {
-    const BoundaryInput& input = scene.model.boundaries[static_cast<size_t>(side.boundary)];
+    const BoundaryInput& input = scene.model.boundaries[side.boundary];
     if (input.kind == BoundaryKind::kFreeField && (side.block == p.block_a || side.block == p.block_b))
       return input.name;
   }

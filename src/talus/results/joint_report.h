@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/contact/joint_state.h"
 #include "talus/output/archive.h"
 #include "talus/output/contact_points.h"
@@ -28,7 +29,7 @@ struct JointPoint : FramePoint {
   double residual_slip() const { return std::abs(slip_signed); }  // what is left of it [m]
   /// What of it the two went while they were apart, which accumulated slip does not count: residual slip beyond that [m].
   double slip_while_open() const { return std::max(0.0, residual_slip() - slip); }
-  bool is(JointState s) const { return state == static_cast<int>(s); }
+  bool is(JointState s) const { return state == place_of(s); }
 };
 
 /// The point of row `row`; none for supports, boundaries and bonds that never break.

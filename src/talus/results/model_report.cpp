@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/angle.h"
+#include "talus/base/index.h"
 #include "talus/model/joint_law.h"
 #include "talus/model/units.h"
 #include "talus/output/text_table.h"
@@ -19,15 +20,14 @@ namespace {
 using nlohmann::ordered_json;
 
 const char* kind_name(BlockKind kind) {
-  return kind == BlockKind::kRemoved ? "removed" : kBlockKinds.at(static_cast<size_t>(kind));
+  return kind == BlockKind::kRemoved ? "removed" : kBlockKinds.at(place_of(kind));
 }
 
 ordered_json materials(const Scene& scene) {
   ordered_json out = ordered_json::array();
-  for (size_t m = 0; m < scene.model.materials.size(); ++m) {
+  for (int m = 0; m < count_of(scene.model.materials); ++m) {
     const Material& material = scene.model.materials[m];
-    const auto count =
-        std::count(scene.blocks.material.begin(), scene.blocks.material.end(), static_cast<int>(m));
+    const auto count = std::count(scene.blocks.material.begin(), scene.blocks.material.end(), m);
     ordered_json j = {{"name", material.name}, {"density [kg/m3]", material.density}};
     if (!std::isnan(material.young)) j["young [Pa]"] = material.young;
     if (!std::isnan(material.poisson)) j["poisson"] = material.poisson;
@@ -64,7 +64,7 @@ ordered_json joints(const Model& model) {
     if (p.dilation_angle > 0) j["dilation_angle [deg]"] = p.dilation_angle / kDegree;
     if (p.damping_time > 0) j["damping_time [s]"] = p.damping_time;
     if (p.restitution >= 0) j["restitution"] = p.restitution;
-    const JointKind& kind = joint_kinds()[static_cast<size_t>(p.kind)];
+    const JointKind& kind = joint_kinds()[p.kind];
     for (size_t k = 0; k < p.own.size(); ++k) {
       const std::string unit(si_symbol(kind.keys[k].dimension));
       j[std::string(kind.keys[k].name) + (unit.empty() ? "" : " [" + unit + "]")] = p.own[k];
@@ -79,7 +79,7 @@ ordered_json boundaries(const Model& model) {
   for (const BoundaryInput& b : model.boundaries) {
     ordered_json j = {{"name", b.name}, {"kind", entry(b.kind).name}};
     const auto motion = [&](const char* key, int history) {
-      if (history >= 0) j[key] = model.histories[static_cast<size_t>(history)].name;
+      if (history >= 0) j[key] = model.histories[history].name;
     };
     motion("velocity_in_x", b.history_x), motion("velocity_in_y", b.history_y);
     out.push_back(j);
@@ -102,12 +102,12 @@ ordered_json loads(const Model& model) {
 ordered_json bolts(const Model& model) {
   static constexpr const char* kKind[] = {"anchored", "grouted", "superposed"};
   ordered_json out = ordered_json::array();
-  for (size_t t = 0; t < model.bolt_types.size(); ++t) {
+  for (int t = 0; t < count_of(model.bolt_types); ++t) {
     const BoltType& type = model.bolt_types[t];
     const auto count = std::count_if(model.bolts.begin(), model.bolts.end(),
-                                     [t](const BoltInput& b) { return b.type == static_cast<int>(t); });
+                                     [t](const BoltInput& b) { return b.type == t; });
     ordered_json j = {{"name", type.name},
-                      {"kind", kKind[static_cast<int>(type.kind)]},
+                      {"kind", kKind[place_of(type.kind)]},
                       {"count", count},
                       {"diameter [m]", type.diameter},
                       {"young [Pa]", type.young},
@@ -144,12 +144,12 @@ const Columns<BlockRow, Cell>& block_columns() {
       {"material", "",
        [](const R& r) {
          const int material = r.scene.blocks.material[r.block];
-         return material < 0 ? "" : r.scene.model.materials[static_cast<size_t>(material)].name;
+         return material < 0 ? "" : r.scene.model.materials[material].name;
        }},
       {"group", "",
        [](const R& r) {
          const int group = r.scene.blocks.group[r.block];
-         return group < 0 ? "" : r.scene.layout.groups[static_cast<size_t>(group)];
+         return group < 0 ? "" : r.scene.layout.groups[group];
        }},
       {"area", "m2", [](const R& r) { return r.scene.blocks.volume[r.block] / r.scene.blocks.thickness; },
        Over::kLast, 9},
@@ -160,8 +160,7 @@ const Columns<BlockRow, Cell>& block_columns() {
 
 std::string blocks_table(const Scene& scene) {
   std::string out = csv_head(block_columns());
-  for (size_t k = 0; k < static_cast<size_t>(scene.blocks.count); ++k)
-    out += csv_row(block_columns(), BlockRow{scene, k});
+  for (size_t k = 0; k < scene.layout.blocks.size(); ++k) out += csv_row(block_columns(), BlockRow{scene, k});
   return out;
 }
 
@@ -173,7 +172,7 @@ ordered_json model_in_numbers(const Scene& scene) {
   j["gravity [m/s2]"] = {m.gravity.x, m.gravity.y};
   j["materials"] = materials(scene);
   j["joints"] = joints(m);
-  if (m.default_joint >= 0) j["default_joint"] = m.joints[static_cast<size_t>(m.default_joint)].name;
+  if (m.default_joint >= 0) j["default_joint"] = m.joints[m.default_joint].name;
   j["boundaries"] = boundaries(m);
   j["loads"] = loads(m);
   j["bolts"] = bolts(m);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/corners/follow.h"
 #include "talus/output/paraview_view.h"
 #include "talus/results/histories.h"
@@ -29,12 +30,11 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   TALUS_ASSERT(plans.size() == scene.model.stages.size());
   Prediction p;
   p.blocks = scene.blocks.count;
-  p.bond_faces = static_cast<int>(scene.bonds.faces.size());
-  p.supported = static_cast<int>(scene.supported.size());
+  p.bond_faces = count_of(scene.bonds.faces);
+  p.supported = count_of(scene.supported);
   p.boundary = static_cast<int>(scene.boundaries.points.size() + scene.boundaries.ties.size());
   const State state = start_state(scene);
-  p.contacts = static_cast<int>(
-      find_contacts(scene.blocks, scene.bonds, state, 0.02 * smallest_size(scene.blocks)).size());
+  p.contacts = count_of(find_contacts(scene.blocks, scene.bonds, state, 0.02 * smallest_size(scene.blocks)));
 
   const OutputInput& out = scene.model.output;
   p.frames = 1;
@@ -70,7 +70,7 @@ Prediction predict(const Scene& scene, const std::vector<StagePlan>& plans) {
   // blocks, state, pairs; per point its row, memory and place in the sweeps; for Newton also about 16 x 2
   // entries of W, its factor and copies
   const auto hard = std::count_if(scene.bonds.faces.begin(), scene.bonds.faces.end(), [&](const BondFace& f) {
-    return f.unbreakable || !scene.laws[static_cast<size_t>(f.joint)].is_soft(0);
+    return f.unbreakable || !scene.laws[f.joint].is_soft(0);
   });
   const bool factors = chosen_solver(scene.model, static_cast<size_t>(points),
                                      {.hard_ties = 2 * static_cast<size_t>(hard)}) == SolverKind::kNewton;

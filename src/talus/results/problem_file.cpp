@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/json_depth.h"
 #include "talus/base/json_number.h"
 #include "talus/base/text_file.h"
@@ -82,7 +83,7 @@ std::string problem_text(const Instant& i) {
                     {"step", i.state.step},
                     {"dt [s]", i.work.clock.dt}};
   j["blocks"] = ordered_json::array();
-  for (size_t k = 0; k < static_cast<size_t>(b.count); ++k) {
+  for (int k = 0; k < b.count; ++k) {
     j["blocks"].push_back({{"name", b.name[k]},
                            {"mobility", mobility_json(i.work.mobility[k])},
                            {"velocity", vec(i.work.rate_given()[k].a)},
@@ -114,19 +115,19 @@ Replay replay_problem(const std::filesystem::path& file, const SolverInput& opti
       mobility.push_back(read_mobility(b.at("mobility")));
       rate.push_back({vec(b.at("velocity")), mat(b.at("gradient_rate"))});
     }
-    const auto blocks = static_cast<int>(mobility.size());
+    const auto blocks = count_of(mobility);
     const auto known = [blocks](int t) { return t >= 0 && t < blocks; };
     if (!tile.empty() && (tile.size() != mobility.size() || !std::all_of(tile.begin(), tile.end(), known)))
       throw std::runtime_error("the tiles of its blocks are not one of each, from 0 up");
     for (const ordered_json& p : j.at("points"))
       replay.rows.add(read_point(p), {p.at("guess").at(0), p.at("guess").at(1)});
-    const auto points = static_cast<int>(replay.rows.points.size());
+    const auto points = count_of(replay.rows.points);
     for (const PointRows& p : replay.rows.points)
       if (p.block_a < 0 || p.block_a >= blocks || p.block_b >= blocks || p.partner >= points)
         throw std::runtime_error("a point names a block or partner that is not there");
     for (int i = 0; i < points; ++i) {
-      const int partner = replay.rows.points[static_cast<size_t>(i)].partner;
-      if (partner >= 0 && replay.rows.points[static_cast<size_t>(partner)].partner != i)
+      const int partner = replay.rows.points[i].partner;
+      if (partner >= 0 && replay.rows.points[partner].partner != i)
         throw std::runtime_error(fmt::format("point {} is not the partner of its partner", i));
     }
     const double dt = j.at("dt [s]");

@@ -47,7 +47,7 @@ void say(std::FILE* out, const std::string& text) { std::fwrite(text.data(), 1, 
 void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan) {
   next_.stage_begins(scene, stage, plan);
   finish();
-  const StageInput& s = scene.model.stages[static_cast<size_t>(stage)];
+  const StageInput& s = scene.model.stages[stage];
   const bool at_rest = s.kind == StageKind::kStatic;
   const std::string how = (s.from_rest  ? ", steps from rest"
                            : s.implicit ? ", implicit elasticity"
@@ -75,8 +75,7 @@ void Progress::stage_begins(const Scene& scene, int stage, const StagePlan& plan
 void Progress::blocks_are_left_out(const Scene& scene, int stage, const std::string& who) {
   next_.blocks_are_left_out(scene, stage, who);
   finish();
-  say(out_,
-      fmt::format("  {}: not waited for: {}\n", scene.model.stages[static_cast<size_t>(stage)].name, who));
+  say(out_, fmt::format("  {}: not waited for: {}\n", scene.model.stages[stage].name, who));
 }
 
 void Progress::stage_is_followed(const Scene& scene, int stage, const StagePlan& plan,
@@ -84,8 +83,8 @@ void Progress::stage_is_followed(const Scene& scene, int stage, const StagePlan&
   next_.stage_is_followed(scene, stage, plan, why);
   finish();
   say(out_, fmt::format("  {}: {}; followed by damped motion, {:g} s in at most {} steps of {:.4g} s\n",
-                        scene.model.stages[static_cast<size_t>(stage)].name, why,
-                        plan.dt * static_cast<double>(plan.steps), plan.steps, plan.dt));
+                        scene.model.stages[stage].name, why, plan.dt * static_cast<double>(plan.steps),
+                        plan.steps, plan.dt));
   std::fflush(out_);
   stage_wall_ = last_shown_ = wall_now();
   stage_step_ = 0;
@@ -96,7 +95,7 @@ void Progress::at(const Instant& instant) {
   worst_error_ = std::max(worst_error_, instant.report.error.worst);
   if (stage_step_++ == 0) pace_.begin(wall_now(), static_cast<double>(instant.steps_before));
   // the clock is not asked at every short step
-  const StageInput& stage = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
+  const StageInput& stage = instant.scene.model.stages[instant.stage];
   if (instant.last || (!stage.from_rest && stage_step_ % 16 != 0)) return;
   const double now = wall_now();
   if (now - last_shown_ < (terminal_ ? kRewriteInterval : kLineInterval)) return;
@@ -107,7 +106,7 @@ void Progress::at(const Instant& instant) {
 void Progress::show(const Instant& instant, double now) {
   const double rate = static_cast<double>(stage_step_) / (now - stage_wall_);
   pace_.add(now, static_cast<double>(instant.steps_before));
-  const StageInput& s = instant.scene.model.stages[static_cast<size_t>(instant.stage)];
+  const StageInput& s = instant.scene.model.stages[instant.stage];
   const double share =
       100 * static_cast<double>(instant.steps_before) / static_cast<double>(instant.plan.steps);
   const Pace::Range left = pace_.of(static_cast<double>(instant.plan.steps - instant.steps_before));
@@ -147,10 +146,10 @@ std::string open_text(const JointPoint& p) {
 // The block that has gone furthest, in metres and for its size.
 std::string moved_text(const Scene& scene, const JointSummary& joints) {
   const auto line = [&scene](const std::string& by, int block, double way, double share) {
-    return fmt::format("  moved most      {}, {:.3g} m ({:.2g} % of its size){}\n",
-                       scene.blocks.name[static_cast<size_t>(block)], way, 100 * share, by);
+    return fmt::format("  moved most      {}, {:.3g} m ({:.2g} % of its size){}\n", scene.blocks.name[block],
+                       way, 100 * share, by);
   };
-  const auto size = [&scene](int block) { return scene.blocks.size[static_cast<size_t>(block)]; };
+  const auto size = [&scene](int block) { return scene.blocks.size[block]; };
   const int most = joints.moved_most, far = joints.moved_far;
   if (most == far || far < 0) return line("", most, joints.moved_share * size(most), joints.moved_share);
   return line(", in metres", far, joints.moved_way, joints.moved_way / size(far)) +

@@ -9,6 +9,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text_file.h"
 #include "talus/base/version.h"
 #include "talus/model/with_folder.h"
@@ -69,7 +70,7 @@ std::string table_then(ResultFolder& folder, const char* name, int64_t size) {
     return {};
   }
   std::string text = read_text_file(path);
-  text.resize(static_cast<size_t>(size));  // check_tables(): it is that long
+  text.resize(size);  // check_tables(): it is that long
   folder.write(name, text, Reach::kDisk);
   return text;
 }
@@ -461,7 +462,7 @@ void Recorder::write_bolts(const Instant& i) {
   if (scene_.model.bolts.empty()) return;
   const int stage = i.last ? i.stage : i.stage - 1;
   if (bolt_table_.empty()) bolt_table_ = csv_head(bolt_columns());
-  const std::string& name = scene_.model.stages[static_cast<size_t>(stage)].name;
+  const std::string& name = scene_.model.stages[stage].name;
   const std::vector<BoltLine> lines = bolt_lines(scene_, i.state, stage);
   bolt_summary_ = BoltSummary::of(lines);
   for (const BoltLine& line : lines)
@@ -470,7 +471,7 @@ void Recorder::write_bolts(const Instant& i) {
 }
 
 void Recorder::write_joints(const Instant& i, int stage) {
-  const std::string& name = scene_.model.stages[static_cast<size_t>(stage)].name;
+  const std::string& name = scene_.model.stages[stage].name;
   joint_summary_ = {};
   SlipList slipped;
   if (joints_.empty()) joints_ = csv_head(joint_columns());
@@ -489,7 +490,7 @@ void Recorder::write_joints(const Instant& i, int stage) {
   if (slips_.empty()) slips_ = csv_head(slip_columns());
   for (const SlippedJoint& joint : list)
     slips_ += csv_row(slip_columns(), SlipRow{scene_, joint, name, i.state.time});
-  joint_summary_.slipped_joints = static_cast<int>(list.size());
+  joint_summary_.slipped_joints = count_of(list);
   if (!list.empty()) joint_summary_.most_residual = list[0].most;
   folder_.write("slips.csv", slips_, Reach::kDisk);
 }

@@ -8,15 +8,12 @@ namespace talus {
 
 namespace {
 
-const std::string& block_name(const Scene& scene, int block) {
-  return scene.blocks.name[static_cast<size_t>(block)];
-}
+const std::string& block_name(const Scene& scene, int block) { return scene.blocks.name[block]; }
 
 }  // namespace
 
 void SlipList::add(const Scene& scene, const JointPoint& p) {
-  const double least =
-      noticeable(scene.blocks, static_cast<size_t>(p.block_a), static_cast<size_t>(p.block_b));
+  const double least = noticeable(scene.blocks, p.block_a, p.block_b);
   if (p.face || p.slip < least) return;
   const auto [low, high] = std::minmax(p.block_a, p.block_b);
   SlippedJoint& joint = joints_[{low, high, p.set}];
@@ -45,7 +42,7 @@ const Columns<SlipRow, Cell>& slip_columns() {
       {"joint", "",
        [](const R& r) {
          const int joint = r.joint.most.joint;
-         return joint < 0 ? "" : r.scene.model.joints[static_cast<size_t>(joint)].name;
+         return joint < 0 ? "" : r.scene.model.joints[joint].name;
        }},
       {"x", "m", [](const R& r) { return r.joint.most.point.x; }},
       {"y", "m", [](const R& r) { return r.joint.most.point.y; }},
@@ -54,7 +51,7 @@ const Columns<SlipRow, Cell>& slip_columns() {
       {"slip_while_open", "m", [](const R& r) { return r.joint.most.slip_while_open(); }, Over::kLast, 9},
       {"opening", "m", [](const R& r) { return r.joint.opening; }, Over::kLast, 9},
       {"points", "", [](const R& r) { return int64_t{r.joint.points}; }},
-      {"state", "", [](const R& r) { return kJointStates.at(static_cast<size_t>(r.joint.most.state)); }}};
+      {"state", "", [](const R& r) { return kJointStates.at(r.joint.most.state); }}};
   return columns;
 }
 

@@ -23,7 +23,7 @@ nlohmann::ordered_json monitor_numbers(const Scene& scene, const Histories& hist
   }
   const Answers& answers = histories.answers();
   for (const Answers::Stage& s : answers.stages()) {
-    const StageInput& stage = scene.model.stages[static_cast<size_t>(s.stage)];
+    const StageInput& stage = scene.model.stages[s.stage];
     for (size_t k = 0; k < answers.titles().size(); ++k) {
       const ColumnTitle& title = answers.titles()[k];
       const Answer& a = s.asked[k];
@@ -61,7 +61,7 @@ nlohmann::ordered_json audit_numbers(const Scene& scene, const std::optional<aud
     if (e.worst.block_a >= 0) {
       ordered_json names = ordered_json::array();
       for (const int k : {e.worst.block_a, e.worst.block_b})
-        if (k >= 0) names.push_back(scene.blocks.name[static_cast<size_t>(k)]);
+        if (k >= 0) names.push_back(scene.blocks.name[k]);
       one["blocks"] = names, one["x [m]"] = e.worst.place.x, one["y [m]"] = e.worst.place.y;
     }
     one["share"] = e.worst.share, one["text"] = e.worst.text;
@@ -163,9 +163,7 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
                  {"opening_largest [m]", joints.widest}};
   const auto where = [&b](const JointPoint& p) {
     return ordered_json{
-        {"x [m]", p.point.x},
-        {"y [m]", p.point.y},
-        {"blocks", {b.name[static_cast<size_t>(p.block_a)], b.name[static_cast<size_t>(p.block_b)]}}};
+        {"x [m]", p.point.x}, {"y [m]", p.point.y}, {"blocks", {b.name[p.block_a], b.name[p.block_b]}}};
   };
   j["joints"]["slip_times_length [m2]"] = joints.slip_area;
   j["joints"]["broken_length [m]"] = joints.broken;
@@ -189,13 +187,12 @@ std::string summary_text(const Scene& scene, const RunResult& r, const RunNotes&
   j["moved"] = {{"blocks", joints.moved_blocks}, {"area [m2]", joints.moved_area}};
   const auto moved = [&](const char* key, int block, double way) {
     if (block < 0) return;
-    const auto k = static_cast<size_t>(block);
     j["moved"][key] = {
-        {"block", b.name[k]}, {"displacement [m]", way}, {"share of its size", way / b.size[k]}};
+        {"block", b.name[block]}, {"displacement [m]", way}, {"share of its size", way / b.size[block]}};
   };
   moved("most_in_metres", joints.moved_far, joints.moved_way);
   moved("most_for_its_size", joints.moved_most,
-        joints.moved_most < 0 ? 0 : joints.moved_share * b.size[static_cast<size_t>(joints.moved_most)]);
+        joints.moved_most < 0 ? 0 : joints.moved_share * b.size[joints.moved_most]);
   if (joints.largest.slip > 0) j["joints"]["slip_largest_at"] = where(joints.largest);
   j["joints"]["slipped_joints"] = joints.slipped_joints;
   if (joints.slipped_joints > 0) {

@@ -17,7 +17,7 @@ void invert(double a, double b, double c, double out[3]) {
 // Eq. 1.2.
 Mobility mobility_of(const BlockSet& blocks, size_t i, double share) {
   Mobility m;
-  if (!blocks.moves_freely(static_cast<int>(i))) return m;
+  if (!blocks.moves_freely(i)) return m;
   m.mass = share / blocks.mass[i];
   if (blocks.kind[i] == BlockKind::kRigid) {
     const double j = share / blocks.polar_inertia[i];
@@ -46,7 +46,7 @@ Mobility mobility_implicit(const BlockSet& blocks, size_t i, Vec2 rotation, doub
 
 std::vector<Mobility> mobilities(const BlockSet& blocks, double share) {
   std::vector<Mobility> all;
-  for (size_t i = 0; i < static_cast<size_t>(blocks.count); ++i) all.push_back(mobility_of(blocks, i, share));
+  for (int i = 0; i < blocks.count; ++i) all.push_back(mobility_of(blocks, i, share));
   return all;
 }
 
@@ -75,8 +75,8 @@ void apply_impulses(const std::vector<Mobility>& mobility, const RowSet& rows, s
   std::vector<BlockForce> sum(rate.size());
   for (size_t r = 0; r < rows.points.size(); ++r) {
     const PointRows& p = rows.points[r];
-    if (p.block_a >= 0) sum[static_cast<size_t>(p.block_a)] += impulse_on(p, rows.impulse[r], 1);
-    if (p.block_b >= 0) sum[static_cast<size_t>(p.block_b)] += impulse_on(p, rows.impulse[r], -1);
+    if (p.block_a >= 0) sum[p.block_a] += impulse_on(p, rows.impulse[r], 1);
+    if (p.block_b >= 0) sum[p.block_b] += impulse_on(p, rows.impulse[r], -1);
   }
   for (size_t i = 0; i < rate.size(); ++i) {
     const BlockRate change = accelerate(mobility[i], sum[i]);

@@ -21,7 +21,7 @@ struct Mobility {
 
 /// Whether impulses move block `block`; the ground (-1) they do not.
 inline bool moves(const std::vector<Mobility>& mobility, int block) {
-  return block >= 0 && mobility[static_cast<size_t>(block)].moves();
+  return block >= 0 && mobility[block].moves();
 }
 
 /// Turned by the rotation of cosine and sine `r`, and back.

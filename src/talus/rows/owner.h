@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "talus/base/index.h"
 #include "talus/blocks/work_done.h"
 
 namespace talus {
@@ -28,7 +29,7 @@ inline constexpr std::array<FamilyEntry, kAllFamilies.size()> kFamilies{
      {Family::kTie, "boundary", {Cause::kBoundary, Cause::kBoundary}},
      {Family::kBolt, "bolt", {Cause::kBolts, Cause::kBolts}}}};
 
-inline constexpr const FamilyEntry& entry(Family f) { return kFamilies[static_cast<size_t>(f)]; }
+inline constexpr const FamilyEntry& entry(Family f) { return kFamilies[place_of(f)]; }
 
 /// Whether two faces of blocks meet there: an intact face or a contact. Only these may give, and slip.
 inline constexpr bool is_joint(Family f) { return f == Family::kFace || f == Family::kContact; }
@@ -40,7 +41,7 @@ struct RowOwner {
   Family family = Family::kContact;
   int index = -1;
 
-  size_t at() const { return static_cast<size_t>(index); }
+  size_t at() const { return index; }
 };
 
 }  // namespace talus

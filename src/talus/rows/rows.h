@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/parallel.h"
 #include "talus/blocks/state.h"
 #include "talus/rows/owner.h"
@@ -37,7 +38,7 @@ struct PointRows {
   std::array<bool, 2> gives{};  // rows whose compliance is the give of a hard contact, not that of a joint
 
   /// Whether row k is one of a joint with stiffness.
-  bool is_soft(int k) const { return row[k].compliance > 0 && !gives[static_cast<size_t>(k)]; }
+  bool is_soft(int k) const { return row[k].compliance > 0 && !gives[k]; }
   bool is_soft() const { return is_soft(0) || is_soft(1); }
 
   /// Compliance of row k with the partner's impulse, the same seen from both ends [1/kg]: of a linear closure
@@ -77,9 +78,9 @@ struct RowSet {
   /// @pre  none of a later family is there
   size_t add_more(Family family, size_t count) {
     const size_t first = next_;
-    TALUS_ASSERT(end_.back() == end_[static_cast<size_t>(family)]);
+    TALUS_ASSERT(end_.back() == end_[place_of(family)]);
     next_ += count;
-    for (size_t f = static_cast<size_t>(family); f < end_.size(); ++f) end_[f] = next_;
+    for (size_t f = place_of(family); f < end_.size(); ++f) end_[f] = next_;
     if (points.size() < next_)
       resize_sparingly(points, next_), resize_sparingly(impulse, next_), resize_sparingly(owner, next_);
     return first;
@@ -90,7 +91,7 @@ struct RowSet {
 
   /// Those of a family, which stand together.
   RowRange range(Family family) const {
-    const auto f = static_cast<size_t>(family);
+    const int f = place_of(family);
     return {f == 0 ? 0 : end_[f - 1], end_[f]};
   }
 
@@ -146,8 +147,8 @@ inline BlockForce momentum(const BlockSet& blocks, size_t i, const BlockRate& ra
 /// Relative velocity (normal, tangential) of a point pair when the blocks move at `rate`.
 inline std::array<double, 2> relative_velocity(const PointRows& p, const std::vector<BlockRate>& rate) {
   Vec2 v;
-  if (p.block_a >= 0) v += velocity_at(rate[static_cast<size_t>(p.block_a)], p.arm_a);
-  if (p.block_b >= 0) v -= velocity_at(rate[static_cast<size_t>(p.block_b)], p.arm_b);
+  if (p.block_a >= 0) v += velocity_at(rate[p.block_a], p.arm_a);
+  if (p.block_b >= 0) v -= velocity_at(rate[p.block_b], p.arm_b);
   return {dot(p.normal, v), dot(turn_right(p.normal), v)};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 namespace talus {
 
@@ -28,10 +29,10 @@ void validate_point(const RowSet& rows, size_t r, int blocks) {
   promise(!(p.friction < 0), "its friction is negative");
   promise(!(p.row[0].compliance < 0) && !(p.row[1].compliance < 0), "its compliance is negative");
   if (p.partner < 0) return;
-  promise(static_cast<size_t>(p.partner) < rows.size() && static_cast<size_t>(p.partner) != r,
+  promise(std::cmp_less(p.partner, rows.size()) && std::cmp_not_equal(p.partner, r),
           "its partner is not there");
-  const PointRows& other = rows.points[static_cast<size_t>(p.partner)];
-  promise(static_cast<size_t>(other.partner) == r, "its partner has another one");
+  const PointRows& other = rows.points[p.partner];
+  promise(std::cmp_equal(other.partner, r), "its partner has another one");
 }
 
 }  // namespace

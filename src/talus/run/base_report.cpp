@@ -7,6 +7,7 @@
 #include <complex>
 #include <numbers>
 
+#include "talus/base/index.h"
 #include "talus/cut/selection.h"
 #include "talus/supports/medium.h"
 
@@ -23,7 +24,7 @@ struct Piece {
 // Blocks that the vertical line through `foot` passes above it, upwards.
 std::vector<Piece> pieces_above(const Layout& layout, Vec2 foot) {
   std::vector<Piece> pieces;
-  for (size_t i = 0; i < layout.blocks.size(); ++i) {
+  for (int i = 0; i < count_of(layout.blocks); ++i) {
     const Polygon& polygon = layout.blocks[i].polygon;
     std::vector<double> crossings;
     for (size_t k = 0; k < polygon.size(); ++k) {
@@ -34,7 +35,7 @@ std::vector<Piece> pieces_above(const Layout& layout, Vec2 foot) {
     std::sort(crossings.begin(), crossings.end());
     for (size_t k = 0; k + 1 < crossings.size(); k += 2)
       if (0.5 * (crossings[k] + crossings[k + 1]) > foot.y)
-        pieces.push_back({crossings[k], crossings[k + 1], static_cast<int>(i)});
+        pieces.push_back({crossings[k], crossings[k + 1], i});
   }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.from < b.from; });
   return pieces;
@@ -45,7 +46,7 @@ std::vector<WaveLayer> layers_above(const Scene& scene, Vec2 foot, int axis) {
   std::vector<WaveLayer> layers;
   double top = foot.y;
   for (const Piece& p : pieces_above(scene.layout, foot)) {
-    const BlockShape& shape = scene.layout.blocks[static_cast<size_t>(p.block)];
+    const BlockShape& shape = scene.layout.blocks[p.block];
     const double height = p.to - p.from;
     if (std::abs(p.from - top) > 1e-3 * height || shape.kind != BlockKind::kDeformable) return {};
     top = p.to;
@@ -58,7 +59,7 @@ std::vector<WaveLayer> layers_above(const Scene& scene, Vec2 foot, int axis) {
 }
 
 std::string base_line(const Scene& scene, const BoundaryInput& b, int axis) {
-  const History& history = scene.model.histories[static_cast<size_t>(axis == 0 ? b.history_x : b.history_y)];
+  const History& history = scene.model.histories[axis == 0 ? b.history_x : b.history_y];
   const std::string head =
       fmt::format("  base       \"{}\": \"{}\" is the {} along {}, {}", b.name, history.name,
                   b.outcrop ? "outcrop motion" : "upgoing wave", axis == 0 ? "x" : "y",
@@ -87,7 +88,7 @@ std::string edge_line(const Scene& scene, const BoundaryInput& b) {
   const std::vector<SelectedEdge> edges = outer_edges(scene.layout, b).edges;
   if (edges.empty()) return "";
   const SelectedEdge& e = edges[edges.size() / 2];
-  const BlockShape& shape = scene.layout.blocks[static_cast<size_t>(e.block)];
+  const BlockShape& shape = scene.layout.blocks[e.block];
   if (shape.kind != BlockKind::kDeformable) return "";
   std::string trouble;
   const Ground g = ground_at(scene.model, scene.layout, shape, shape.material, trouble);

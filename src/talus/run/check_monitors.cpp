@@ -39,7 +39,7 @@ void warn_of_dug(const Model& model, const Layout& layout, Vec2 point, const Whe
           where, path,
           fmt::format(
               "({:g}, {:g}) lies in block \"{}\", which stage \"{}\" takes out: it tells nothing from then on",
-              point.x, point.y, layout.blocks[static_cast<size_t>(block)].name, stage.name),
+              point.x, point.y, layout.blocks[block].name, stage.name),
           "to follow the rock that stays, move the point a little into it");
       return;
     }
@@ -83,9 +83,9 @@ void check_monitors(const Model& model, const Layout& layout, Findings& findings
       const std::vector<int> called = layout.blocks_called(m.target_a);
       if (called.empty()) unknown_block(layout, m.target_a, m.where, path, findings);
       if (called.size() > 1)
-        findings.error(m.where, path, fmt::format("\"{}\" is {} blocks, not one", m.target_a, called.size()),
-                       fmt::format("name one of its blocks, for example \"{}\"",
-                                   layout.blocks[static_cast<size_t>(called[0])].name));
+        findings.error(
+            m.where, path, fmt::format("\"{}\" is {} blocks, not one", m.target_a, called.size()),
+            fmt::format("name one of its blocks, for example \"{}\"", layout.blocks[called[0]].name));
     }
     if (m.kind == MonitorKind::kContact && m.target_a == m.target_b && !m.target_a.empty())
       findings.error(m.where, path, fmt::format("names \"{}\" twice", m.target_a),

@@ -27,11 +27,10 @@ double pace_of_many(const BlockSet& blocks, const State& state) {
   std::vector<std::pair<double, double>> pace;  // and area
   double all = 0;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
-    const double area = blocks.size[k] * blocks.size[k];
+    const double area = blocks.size[i] * blocks.size[i];
     all += area;
-    if (!state.is_left_out(i)) pace.emplace_back(norm(state.rate[k].a) / blocks.size[k], area);
+    if (!state.is_left_out(i)) pace.emplace_back(norm(state.rate[i].a) / blocks.size[i], area);
   }
   std::sort(pace.begin(), pace.end(), std::greater<>());
   double faster = 0;
@@ -46,32 +45,28 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
   double fastest = 0;
   for (int i = 0; i < blocks.count; ++i)
     if (blocks.moves_freely(i) && !state.is_left_out(i))
-      fastest =
-          std::max(fastest, norm(state.rate[static_cast<size_t>(i)].a) / blocks.size[static_cast<size_t>(i)]);
+      fastest = std::max(fastest, norm(state.rate[i].a) / blocks.size[i]);
   // beside a crumb that goes by itself the others stand
   const double many = pace_of_many(blocks, state),
                least = kGoes * (many >= kStands * fastest ? many : fastest);
   const auto goes = [&](int i) {
-    const auto k = static_cast<size_t>(i);
-    return blocks.moves_freely(i) && !state.is_left_out(i) && norm(state.rate[k].a) > 0 &&
-           norm(state.rate[k].a) >= least * blocks.size[k];
+    return blocks.moves_freely(i) && !state.is_left_out(i) && norm(state.rate[i].a) > 0 &&
+           norm(state.rate[i].a) >= least * blocks.size[i];
   };
   double farthest = 0, all = 0;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
-    all += blocks.size[k] * blocks.size[k];
-    if (const double way = norm(state.rate[k].a); goes(i) && way > farthest) farthest = way, m.farthest = i;
+    all += blocks.size[i] * blocks.size[i];
+    if (const double way = norm(state.rate[i].a); goes(i) && way > farthest) farthest = way, m.farthest = i;
   }
   if (m.farthest < 0) return m;
-  m.direction = state.rate[static_cast<size_t>(m.farthest)].a / farthest;
+  m.direction = state.rate[m.farthest].a / farthest;
   double weight = 0;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (!goes(i)) continue;
     m.members.push_back(i);
-    m.area += blocks.size[k] * blocks.size[k];
-    weight += blocks.mass[k] * norm(scene.model.gravity);
+    m.area += blocks.size[i] * blocks.size[i];
+    weight += blocks.mass[i] * norm(scene.model.gravity);
   }
   m.share = m.area / all;
   double borne = 0, forces = 0;
@@ -81,7 +76,7 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
     if (!(force > 0) || goes(p.block_a) == goes(p.block_b)) continue;
     borne += force;
     if (p.joint < 0) continue;
-    const std::string& name = scene.model.joints[static_cast<size_t>(p.joint)].name;
+    const std::string& name = scene.model.joints[p.joint].name;
     if (std::find(m.joints.begin(), m.joints.end(), name) == m.joints.end()) m.joints.push_back(name);
   }
   m.slides = borne > kBorne * (weight > 0 ? weight : forces);
@@ -90,8 +85,7 @@ Mechanism find_mechanism(const Scene& scene, const State& state) {
 }
 
 std::string Mechanism::text(const Scene& scene, const State& state) const {
-  const auto k = static_cast<size_t>(farthest);
-  const Vec2 at = scene.blocks.centroid[k] + state.displacement[k];
+  const Vec2 at = scene.blocks.centroid[farthest] + state.displacement[farthest];
   const bool one = members.size() == 1;
   std::string on;
   if (slides && !joints.empty())
@@ -99,8 +93,8 @@ std::string Mechanism::text(const Scene& scene, const State& state) const {
   return fmt::format(
       "{} block{}, {:.3g} m2 ({:.3g} % of what can move), {}{}; farthest \"{}\" at ({:.4g}, {:.4g}), along ({:.2f}, {:.2f})",
       members.size(), one ? "" : "s", area, 100 * share,
-      slides ? (one ? "slides" : "slide") : (one ? "falls" : "fall"), on, scene.blocks.name[k], at.x, at.y,
-      direction.x, direction.y);
+      slides ? (one ? "slides" : "slide") : (one ? "falls" : "fall"), on, scene.blocks.name[farthest], at.x,
+      at.y, direction.x, direction.y);
 }
 
 }  // namespace talus

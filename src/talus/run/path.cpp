@@ -54,13 +54,13 @@ void add_turns(const History& h, bool is_rate, std::vector<double>& times) {
 }  // namespace
 
 std::vector<double> path_goals(const Scene& scene, int stage) {
-  const StageInput& input = scene.model.stages[static_cast<size_t>(stage)];
+  const StageInput& input = scene.model.stages[stage];
   if (!(input.path > 0)) return {};
   TALUS_ASSERT(input.increments > 0);
   const double begin = scene.model.history_time_at(stage), end = begin + input.path;
   std::vector<double> times;
   for (const Followed& f : followed_in(scene, stage))
-    add_turns(scene.model.histories[static_cast<size_t>(f.history)], f.is_rate, times);
+    add_turns(scene.model.histories[f.history], f.is_rate, times);
   for (int i = 0; i <= input.increments; ++i)
     times.push_back(begin + input.path * (static_cast<double>(i) / input.increments));
   std::sort(times.begin(), times.end());
@@ -82,7 +82,7 @@ double prescribed_way(const Scene& scene, double from, double to) {
     return m.displacement_at(to, scene.model.histories) - m.displacement_at(from, scene.model.histories);
   };
   for (const SupportedPoint& p : scene.supported) {
-    const SupportInput& s = scene.model.supports[static_cast<size_t>(p.support)];
+    const SupportInput& s = scene.model.supports[p.support];
     if (p.active) most = std::max(most, norm(Vec2{way(s.x), way(s.y)}));
   }
   for (size_t k = 0; k < scene.layout.blocks.size(); ++k) {

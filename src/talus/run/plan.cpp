@@ -1,4 +1,5 @@
 #include "talus/run/plan.h"
+#include "talus/base/index.h"
 #include "talus/run/path.h"
 
 #include <fmt/format.h>
@@ -23,9 +24,7 @@ namespace {
 constexpr double kWarnClampShare = 0.03;
 constexpr double kMostSteps = 1e12;
 
-bool deforms(const BlockSet& blocks, int i) {
-  return blocks.kind[static_cast<size_t>(i)] == BlockKind::kDeformable;
-}
+bool deforms(const BlockSet& blocks, int i) { return blocks.kind[i] == BlockKind::kDeformable; }
 
 // Value that a share of some blocks is below; infinite without any.
 double value_of_share(const BlockSet& blocks, double share, bool (*counts)(const BlockSet&, int),
@@ -49,10 +48,8 @@ double median_step(const BlockSet& blocks) {
 // Time in which a pressure wave crosses two blocks of median size: the step at which errors of time and of
 // sub-division are of one size.
 double crossing_time(const BlockSet& b) {
-  return median_of_deformable(b, [&b](int i) {
-    const auto k = static_cast<size_t>(i);
-    return 2 * b.size[k] / std::sqrt(b.moduli[k].c11 * b.volume[k] / b.mass[k]);
-  });
+  return median_of_deformable(
+      b, [&b](int i) { return 2 * b.size[i] / std::sqrt(b.moduli[i].c11 * b.volume[i] / b.mass[i]); });
 }
 
 // Step without local damping, in inverse angular frequencies of a block on its joints: three to a swing; six where blocks that
@@ -76,7 +73,7 @@ constexpr double kUnresolved = 0.1;
 double joint_time(const Scene& scene, const BlockSet& b) {
   const auto stiffness_of = [&](int joint, double area) {
     if (joint < 0) return 0.0;
-    const JointLaw& law = scene.laws[static_cast<size_t>(joint)];
+    const JointLaw& law = scene.laws[joint];
     return !law.bonded() && law.is_soft(0) ? law.stiffness(0, area) : 0.0;
   };
   // joints between groups go before those of sides
@@ -89,18 +86,16 @@ double joint_time(const Scene& scene, const BlockSet& b) {
   const bool any_deforms = std::count(b.kind.begin(), b.kind.end(), BlockKind::kDeformable) > 0;
   const auto moves = [](const BlockSet& blocks, int i) { return blocks.moves_freely(i); };
   return value_of_share(b, kUnresolved, any_deforms ? deforms : +moves, [&](int i) {
-    const auto k = static_cast<size_t>(i);
-    const std::vector<int>& joints = scene.layout.blocks[k].edge_joint;
+    const std::vector<int>& joints = scene.layout.blocks[i].edge_joint;
     double stiffness = 0;
-    const int corners = b.vertex_begin[k + 1] - b.vertex_begin[k];
+    const int corners = b.vertex_begin[i + 1] - b.vertex_begin[i];
     for (int e = 0; e < corners; ++e) {
       const double area = scene.model.thickness * norm(b.corner({i, (e + 1) % corners}) - b.corner({i, e}));
-      const int joint = static_cast<size_t>(e) < joints.size() ? joints[static_cast<size_t>(e)]
-                                                               : scene.layout.default_joint;
-      stiffness += std::max(stiffness_of(joint, area), of_group(b.group[k], area));
+      const int joint = e < count_of(joints) ? joints[e] : scene.layout.default_joint;
+      stiffness += std::max(stiffness_of(joint, area), of_group(b.group[i], area));
     }
     // half of the sides hold it along either direction
-    return stiffness > 0 ? std::sqrt(b.mass[k] / (0.5 * stiffness)) : std::numeric_limits<double>::infinity();
+    return stiffness > 0 ? std::sqrt(b.mass[i] / (0.5 * stiffness)) : std::numeric_limits<double>::infinity();
   });
 }
 
@@ -117,8 +112,7 @@ double period_of_histories(const Scene& scene, const StageInput& stage) {
 double step_by_penalty(const Model& model, const BlockSet& blocks, const StageInput& stage, double crossing) {
   constexpr double kFiner = 8, kShareOfFall = 0.02;
   if (stage.kind == StageKind::kDynamic) return crossing / kFiner;
-  const double size =
-      median_of_deformable(blocks, [&blocks](int i) { return blocks.size[static_cast<size_t>(i)]; });
+  const double size = median_of_deformable(blocks, [&blocks](int i) { return blocks.size[i]; });
   const double g = norm(model.gravity);
   return g > 0 && std::isfinite(size) ? kShareOfFall * std::sqrt(size / g) : crossing;
 }
@@ -139,18 +133,17 @@ void limit_by_column(const Scene& scene, const StageInput& stage, const ColumnSt
 }  // namespace
 
 std::string bound_name(const Scene& scene, const StagePlan& plan) {
-  if (plan.bound_column >= 0)
-    return "free field of " + scene.model.boundaries[static_cast<size_t>(plan.bound_column)].name;
-  return plan.bound_block >= 0 ? scene.blocks.name[static_cast<size_t>(plan.bound_block)] : "";
+  if (plan.bound_column >= 0) return "free field of " + scene.model.boundaries[plan.bound_column].name;
+  return plan.bound_block >= 0 ? scene.blocks.name[plan.bound_block] : "";
 }
 
 double yields_more(const Scene& scene, const std::vector<StagePlan>& plans) {
   std::vector<double> masses;
   for (int i = 0; i < scene.blocks.count; ++i)
-    if (scene.blocks.moves_freely(i)) masses.push_back(scene.blocks.mass[static_cast<size_t>(i)]);
+    if (scene.blocks.moves_freely(i)) masses.push_back(scene.blocks.mass[i]);
   const double per_force = scene.give.per_force(scene.blocks.thickness);
   if (masses.empty() || plans.empty() || per_force == 0) return 0;
-  const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
+  const auto middle = masses.begin() + (masses.size() / 2);
   std::nth_element(masses.begin(), middle, masses.end());
   double dt = std::numeric_limits<double>::infinity();
   for (const StagePlan& plan : plans) dt = std::min(dt, plan.dt);
@@ -163,7 +156,7 @@ StagePlan plan_stage(const Scene& scene, const Scene& staged, const StageInput& 
   const BlockSet& blocks = staged.blocks;
   const StableStep undamped = stable_step(blocks);
   StableStep bound = undamped;
-  const std::string block_name = bound.block >= 0 ? blocks.name[static_cast<size_t>(bound.block)] : "";
+  const std::string block_name = bound.block >= 0 ? blocks.name[bound.block] : "";
   // local damping adds up to its share to the force that turns a motion back: stiffness (1 + share),
   // theory 4.5
   StagePlan plan;
@@ -274,12 +267,12 @@ std::vector<StagePlan> plan_stages(const Scene& scene, Findings& findings) {
   std::optional<Scene> changed;
   if (blocks_change(scene.model)) changed = scene;
   for (const StageInput& stage : scene.model.stages) {
-    const int index = static_cast<int>(plans.size());
+    const int index = count_of(plans);
     if (changed) change_scene(index, *changed);
     const Scene& staged = changed ? *changed : scene;
     StagePlan plan = plan_stage(scene, staged, stage, findings);
     if (stage.path > 0) {
-      plan.balances = static_cast<int>(path_goals(scene, index).size());
+      plan.balances = count_of(path_goals(scene, index));
       plan.steps *= plan.balances;
     }
     if (stage.may_follow) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "talus/base/index.h"
 #include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/path.h"
@@ -73,7 +74,7 @@ class Plausible {
       if (b.kind == BlockKind::kFixed || b.kind == BlockKind::kDriven) return true;
     for (const SupportInput& s : model_.supports)
       if (s.acts_in(stage) && s.y.kind != Motion::kFree) return true;
-    const bool is_static = model_.stages[static_cast<size_t>(stage)].kind == StageKind::kStatic;
+    const bool is_static = model_.stages[stage].kind == StageKind::kStatic;
     for (const BoundaryInput& b : model_.boundaries)
       if (b.acts_in(stage) && b.kind != BoundaryKind::kTied && (!is_static || b.hold != StaticHold::kFree))
         return true;
@@ -82,8 +83,8 @@ class Plausible {
 
   void check_what_holds() {
     if (model_.gravity.y == 0) return;
-    for (size_t i = 0; i < model_.stages.size(); ++i) {
-      if (is_held_in(static_cast<int>(i))) continue;
+    for (int i = 0; i < count_of(model_.stages); ++i) {
+      if (is_held_in(i)) continue;
       const bool nothing = model_.supports.empty() && model_.boundaries.empty();
       findings_.warning(nothing ? model_.where_gravity : model_.stages[i].where,
                         nothing ? "support" : "stage." + model_.stages[i].name,
@@ -94,14 +95,12 @@ class Plausible {
     }
   }
 
-  bool glues(int joint) const {
-    return joint >= 0 && JointLaw(model_.joints[static_cast<size_t>(joint)]).holds();
-  }
+  bool glues(int joint) const { return joint >= 0 && JointLaw(model_.joints[joint]).holds(); }
 
   // Pairs that a joint with strength shall hold together, and which share no face.
   void check_glue() {
     const Layout& layout = scene_.layout;
-    const auto group = [&layout](int block) { return layout.blocks[static_cast<size_t>(block)].group; };
+    const auto group = [&layout](int block) { return layout.blocks[block].group; };
     std::set<std::pair<int, int>> joined;  // groups
     bool default_used = false;
     for (const BondFace& face : scene_.bonds.faces) {
@@ -118,8 +117,7 @@ class Plausible {
       findings_.warning(
           p.where, "contact_pair",
           fmt::format("joint \"{}\" shall hold \"{}\" and \"{}\" together, which share no face{}",
-                      model_.joints[static_cast<size_t>(p.joint)].name, p.name_a, p.name_b,
-                      gap_text(p.name_a, p.name_b)),
+                      model_.joints[p.joint].name, p.name_a, p.name_b, gap_text(p.name_a, p.name_b)),
           "draw their corners at the same place, or take a joint without strength");
     }
     if (!glues(layout.default_joint) || default_used || layout.blocks.size() < 2 ||
@@ -128,7 +126,7 @@ class Plausible {
     if (layout.blocks.back().group >= layout.first_mesh_group) return;  // edges have joints of their own
     findings_.warning({1, 1, ""}, "contact.joint",
                       fmt::format("\"{}\" shall hold blocks together, and no two of them share a face",
-                                  model_.joints[static_cast<size_t>(layout.default_joint)].name),
+                                  model_.joints[layout.default_joint].name),
                       "draw blocks that touch with their corners at the same place");
   }
 
@@ -145,8 +143,8 @@ class Plausible {
     };
     for (const int i : of_a)
       for (const int j : of_b) {
-        const Polygon& one = scene_.layout.blocks[static_cast<size_t>(i)].polygon;
-        const Polygon& other = scene_.layout.blocks[static_cast<size_t>(j)].polygon;
+        const Polygon& one = scene_.layout.blocks[i].polygon;
+        const Polygon& other = scene_.layout.blocks[j].polygon;
         look(one, other), look(other, one);
       }
     return std::isfinite(gap) && gap > 0 ? fmt::format(": they lie {:.3g} m apart", gap) : "";
@@ -169,17 +167,16 @@ class Plausible {
     double worst = kCannotBend;
     int block = -1, count = 0;
     for (int i = 0; i < b.count; ++i) {
-      const auto k = static_cast<size_t>(i);
-      if (b.kind[k] != BlockKind::kDeformable || !is_written(i)) continue;
-      const double aspect = std::sqrt(b.principal[k].x / b.principal[k].y);
+      if (b.kind[i] != BlockKind::kDeformable || !is_written(i)) continue;
+      const double aspect = std::sqrt(b.principal[i].x / b.principal[i].y);
       if (aspect <= kCannotBend) continue;
       ++count;
       if (aspect > worst) worst = aspect, block = i;
     }
     if (block < 0) return;
-    const BlockShape& shape = scene_.layout.blocks[static_cast<size_t>(block)];
+    const BlockShape& shape = scene_.layout.blocks[block];
     findings_.warning(
-        scene_.layout.group_where[static_cast<size_t>(shape.group)], shape.name,
+        scene_.layout.group_where[shape.group], shape.name,
         fmt::format(
             "is {:.3g} times as long as wide ({} such block{}): it has one strain throughout and cannot bend",
             worst, count, count == 1 ? "" : "s"),
@@ -189,7 +186,7 @@ class Plausible {
 
   // Not one of many that were cut: slices of rock between joints bend by slip.
   bool is_written(int block) const {
-    return scene_.layout.blocks[static_cast<size_t>(block)].group < scene_.layout.first_mesh_group;
+    return scene_.layout.blocks[block].group < scene_.layout.first_mesh_group;
   }
 
   void check_steps() {
@@ -200,7 +197,7 @@ class Plausible {
         if (std::isnan(stage.time_step)) continue;
         const double most = 1 / (kStepsPerPeriod * r.frequency);
         if (plans_[i].dt <= most) continue;
-        const History& h = model_.histories[static_cast<size_t>(r.history)];
+        const History& h = model_.histories[r.history];
         findings_.warning(stage.where_step, "stage." + stage.name + ".time_step",
                           fmt::format("{:.3g} s is long for history \"{}\", which has {:.3g} Hz in it",
                                       plans_[i].dt, h.name, r.frequency),
@@ -212,14 +209,14 @@ class Plausible {
 
   // A path on which nothing goes, and motions of dynamic stages that a path before them has used up.
   void check_paths() {
-    for (size_t i = 0; i < model_.stages.size(); ++i) {
+    for (int i = 0; i < count_of(model_.stages); ++i) {
       const StageInput& s = model_.stages[i];
-      if (s.path > 0 && !follows_history(scene_, static_cast<int>(i)))
+      if (s.path > 0 && !follows_history(scene_, i))
         findings_.error(
             s.where_path, "stage." + s.name + ".path",
             "leads nowhere: no support, load or driven block that acts in this stage follows a history",
             "name a history in one of them, or leave path out");
-      const double begun = model_.history_time_at(static_cast<int>(i));
+      const double begun = model_.history_time_at(i);
       if (s.kind != StageKind::kDynamic || !(begun > 0)) continue;
       for (const BoundaryInput& b : model_.boundaries)
         warn_used_up(b.where, "boundary." + b.name, b, true, i, {b.history_x, b.history_y});
@@ -232,26 +229,25 @@ class Plausible {
 
   // What acts in a dynamic stage and not on a path before it, which has gone on with its history. Waves come in while time
   // runs, and on no path. Told once: at the first stage behind such a path.
-  void warn_used_up(const Where& where, const std::string& name, const Staged& what, bool is_wave,
-                    size_t stage, std::initializer_list<int> histories) {
-    if (!what.acts_in(static_cast<int>(stage))) return;
+  void warn_used_up(const Where& where, const std::string& name, const Staged& what, bool is_wave, int stage,
+                    std::initializer_list<int> histories) {
+    if (!what.acts_in(stage)) return;
     double used_up = -1;
-    for (size_t k = 0; k < stage; ++k) {
-      if (model_.stages[k].path > 0 && (is_wave || !what.acts_in(static_cast<int>(k))))
-        used_up = model_.history_time_at(static_cast<int>(k) + 1);
-      else if (model_.stages[k].kind == StageKind::kDynamic && what.acts_in(static_cast<int>(k)) &&
-               used_up >= 0)
+    for (int k = 0; k < stage; ++k) {
+      if (model_.stages[k].path > 0 && (is_wave || !what.acts_in(k)))
+        used_up = model_.history_time_at(k + 1);
+      else if (model_.stages[k].kind == StageKind::kDynamic && what.acts_in(k) && used_up >= 0)
         return;
     }
     if (used_up < 0) return;
     for (const int h : histories) {
-      if (h < 0 || model_.histories[static_cast<size_t>(h)].time.front() >= used_up) continue;
+      if (h < 0 || model_.histories[h].time.front() >= used_up) continue;
       findings_.warning(
           where, name,
           fmt::format(
               "acts in stage \"{}\" from {:.6g} s of history \"{}\" on, as a path has used up the time before",
               model_.stages[stage].name, model_.history_time_at(static_cast<int>(stage)),
-              model_.histories[static_cast<size_t>(h)].name),
+              model_.histories[h].name),
           fmt::format("let the times of that history begin at {:.6g} s", used_up));
     }
   }
@@ -260,10 +256,10 @@ class Plausible {
   // @param is_wave  which comes in while time runs, and on no path
   bool stands_still(const Staged& what, int history, bool is_wave) const {
     if (history < 0) return false;
-    const std::vector<double>& v = model_.histories[static_cast<size_t>(history)].value;
+    const std::vector<double>& v = model_.histories[history].value;
     if (std::all_of(v.begin(), v.end(), [&v](double x) { return x == v[0]; })) return false;
-    for (size_t i = 0; i < model_.stages.size(); ++i)
-      if (what.acts_in(static_cast<int>(i)) &&
+    for (int i = 0; i < count_of(model_.stages); ++i)
+      if (what.acts_in(i) &&
           (model_.stages[i].kind == StageKind::kDynamic || (model_.stages[i].path > 0 && !is_wave)))
         return false;
     return true;
@@ -276,7 +272,7 @@ class Plausible {
       findings_.warning(
           where, path,
           fmt::format("acts in static stages only, where history \"{}\" stands at its value of t = 0",
-                      model_.histories[static_cast<size_t>(h)].name),
+                      model_.histories[h].name),
           "let it act in a stage of kind = \"dynamic\"");
       return;
     }
@@ -294,7 +290,7 @@ class Plausible {
                        {b.motion_x.history, b.motion_y.history, b.motion_rotation.history});
   }
 
-  double history_time() const { return model_.history_time_at(static_cast<int>(model_.stages.size())); }
+  double history_time() const { return model_.history_time_at(count_of(model_.stages)); }
 
   // Histories that swing and are used as if they ended, or began, elsewhere.
   void check_histories() {
@@ -313,12 +309,11 @@ class Plausible {
       accelerations.insert({l.x.history, l.y.history});
       for (const Signal& s : {l.x, l.y}) factor[s.history] = std::max(factor[s.history], std::abs(s.factor));
     }
-    for (size_t i = 0; i < model_.histories.size(); ++i) {
+    for (int i = 0; i < count_of(model_.histories); ++i) {
       const History& h = model_.histories[i];
-      const bool is_velocity = velocities.count(static_cast<int>(i)) > 0,
-                 is_acceleration = accelerations.count(static_cast<int>(i)) > 0;
+      const bool is_velocity = velocities.count(i) > 0, is_acceleration = accelerations.count(i) > 0;
       if ((is_velocity || is_acceleration) && swings(h))
-        check_motion(h, time, is_acceleration ? factor[static_cast<int>(i)] : 0);
+        check_motion(h, time, is_acceleration ? factor[i] : 0);
     }
   }
 
@@ -414,13 +409,13 @@ class Plausible {
       double extent = 0;
       for (const Vec2 a : h.points)
         for (const Vec2 b : h.points) extent = std::max(extent, norm(a - b));
-      const double size = scene_.blocks.size[static_cast<size_t>(block)];
+      const double size = scene_.blocks.size[block];
       if (h.points.size() < 2 || blocks[h.support].size() > 1 || extent >= kLeastHeld * size) continue;
-      const SupportInput& s = model_.supports[static_cast<size_t>(h.support)];
+      const SupportInput& s = model_.supports[h.support];
       findings_.warning(
           s.where, "support." + s.name,
           fmt::format("holds block \"{}\" over {:.3g} m of its {:.3g} m: a torque there takes huge forces",
-                      scene_.blocks.name[static_cast<size_t>(block)], extent, size),
+                      scene_.blocks.name[block], extent, size),
           "hold it over more of its length, or at one point");
       return;
     }
@@ -436,31 +431,29 @@ class Plausible {
     double worst = kMostClosing;
     int worst_block = -1, worst_joint = -1;
     for (int i = 0; i < scene_.blocks.count; ++i) {
-      const auto k = static_cast<size_t>(i);
-      if (scene_.blocks.kind[k] != BlockKind::kDeformable || scene_.blocks.thinness[k] < 0.2 * usual)
+      if (scene_.blocks.kind[i] != BlockKind::kDeformable || scene_.blocks.thinness[i] < 0.2 * usual)
         continue;
-      const BlockShape& shape = scene_.layout.blocks[k];
-      const double density = model_.materials[static_cast<size_t>(shape.material)].density;
-      const Vec2 at = scene_.blocks.centroid[k];
+      const BlockShape& shape = scene_.layout.blocks[i];
+      const double density = model_.materials[shape.material].density;
+      const Vec2 at = scene_.blocks.centroid[i];
       const double weight = density * gravity * std::max(0.0, top[column_of(at.x)] - at.y);
       std::set<int> joints(shape.edge_joint.begin(), shape.edge_joint.end());
       if (joints.empty()) joints.insert(scene_.layout.default_joint);
       for (const int j : joints) {
         if (j < 0) continue;
-        const JointProperty& joint = model_.joints[static_cast<size_t>(j)];
+        const JointProperty& joint = model_.joints[j];
         if (joint.bonded || !(joint.normal_stiffness > 0)) continue;
-        const double share = weight / joint.normal_stiffness / scene_.blocks.thinness[k];
+        const double share = weight / joint.normal_stiffness / scene_.blocks.thinness[i];
         if (share > worst) worst = share, worst_block = i, worst_joint = j;
       }
     }
     if (worst_block < 0) return;
-    const JointProperty& joint = model_.joints[static_cast<size_t>(worst_joint)];
+    const JointProperty& joint = model_.joints[worst_joint];
     findings_.warning(
         joint.where, "joint." + joint.name + ".normal_stiffness",
         fmt::format("{:.3g} Pa/m is soft: the weight above block \"{}\" closes the joint by {:.2g} % "
                     "of the block's thickness",
-                    joint.normal_stiffness, scene_.blocks.name[static_cast<size_t>(worst_block)],
-                    100 * worst),
+                    joint.normal_stiffness, scene_.blocks.name[worst_block], 100 * worst),
         fmt::format("about {:.2g} Pa/m would close it by 1 %", joint.normal_stiffness * worst / 0.01));
   }
 

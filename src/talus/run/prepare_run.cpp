@@ -41,7 +41,7 @@ PreparedRun prepare_run(const std::string& file, const std::string& text,
 size_t stages_until(const Model& model, const std::string& name) {
   const auto of_name = [&name](const StageInput& stage) { return stage.name == name; };
   const auto at = std::find_if(model.stages.begin(), model.stages.end(), of_name);
-  return at == model.stages.end() ? 0 : static_cast<size_t>(at - model.stages.begin()) + 1;
+  return at == model.stages.end() ? 0 : at - model.stages.begin() + 1;
 }
 
 void end_after(PreparedRun& prepared, size_t stages) {

@@ -80,18 +80,17 @@ Resolution worst_block(const Scene& scene) {
   const BlockSet& blocks = scene.blocks;
   std::map<std::pair<int, int>, std::pair<double, std::string>> known;  // group, material: speed, trouble
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    if (blocks.kind[k] != BlockKind::kDeformable) continue;
-    const std::pair<int, int> key{blocks.group[k], blocks.material[k]};
+    if (blocks.kind[i] != BlockKind::kDeformable) continue;
+    const std::pair<int, int> key{blocks.group[i], blocks.material[i]};
     if (!known.count(key)) {
       std::string trouble;
       const Ground ground =
-          ground_at(scene.model, scene.layout, scene.layout.blocks[k], blocks.material[k], trouble);
+          ground_at(scene.model, scene.layout, scene.layout.blocks[i], blocks.material[i], trouble);
       known[key] = {slowest_wave(ground), trouble};
     }
     const auto& [speed, trouble] = known[key];
-    if (worst.block < 0 || blocks.size[k] / speed > worst.size / worst.speed) {
-      worst.block = i, worst.size = blocks.size[k], worst.speed = speed;
+    if (worst.block < 0 || blocks.size[i] / speed > worst.size / worst.speed) {
+      worst.block = i, worst.size = blocks.size[i], worst.speed = speed;
       worst.left_out = trouble;
     }
   }
@@ -124,7 +123,7 @@ double largest_input(const Model& model) {
       if (const auto k = std::find(kinds.begin(), kinds.end(), kind); k != kinds.end()) kinds.erase(k);
     }
   for (const auto& [history, kinds] : inputs) {
-    const History& h = model.histories[static_cast<size_t>(history)];
+    const History& h = model.histories[history];
     if (h.time.size() < 2) continue;
     record::Motion m = sampled(h);
     for (const InputKind kind : kinds) {
@@ -166,8 +165,7 @@ std::vector<Resolution> resolutions(const Scene& scene) {
     Resolution r = worst;
     r.history = history;
     for (const InputKind kind : kinds)
-      r.frequency =
-          std::max(r.frequency, highest_frequency(model.histories[static_cast<size_t>(history)], kind));
+      r.frequency = std::max(r.frequency, highest_frequency(model.histories[history], kind));
     if (r.frequency == 0) continue;
     r.per_wavelength = r.speed / (r.frequency * r.size);
     out.push_back(r);
@@ -178,13 +176,13 @@ std::vector<Resolution> resolutions(const Scene& scene) {
 std::string resolution_report(const Scene& scene) {
   std::string text;
   for (const Resolution& r : resolutions(scene)) {
-    const auto block = static_cast<size_t>(r.block);
+    const int block = r.block;
     text += fmt::format(
         "  waves      \"{}\": {:g} % of its |V(f)|^2 below {:.3g} Hz; slowest wave {:.4g} m/s through "
         "blocks of {:.3g} m ({}{}): {:.3g} blocks per wavelength\n",
-        scene.model.histories[static_cast<size_t>(r.history)].name, 100 * record::kVelocityShare, r.frequency,
-        r.speed, r.size, scene.blocks.name[block],
-        r.left_out.empty() ? "" : ", without the joint stiffness of " + r.left_out, r.per_wavelength);
+        scene.model.histories[r.history].name, 100 * record::kVelocityShare, r.frequency, r.speed, r.size,
+        scene.blocks.name[block], r.left_out.empty() ? "" : ", without the joint stiffness of " + r.left_out,
+        r.per_wavelength);
   }
   return text;
 }
@@ -192,14 +190,14 @@ std::string resolution_report(const Scene& scene) {
 void check_resolution(const Scene& scene, Findings& findings) {
   for (const Resolution& r : resolutions(scene)) {
     if (r.per_wavelength >= kFewestPerWavelength) continue;
-    const History& h = scene.model.histories[static_cast<size_t>(r.history)];
+    const History& h = scene.model.histories[r.history];
     findings.warning(
         h.where, "history." + h.name,
         fmt::format(
             "its waves are cut short: {:.3g} blocks per wavelength at {:.3g} Hz ({:g} % of |V(f)|^2 lies "
             "below), wanted are {:g}; the slowest wave runs at {:.4g} m/s through block \"{}\" of {:.3g} m",
             r.per_wavelength, r.frequency, 100 * record::kVelocityShare, kFewestPerWavelength, r.speed,
-            scene.blocks.name[static_cast<size_t>(r.block)], r.size),
+            scene.blocks.name[r.block], r.size),
         fmt::format(
             "use blocks of at most {:.3g} m there, or take out what lies above {:.3g} Hz (of a record: talus record "
             "--low-pass; of an expression: a lower frequency)",

@@ -23,11 +23,11 @@ constexpr double kKnocking = 0.005, kSettling = 0.02;
 // Which blocks a chain of blocks in touch, bonds, supports and boundaries holds.
 std::vector<char> held_blocks(const Scene& scene) {
   const BlockSet& blocks = scene.blocks;
-  const auto n = static_cast<size_t>(blocks.count);
+  const int n = blocks.count;
   std::vector<std::vector<int>> beside(n);
   const auto join = [&](int a, int b) {
-    beside[static_cast<size_t>(a)].push_back(b);
-    beside[static_cast<size_t>(b)].push_back(a);
+    beside[a].push_back(b);
+    beside[b].push_back(a);
   };
   for (const ContactPoint& c :
        find_contacts(blocks, scene.bonds, start_state(scene), kTouch * smallest_size(blocks)))
@@ -38,8 +38,8 @@ std::vector<char> held_blocks(const Scene& scene) {
   std::vector<char> held(n, 0);
   std::vector<int> next;
   const auto hold = [&](int i) {
-    if (held[static_cast<size_t>(i)]) return;
-    held[static_cast<size_t>(i)] = 1;
+    if (held[i]) return;
+    held[i] = 1;
     next.push_back(i);
   };
   for (int i = 0; i < blocks.count; ++i)
@@ -47,7 +47,7 @@ std::vector<char> held_blocks(const Scene& scene) {
   for (const SupportedPoint& p : scene.supported) hold(p.block);
   for (const BoundaryPoint& p : scene.boundaries.points) hold(p.block);
   while (!next.empty()) {
-    const auto i = static_cast<size_t>(next.back());
+    const int i = next.back();
     next.pop_back();
     for (const int j : beside[i]) hold(j);
   }
@@ -64,7 +64,7 @@ double fastest_fall(const Scene& scene, double duration) {
   const auto depth_of = [&](int i) {
     double depth = -std::numeric_limits<double>::infinity();
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      depth = std::max(depth, dot(down, blocks.centroid[static_cast<size_t>(i)] + blocks.corner({i, v})));
+      depth = std::max(depth, dot(down, blocks.centroid[i] + blocks.corner({i, v})));
     return depth;
   };
   const std::vector<char> held = held_blocks(scene);
@@ -72,7 +72,7 @@ double fastest_fall(const Scene& scene, double duration) {
   for (int i = 0; i < blocks.count; ++i) {
     if (blocks.removed(i)) continue;
     lowest = std::max(lowest, depth_of(i));
-    if (!held[static_cast<size_t>(i)]) highest = std::min(highest, depth_of(i));
+    if (!held[i]) highest = std::min(highest, depth_of(i));
   }
   return std::isinf(highest) ? 0 : std::min(std::sqrt(2 * g * (lowest - highest)), g * duration);
 }
@@ -83,7 +83,7 @@ double rigid_step(const Scene& scene, const StageInput& stage) {
   const BlockSet& blocks = scene.blocks;
   double thickness = std::numeric_limits<double>::infinity();
   for (int i = 0; i < blocks.count; ++i)
-    if (blocks.moves_freely(i)) thickness = std::min(thickness, blocks.thinness[static_cast<size_t>(i)]);
+    if (blocks.moves_freely(i)) thickness = std::min(thickness, blocks.thinness[i]);
   double step = std::numeric_limits<double>::infinity();
   const bool dynamic = stage.kind == StageKind::kDynamic;
   if (const double g = norm(scene.model.gravity); g > 0)

@@ -10,6 +10,7 @@
 
 #include "talus/base/clock.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/memory_reserve.h"
 #include "talus/base/rank.h"
 #include "talus/contact/pairs.h"
@@ -91,7 +92,7 @@ class StagedRun::Runner {
       for (int64_t taken = 0;; ++taken) {
         if (!in_stage_) {
           if (result_.interrupted || result_.stages.size() >= plans_.size()) return show_end(), false;
-          begin_stage(static_cast<int>(result_.stages.size()));
+          begin_stage(count_of(result_.stages));
         }
         const double close = 1e-6 * plans_[result_.stages.size() - 1].dt;  // sums of steps are not round
         if (taken >= pause.steps || state_.time >= pause.time - close) return true;
@@ -150,13 +151,12 @@ class StagedRun::Runner {
   }
 
   void begin_stage(int index) {
-    const auto k = static_cast<size_t>(index);
-    const StageInput& stage = scene_.model.stages[k];
-    const StagePlan& plan = plans_[k];
+    const StageInput& stage = scene_.model.stages[index];
+    const StagePlan& plan = plans_[index];
     change(index);
     settle_in(stage);
     const auto is_static = [&](size_t i) { return scene_.model.stages[i].kind == StageKind::kStatic; };
-    enter_stage(scene_.boundaries, k > 0 && is_static(k - 1), is_static(k), state_);
+    enter_stage(scene_.boundaries, index > 0 && is_static(index - 1), is_static(index), state_);
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
     state_.rest = StepsFromRest::begin(plan.dt), state_.left_out.clear();
@@ -192,12 +192,12 @@ class StagedRun::Runner {
   void go_on(const Standing& from) {
     result_ = from.result;
     result_.interrupted = false;
-    const int index = static_cast<int>(result_.stages.size()) - 1;
+    const int index = count_of(result_.stages) - 1;
     for (int i = 0; i <= index; ++i) change_scene(i, scene_);
     unclamped_ = scene_.blocks;
-    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    const StagePlan& plan = plans_[index];
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
-    settle_in(scene_.model.stages[static_cast<size_t>(index)]);
+    settle_in(scene_.model.stages[index]);
     // hard contacts give by the shortest step of what has been
     for (size_t i = 0; i < result_.stages.size(); ++i)
       if (result_.stages[i].followed())
@@ -211,24 +211,22 @@ class StagedRun::Runner {
 
   void enter_steps(int index) {
     in_stage_ = true;
-    advance_ = plans_[static_cast<size_t>(index)].dt;
-    observer_.stage_begins(scene_, index, plans_[static_cast<size_t>(index)]);
+    advance_ = plans_[index].dt;
+    observer_.stage_begins(scene_, index, plans_[index]);
     if (penalty_) penalty_->stand(penalty_settings_, advance_, state_);
     from_rest_.emplace(scene_, work_, state_);
     goals_ = path_goals(scene_, index);
   }
 
   // Where the histories of the present balance stand: on a path at its next goal.
-  double history_goal() const {
-    return goals_.empty() ? state_.history_time : goals_[static_cast<size_t>(state_.rest.balances)];
-  }
+  double history_goal() const { return goals_.empty() ? state_.history_time : goals_[state_.rest.balances]; }
 
   // A balance was found; whether another one is to be.
   bool next_balance() {
     if (goals_.empty()) return false;
     StageResult& out = result_.stages.back();
     out.balances = ++state_.rest.balances;
-    if (state_.rest.balances >= static_cast<int>(goals_.size())) return false;
+    if (state_.rest.balances >= count_of(goals_)) return false;
     from_rest_->go_on(history_goal(), plans_[result_.stages.size() - 1].dt, out.steps);
     return true;
   }
@@ -236,7 +234,7 @@ class StagedRun::Runner {
   // ", behind 12 of 21 balances of its path, on the way of the histories from 0.55 to 0.6 s", for messages.
   std::string on_path() const {
     if (goals_.empty()) return "";
-    const auto found = static_cast<size_t>(state_.rest.balances);
+    const int found = state_.rest.balances;
     if (found == 0) return ", at the beginning of its path";
     return fmt::format(", behind {} of {} balances of its path, as the histories go from {:.6g} to {:.6g} s",
                        found, goals_.size(), goals_[found - 1], goals_[found]);
@@ -267,8 +265,8 @@ class StagedRun::Runner {
     state_.largest_kinetic = 0;
     std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     go_by_motion();
-    const int index = static_cast<int>(result_.stages.size()) - 1;
-    observer_.stage_is_followed(scene_, index, plans_[static_cast<size_t>(index)], because);
+    const int index = count_of(result_.stages) - 1;
+    observer_.stage_is_followed(scene_, index, plans_[index], because);
   }
 
   // The plan and the settings of that.
@@ -295,7 +293,7 @@ class StagedRun::Runner {
     all.insert(all.end(), m.members.begin(), m.members.end());
     std::sort(all.begin(), all.end());
     state_.rest.gone = state_.rest.gone_many = 0;
-    observer_.blocks_are_left_out(scene_, static_cast<int>(result_.stages.size()) - 1, who);
+    observer_.blocks_are_left_out(scene_, count_of(result_.stages) - 1, who);
     return true;
   }
 
@@ -344,10 +342,9 @@ class StagedRun::Runner {
 
   // Whether the stage goes on after a step more.
   bool take_step() {
-    const int index = static_cast<int>(result_.stages.size()) - 1;
-    const auto k = static_cast<size_t>(index);
-    const StageInput& stage = scene_.model.stages[k];
-    const StagePlan& plan = plans_[k];
+    const int index = count_of(result_.stages) - 1;
+    const StageInput& stage = scene_.model.stages[index];
+    const StagePlan& plan = plans_[index];
     StageResult& out = result_.stages.back();
     if (std::string because; gives_up_rest(stage, out, because)) follow_motion(because);
     const int64_t n = steps_of_plan();
@@ -411,7 +408,7 @@ class StagedRun::Runner {
 
   // The rest of a step of which a part is over.
   void go_on_in_parts(int index, int64_t n, double part, double end, StepReport& report) {
-    const StageInput& stage = scene_.model.stages[static_cast<size_t>(index)];
+    const StageInput& stage = scene_.model.stages[index];
     ++result_.cut_steps, ++result_.parts;
     while (state_.time < end) {
       const double left = end - state_.time;
@@ -446,7 +443,7 @@ class StagedRun::Runner {
   // What the step found is judged, and the blocks move. The instant of a step that ends the run is seen too,
   // and shown once more with everything in its place.
   void go_on_or_fail(int index, int64_t n, double end, StepReport& report) {
-    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    const StagePlan& plan = plans_[index];
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
     try {
@@ -475,14 +472,14 @@ class StagedRun::Runner {
   // in the ledger: the moments of clamped blocks, what is taken out or gets other moduli.
   void change(int index) {
     const std::vector<char> out = excavated_blocks(scene_, index);
-    if (!scene_.model.stages[static_cast<size_t>(index)].excavate.empty()) keep_forces(index, out);
+    if (!scene_.model.stages[index].excavate.empty()) keep_forces(index, out);
     const double energy = ledger_energy(scene_, state_);
     const BlockSet before = std::move(scene_.blocks);
     const std::vector<SupportedPoint> supported = scene_.supported;
     scene_.blocks = unclamped_;
     change_scene(index, scene_);
     unclamped_ = scene_.blocks;
-    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    const StagePlan& plan = plans_[index];
     if (plan.clamped > 0) clamp_moments(scene_.blocks, plan.clamp_dt);
     adapt_state(before, supported, scene_, state_);
     state_.energy_start += ledger_energy(scene_, state_) - energy;
@@ -493,9 +490,9 @@ class StagedRun::Runner {
   void keep_forces(int index, const std::vector<char>& out) {
     state_.kept_force.clear();
     // before the first stage nothing has pushed yet
-    if (index == 0 || scene_.model.stages[static_cast<size_t>(index)].relaxation.empty()) return;
+    if (index == 0 || scene_.model.stages[index].relaxation.empty()) return;
     State copy = state_;
-    kick(scene_, settings_, plans_[static_cast<size_t>(index) - 1].dt, work_, copy);
+    kick(scene_, settings_, plans_[index - 1].dt, work_, copy);
     state_.kept_force = forces_of_blocks(work_, out);
   }
 
@@ -585,8 +582,8 @@ class StagedRun::Runner {
   // The last instant has its forces too, found on a copy so that the state stays between two steps.
   void show_end() {
     if (result_.stages.empty()) return;
-    const int index = static_cast<int>(result_.stages.size()) - 1;
-    const StagePlan& plan = plans_[static_cast<size_t>(index)];
+    const int index = count_of(result_.stages) - 1;
+    const StagePlan& plan = plans_[index];
     // a run that goes on behind its last stage has shown nothing yet
     if (penalty_ && work_.rate_before.size() != state_.rate.size())
       penalty_->stand(penalty_settings_, plan.dt, state_);
@@ -611,7 +608,7 @@ class StagedRun::Runner {
       result_.worst_error_row = r.worst;
     }
     result_.second_solver_steps += r.attempts.several();
-    ++result_.steps_by[static_cast<size_t>(r.method)];
+    ++result_.steps_by[place_of(r.method)];
     result_.deepest_drift = std::max(result_.deepest_drift, r.drift);
     result_.energy = r.energy;
     result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));
@@ -653,8 +650,8 @@ class StagedRun::Runner {
         !work_.rows.points[most].is_soft(0))
       return;
     result_.jolt = r.jolt, result_.jolt_time = state.time;
-    result_.jolt_row = fmt::format("{} ({})", scene_.blocks.name[static_cast<size_t>(r.jolted)],
-                                   row_name(scene_, state, work_, most));
+    result_.jolt_row =
+        fmt::format("{} ({})", scene_.blocks.name[r.jolted], row_name(scene_, state, work_, most));
   }
 
   // "80 iterations of gauss_seidel, 6 of primal_newton".
@@ -671,21 +668,21 @@ class StagedRun::Runner {
 
   // How deep a contact has gone, where, and what would keep it from it.
   std::string closed_text(const StepReport& r, const State& state) const {
-    const auto row = static_cast<size_t>(r.closed_row);
+    const int row = r.closed_row;
     const size_t owner = work_.rows.owner[row].at();
     int of_joint = -1;
     Vec2 at;
     if (scene_.by_patches()) {
       const Patch& c = state.patches[owner / 2];
-      const auto a = static_cast<size_t>(c.block_a);
+      const int a = c.block_a;
       of_joint = c.joint, at = scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[owner % 2]);
     } else {
       const Contact& c = state.contacts[owner];
-      const auto a = static_cast<size_t>(c.key.block_a);
+      const int a = c.key.block_a;
       of_joint = c.joint;
       at = scene_.blocks.centroid[a] + offset_now(state, a, scene_.blocks.corner(c.key.corner()));
     }
-    const JointProperty* joint = of_joint < 0 ? nullptr : &scene_.model.joints[static_cast<size_t>(of_joint)];
+    const JointProperty* joint = of_joint < 0 ? nullptr : &scene_.model.joints[of_joint];
     const std::string cure =
         joint && joint->normal_stiffness > 0
             ? fmt::format("normal_stiffness = {:.2g} Pa/m of joint \"{}\" would keep it at 1 %",

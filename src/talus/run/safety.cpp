@@ -12,6 +12,7 @@
 
 #include "talus/base/angle.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/parallel.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/safety_watch.h"
@@ -35,12 +36,12 @@ double rung_after(double factor, int by) {
 // power of two, so that the rungs above are the same from wherever one begins: a matter of speed.
 double first_rung(SafetyBy by) {
   constexpr double kFirst[] = {1, 1. / 16, 1, 1. / 64};  // factor, factor, degrees, share of gravity
-  return kFirst[static_cast<size_t>(by)];
+  return kFirst[place_of(by)];
 }
 
-size_t leading_static_stages(const Model& model) {
-  size_t n = 0;
-  while (n < model.stages.size() && model.stages[n].kind == StageKind::kStatic) ++n;
+int leading_static_stages(const Model& model) {
+  int n = 0;
+  while (n < count_of(model.stages) && model.stages[n].kind == StageKind::kStatic) ++n;
   return n;
 }
 
@@ -52,19 +53,18 @@ bool is_weakened(const SafetyInput& safety, int joint) {
 // Divides strength. Faces stay: strength divided by a factor is still strength.
 /// @param full  the joints before that
 void weaken(Scene& scene, const std::vector<JointProperty>& full, double factor) {
-  for (size_t i = 0; i < full.size(); ++i)
-    if (is_weakened(scene.model.safety, static_cast<int>(i)))
-      scene.model.joints[i] = reduced(full[i], factor);
+  for (int i = 0; i < count_of(full); ++i)
+    if (is_weakened(scene.model.safety, i)) scene.model.joints[i] = reduced(full[i], factor);
   scene.laws = joint_laws(scene.model.joints);
 }
 
 // Joints with the strength that they have at the end of the stages.
-std::vector<JointProperty> joints_after(const Model& model, size_t stages) {
+std::vector<JointProperty> joints_after(const Model& model, int stages) {
   std::vector<JointProperty> out = model.joints;
-  for (size_t stage = 0; stage < stages; ++stage)
+  for (int stage = 0; stage < stages; ++stage)
     for (const ChangeInput& c : model.changes)
-      if (c.joint >= 0 && c.stage == static_cast<int>(stage)) {
-        JointProperty& joint = out[static_cast<size_t>(c.joint)];
+      if (c.joint >= 0 && c.stage == stage) {
+        JointProperty& joint = out[c.joint];
         joint = changed(joint, c);
       }
   return out;
@@ -99,8 +99,8 @@ struct Base {
 // there.
 void add_raised(Base& base, const PreparedRun& prepared) {
   Model& model = base.scene.model;
-  const int last = static_cast<int>(model.stages.size()) - 1;
-  StageInput raised = prepared.scene.model.stages[static_cast<size_t>(last)];
+  const int last = count_of(model.stages) - 1;
+  StageInput raised = prepared.scene.model.stages[last];
   raised.name += ", raised";
   raised.excavate.clear(), raised.relaxation.clear();
   raised.path = 0, raised.increments = 0;  // histories stand where they are
@@ -117,7 +117,7 @@ void add_raised(Base& base, const PreparedRun& prepared) {
   // those of joints have been made, and are not made again where a run goes on
   std::erase_if(model.changes, [last](const ChangeInput& c) { return c.stage > last || c.joint >= 0; });
   model.stages.push_back(raised);
-  base.plans.push_back(prepared.plans[static_cast<size_t>(last)]);
+  base.plans.push_back(prepared.plans[last]);
   base.plans.back().balances = 0;
   base.standing.between = true;
 }
@@ -279,11 +279,10 @@ class Search {
   void settle() {
     auto base = std::make_shared<Base>(Base{prepared_.scene, {}, {}, {}, {}});
     Model& model = base->scene.model;
-    const size_t stages = safety_stages(model);
+    const int stages = safety_stages(model);
     model.stages.resize(stages);
-    base->plans.assign(prepared_.plans.begin(),
-                       prepared_.plans.begin() + static_cast<std::ptrdiff_t>(stages));
-    if (input_.by == SafetyBy::kLoad) model.loads[static_cast<size_t>(input_.load)].factor = 0;
+    base->plans.assign(prepared_.plans.begin(), prepared_.plans.begin() + stages);
+    if (input_.by == SafetyBy::kLoad) model.loads[input_.load].factor = 0;
     SafetyTrial settled;
     settled.factor = 0;
     if (!take_saved_stages(settled, *base)) {
@@ -331,7 +330,7 @@ class Search {
   // The same of the end of the stages, whose scene is that of their end.
   bool take_saved_stages(const SafetyTrial& trial, Base& base) const {
     if (!take_saved(trial, base)) return false;
-    for (size_t i = 0; i < base.scene.model.stages.size(); ++i) change_scene(static_cast<int>(i), base.scene);
+    for (int i = 0; i < count_of(base.scene.model.stages); ++i) change_scene(i, base.scene);
     return true;
   }
 
@@ -340,7 +339,7 @@ class Search {
     Model& model = scene.model;
     if (input_.by == SafetyBy::kStrength) return weaken(scene, full_, factor);
     if (input_.by == SafetyBy::kLoad) {
-      model.loads[static_cast<size_t>(input_.load)].factor = factor;
+      model.loads[input_.load].factor = factor;
       return;
     }
     const Vec2 was = model.gravity, down = prepared_.scene.model.gravity, aside = turn_left(down);
@@ -390,8 +389,7 @@ class Search {
   // The stages with this strength, before they are run.
   Base beginning(double factor) const {
     Base base{weakened(prepared_, factor), {}, {}, {}, {}};
-    base.plans.assign(prepared_.plans.begin(),
-                      prepared_.plans.begin() + static_cast<std::ptrdiff_t>(base.scene.model.stages.size()));
+    base.plans.assign(prepared_.plans.begin(), prepared_.plans.begin() + base.scene.model.stages.size());
     base.state = start_state(base.scene);
     return base;
   }
@@ -477,8 +475,8 @@ class Search {
 
 }  // namespace
 
-size_t safety_stages(const Model& model) {
-  return model.safety.at < 0 ? leading_static_stages(model) : static_cast<size_t>(model.safety.at) + 1;
+int safety_stages(const Model& model) {
+  return model.safety.at < 0 ? leading_static_stages(model) : model.safety.at + 1;
 }
 
 void check_safety(const PreparedRun& prepared) {
@@ -510,7 +508,7 @@ SafetyResult seek_safety(const PreparedRun& prepared, const Workers& workers,
 
 const char* name_of(SafetyBy by) {
   constexpr const char* kName[] = {"factor of safety", "load factor", "tilt [deg]", "acceleration [g]"};
-  return kName[static_cast<size_t>(by)];
+  return kName[place_of(by)];
 }
 
 }  // namespace talus

@@ -37,7 +37,7 @@ struct SafetyResult {
 };
 
 /// Number of stages that trials run: the static ones that the model begins with, or those up to `safety.at`.
-size_t safety_stages(const Model& model);
+int safety_stages(const Model& model);
 
 /// Throws InputError when the model has no leading static stage, or slivers with joints were merged or deleted
 /// and `safety.accept_merged` is not set.

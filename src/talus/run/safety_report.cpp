@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "talus/base/index.h"
 #include "talus/base/version.h"
 #include "talus/output/text_table.h"
 #include "talus/run/safety.h"
@@ -46,8 +47,8 @@ namespace {
 
 // What holds and loads the model in the stage in which the question is asked: names.
 nlohmann::ordered_json what_acts(const Model& model) {
-  const int stage = static_cast<int>(safety_stages(model)) - 1;
-  nlohmann::ordered_json out = {{"stage", model.stages[static_cast<size_t>(stage)].name}};
+  const int stage = safety_stages(model) - 1;
+  nlohmann::ordered_json out = {{"stage", model.stages[stage].name}};
   const auto list = [&](const char* kind, const auto& items) {
     nlohmann::ordered_json names = nlohmann::ordered_json::array();
     for (const auto& item : items)
@@ -118,8 +119,8 @@ std::string safety_json(const Model& model, const SafetyResult& r) {
                     {"title", model.title},
                     {"answer", safety_text(model, r)},
                     {"acts", what_acts(model)},
-                    {"by", kBy[static_cast<size_t>(model.safety.by)]},
-                    {"status", kStatus[static_cast<int>(r.status)]}};
+                    {"by", kBy[place_of(model.safety.by)]},
+                    {"status", kStatus[place_of(r.status)]}};
   if (r.status == SafetyStatus::kFound)
     j[model.safety.by == SafetyBy::kStrength ? "factor_of_safety" : name_of(model.safety.by)] = r.factor();
   if (r.stands > 0) j["stands_at"] = r.stands;
@@ -127,7 +128,7 @@ std::string safety_json(const Model& model, const SafetyResult& r) {
   if (r.coarse > 0) j["factor_by_longer_rungs"] = r.coarse;
   j["tolerance"] = model.safety.tolerance;
   ordered_json names = ordered_json::array();
-  for (const int i : model.safety.joints) names.push_back(model.joints[static_cast<size_t>(i)].name);
+  for (const int i : model.safety.joints) names.push_back(model.joints[i].name);
   j["joints"] = model.safety.joints.empty() ? ordered_json("all") : names;
   j["trials"] = ordered_json::array();
   for (const SafetyTrial& t : r.trials)

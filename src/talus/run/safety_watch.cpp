@@ -67,17 +67,16 @@ void Watch::fails(const Instant& i) {
 }
 
 bool Watch::only_needles_move(double unbalanced) const {
-  return !failed() && speed_left_ <= unbalanced &&
-         (worst_ < 0 || !electorate_.votes[static_cast<size_t>(worst_)]);
+  return !failed() && speed_left_ <= unbalanced && (worst_ < 0 || !electorate_.votes[worst_]);
 }
 
 void Watch::look(const Instant& i) {
   if (i.stage_start)
     start_ = since_.empty() ? i.state.displacement : since_, begin_ = i.state.time, peak_ = 0;
   // what a path moves is no failure: on it that is told by a balance that is not found
-  if (i.scene.model.stages[static_cast<size_t>(i.stage)].path > 0) return;
+  if (i.scene.model.stages[i.stage].path > 0) return;
   // steps from rest count as one time each: their lengths are but a measure of how little inertia holds
-  const bool from_rest = i.scene.model.stages[static_cast<size_t>(i.stage)].from_rest;
+  const bool from_rest = i.scene.model.stages[i.stage].from_rest;
   const double elapsed = from_rest ? static_cast<double>(i.steps_before + 1) : i.state.time - begin_,
                unit = from_rest ? i.work.clock.dt : 1;
   double share = 0, moving = 0;

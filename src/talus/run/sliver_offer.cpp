@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/cut/check_places.h"
 #include "talus/run/check_monitors.h"
@@ -17,9 +18,8 @@ constexpr double kWorthwhile = 1.1;
 // The stage with the shortest step among those that hang on a block; -1: none does.
 int shortest(const std::vector<StagePlan>& plans) {
   int least = -1;
-  for (size_t i = 0; i < plans.size(); ++i)
-    if (plans[i].bound_block >= 0 && (least < 0 || plans[i].dt < plans[static_cast<size_t>(least)].dt))
-      least = static_cast<int>(i);
+  for (int i = 0; i < count_of(plans); ++i)
+    if (plans[i].bound_block >= 0 && (least < 0 || plans[i].dt < plans[least].dt)) least = i;
   return least;
 }
 
@@ -30,7 +30,6 @@ std::vector<SliverOffer> sliver_offers(const PreparedRun& run, const Cut& cut) {
   if (cut.slivers.kept == 0 || cut.edge_line.empty() || stage < 0 ||
       run.scene.model.cut.slivers != SliverPolicy::kKeep)
     return {};
-  const auto s = static_cast<size_t>(stage);
   std::vector<SliverOffer> offers;
   for (const bool everywhere : {false, true}) {
     Model model = run.scene.model;
@@ -46,11 +45,11 @@ std::vector<SliverOffer> sliver_offers(const PreparedRun& run, const Cut& cut) {
     Layout layout = checked_layout(model, merged, findings);
     check_monitors(model, layout, findings);
     if (findings.has_errors()) continue;  // a name that the model uses would be gone
-    offer.stage = model.stages[s].name;
+    offer.stage = model.stages[stage].name;
     const Scene scene = build_scene(std::move(model), std::move(layout), findings);
     if (findings.has_errors()) continue;
     const std::vector<StagePlan> plans = plan_stages(scene, findings);
-    offer.step = plans[s].dt, offer.now = run.plans[s].dt;
+    offer.step = plans[stage].dt, offer.now = run.plans[stage].dt;
     const double least = offers.empty() ? offer.now : offers[0].step;
     if (offer.step > kWorthwhile * least) offers.push_back(offer);
   }

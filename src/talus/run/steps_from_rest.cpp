@@ -6,6 +6,7 @@
 #include <array>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/run/mechanism.h"
 #include "talus/run/path.h"
 #include "talus/run/plan.h"
@@ -161,8 +162,8 @@ double StepsFromRest::history_dt(double goal, double length) const {
 // Of what is not left out; `less` of it was asked for [m].
 double StepsFromRest::longest_way(double length, double less) const {
   double most = 0;
-  for (size_t k = 0; k < state_.rate.size(); ++k)
-    if (!state_.is_left_out(static_cast<int>(k)))
+  for (int k = 0; k < count_of(state_.rate); ++k)
+    if (!state_.is_left_out(k))
       most = std::max(most, (length * norm(state_.rate[k].a) - less) / scene_.blocks.size[k]);
   return most;
 }
@@ -170,7 +171,7 @@ double StepsFromRest::longest_way(double length, double less) const {
 std::string StepsFromRest::way_text(const Approach& approach) const {
   if (!(approach.smaller >= 0 && approach.of_size > kMostApproach))
     return fmt::format("a block goes {:.2g} times its size", way_);
-  const auto k = static_cast<size_t>(approach.smaller), b = static_cast<size_t>(approach.larger);
+  const int k = approach.smaller, b = approach.larger;
   const Vec2 at = scene_.blocks.centroid[k] + state_.displacement[k];
   return fmt::format("block \"{}\" at ({:.4g}, {:.4g}) moves against \"{}\" by {:.2g} of its size",
                      scene_.blocks.name[k], at.x, at.y, scene_.blocks.name[b], approach.of_size);

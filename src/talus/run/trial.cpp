@@ -58,8 +58,7 @@ std::vector<StageCost> time_stages(const PreparedRun& run, double seconds, int t
       solver.second_solver = false;
       solver.limit = solver.tolerance;  // what so few sweeps leave is no loose step
     }
-    const std::vector<StagePlan> plans(run.plans.begin(),
-                                       run.plans.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+    const std::vector<StagePlan> plans(run.plans.begin(), run.plans.begin() + k + 1);
     // what earlier stages have left of the time is there for the others
     Stopwatch watch((begun + seconds - wall_now()) / static_cast<double>(stages - k));
     const Workers workers(threads);

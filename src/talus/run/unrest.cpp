@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/base/rank.h"
 #include "talus/run/steps_from_rest.h"
 
@@ -14,7 +15,7 @@ std::string Unrest::text(const StageInput& stage, double elapsed, int64_t steps,
                          const std::string& on_path) const {
   std::string where;
   if (last.worst_block >= 0) {
-    const auto k = static_cast<size_t>(last.worst_block);
+    const int k = last.worst_block;
     const Vec2 at = scene.blocks.centroid[k] + state.displacement[k], v = state.rate[k].a;
     where = fmt::format(" The largest is on block \"{}\" at ({:.4g}, {:.4g}): {:.3g} N; it {}.",
                         scene.blocks.name[k], at.x, at.y, last.worst_force,
@@ -58,7 +59,7 @@ std::string Unrest::why_no_rest(const StageInput& stage, double elapsed) const {
   // forces of the others are in balance: it is the one that swings
   if (farthest > StepsFromRest::kFarToGo && stays && fastest >= 0 &&
       (last.unbalanced <= 2 * stage.unbalanced || last.worst_block == fastest))
-    return chatter(stage, static_cast<size_t>(fastest));
+    return chatter(stage, fastest);
   if (farthest > StepsFromRest::kFarToGo && !stays)
     return fmt::format(
         "Something slides or falls: at the speeds of now a block goes {:.2g} times its size in the "
@@ -86,10 +87,10 @@ bool Unrest::goes_anywhere(double time) const {
 int Unrest::fastest_block() const {
   int fastest = -1;
   double most = -1;
-  for (size_t k = 0; k < state.rate.size(); ++k) {
-    if (!scene.blocks.moves_freely(static_cast<int>(k))) continue;
+  for (int k = 0; k < count_of(state.rate); ++k) {
+    if (!scene.blocks.moves_freely(k)) continue;
     const double pace = norm(state.rate[k].a) / scene.blocks.size[k];
-    if (pace > most) most = pace, fastest = static_cast<int>(k);
+    if (pace > most) most = pace, fastest = k;
   }
   return fastest;
 }
@@ -97,9 +98,8 @@ int Unrest::fastest_block() const {
 // A block keeps a stage from rest though nothing goes anywhere.
 std::string Unrest::chatter(const StageInput& stage, size_t fastest) const {
   std::vector<double> areas;
-  for (size_t k = 0; k < state.rate.size(); ++k)
-    if (scene.blocks.moves_freely(static_cast<int>(k)))
-      areas.push_back(scene.blocks.size[k] * scene.blocks.size[k]);
+  for (int k = 0; k < count_of(state.rate); ++k)
+    if (scene.blocks.moves_freely(k)) areas.push_back(scene.blocks.size[k] * scene.blocks.size[k]);
   const double area = scene.blocks.size[fastest] * scene.blocks.size[fastest];
   const Vec2 at = scene.blocks.centroid[fastest] + state.displacement[fastest];
   return fmt::format(
@@ -112,7 +112,7 @@ std::string Unrest::chatter(const StageInput& stage, size_t fastest) const {
 
 double solver_leaves(const BlockSet& blocks, const StepReport& report, double dt) {
   if (report.worst_block < 0) return 0;
-  return blocks.mass[static_cast<size_t>(report.worst_block)] * report.error.worst / (dt * dt);
+  return blocks.mass[report.worst_block] * report.error.worst / (dt * dt);
 }
 
 }  // namespace talus

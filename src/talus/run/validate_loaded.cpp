@@ -7,7 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
+#include "talus/base/index.h"
 #include "talus/blocks/state_fields.h"
 #include "talus/step/change.h"
 
@@ -77,14 +79,14 @@ void judge_field(const std::string& field, const auto& value) {
   }
 }
 
-bool is_below(int i, size_t count) { return i >= 0 && static_cast<size_t>(i) < count; }
+bool is_below(int i, size_t count) { return i >= 0 && std::cmp_less(i, count); }
 
 void judge_contacts(const State& s, const Scene& scene) {
   const auto is_side = [&scene](int block, int edge) {
     return edge >= -1 && edge < scene.blocks.vertex_count(block);
   };
   for (const Contact& c : s.contacts) {
-    promise_loaded(c.joint < static_cast<int>(scene.model.joints.size()),
+    promise_loaded(c.joint < count_of(scene.model.joints),
                    fmt::format("a contact is of joint {}, which there is not", c.joint));
     const auto [lo, hi] = std::minmax(c.key.block_a, c.key.block_b);
     promise_loaded(
@@ -96,13 +98,12 @@ void judge_contacts(const State& s, const Scene& scene) {
 void judge_patches(const State& s, const Scene& scene) {
   promise_loaded(s.patches.empty() || scene.by_patches(), "it has patches, and its formulation has none");
   for (const Patch& p : s.patches) {
-    const auto joints = static_cast<int>(scene.model.joints.size());
+    const auto joints = count_of(scene.model.joints);
     promise_loaded(
         p.joint < joints && p.other_joint < joints,
         fmt::format("a patch is of joint {}, which there is not", std::max(p.joint, p.other_joint)));
     const auto is_part = [&](int part, int block) {
-      const auto k = static_cast<size_t>(block);
-      return part >= scene.outlines.part_begin[k] && part < scene.outlines.part_begin[k + 1];
+      return part >= scene.outlines.part_begin[block] && part < scene.outlines.part_begin[block + 1];
     };
     promise_loaded(is_part(p.part_a, p.block_a) && is_part(p.part_b, p.block_b),
                    "a patch lies on a part that its blocks do not have");
@@ -114,11 +115,10 @@ void judge_bolts(const State& s, const Scene& scene) {
   for (const Bolt& bolt : s.bolts) {
     promise_loaded(is_below(bolt.input, scene.model.bolts.size()),
                    fmt::format("bolt {} is none of the model's", bolt.input));
-    for (size_t k = 0; k < bolt.crossings.size(); ++k) {
-      const auto j = static_cast<size_t>(bolt.crossings[k].segment);
+    for (int k = 0; k < count_of(bolt.crossings); ++k) {
+      const int j = bolt.crossings[k].segment;
       promise_loaded(bolt.nodes[j].block != bolt.nodes[j + 1].block, "a bolt crosses the inside of a block");
-      promise_loaded(bolt.segments[j].crossing == static_cast<int>(k),
-                     "a segment of a bolt does not know its crossing");
+      promise_loaded(bolt.segments[j].crossing == k, "a segment of a bolt does not know its crossing");
       for (const Vec2 d : bolt.crossings[k].direction)
         promise_loaded(std::abs(norm(d) - 1) < 1e-6, "the direction of a bolt is no unit vector");
       promise_loaded(bolt.crossings[k].row_stiffness > 0, "a bolt crosses a joint without stiffness");
@@ -129,15 +129,14 @@ void judge_bolts(const State& s, const Scene& scene) {
 // A list of pairs that counts as good still is not made anew: it names no block that has been taken out.
 void judge_pairs(const Standing& standing, const State& state, const Scene& scene) {
   if (state.candidates.reach.empty()) return;
-  std::vector<char> gone(static_cast<size_t>(scene.blocks.count), 0);
-  for (size_t s = 0; s < standing.result.stages.size(); ++s) {
-    const std::vector<char> out = excavated_blocks(scene, static_cast<int>(s));
+  std::vector<char> gone(scene.blocks.count, 0);
+  for (int s = 0; s < count_of(standing.result.stages); ++s) {
+    const std::vector<char> out = excavated_blocks(scene, s);
     for (size_t k = 0; k < gone.size(); ++k) gone[k] = static_cast<char>(gone[k] | out[k]);
   }
   for (const ContactPair& pair : state.pairs)
     for (const int k : {pair.a, pair.b})
-      promise_loaded(gone[static_cast<size_t>(k)] == 0,
-                     fmt::format("block {} touches something, and is excavated by then", k));
+      promise_loaded(gone[k] == 0, fmt::format("block {} touches something, and is excavated by then", k));
 }
 
 void judge_clock(const StageInput& stage, const StagePlan& plan, const StageResult& now, const State& state,

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -54,13 +55,11 @@ class BlockFactor::Dissection {
   Dissection(const std::vector<std::array<int, 2>>& pairs, const std::vector<Vec2>& place)
       : place_(place), side_(place.size(), kOutside), mate_(place.size(), -1), seen_(place.size(), 0) {
     begin_.assign(place.size() + 1, 0);
-    for (const auto& [a, b] : pairs)
-      ++begin_[static_cast<size_t>(a) + 1], ++begin_[static_cast<size_t>(b) + 1];
+    for (const auto& [a, b] : pairs) ++begin_[a + 1], ++begin_[b + 1];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     near_.resize(2 * pairs.size());
     std::vector<size_t> next(begin_.begin(), begin_.end() - 1);
-    for (const auto& [a, b] : pairs)
-      near_[next[static_cast<size_t>(a)]++] = b, near_[next[static_cast<size_t>(b)]++] = a;
+    for (const auto& [a, b] : pairs) near_[next[a]++] = b, near_[next[b]++] = a;
   }
 
   std::vector<Front> fronts() {
@@ -86,8 +85,8 @@ class BlockFactor::Dissection {
     const std::vector<int> more = dissect(std::move(second));
     below.insert(below.end(), more.begin(), more.end());
     if (own.empty()) return below;
-    const int me = static_cast<int>(fronts_.size());
-    for (const int child : below) fronts_[static_cast<size_t>(child)].parent = me;
+    const int me = count_of(fronts_);
+    for (const int child : below) fronts_[child].parent = me;
     Front front;
     front.children = std::move(below), front.own = std::move(own);
     fronts_.push_back(std::move(front));
@@ -104,23 +103,20 @@ class BlockFactor::Dissection {
       const double angle = std::numbers::pi * d / kDirections;
       const Vec2 along{std::cos(angle), std::sin(angle)};
       const auto before = [&](int a, int b) {
-        const double x = dot(along, place_[static_cast<size_t>(a)]),
-                     y = dot(along, place_[static_cast<size_t>(b)]);
+        const double x = dot(along, place_[a]), y = dot(along, place_[b]);
         return x != y ? x < y : a < b;
       };
-      std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(), before);
-      for (size_t i = 0; i < order.size(); ++i)
-        side_[static_cast<size_t>(order[i])] = i < half ? kFirst : kSecond;
-      std::vector<int> cover =
-          smallest_cover({order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half)});
+      std::nth_element(order.begin(), order.begin() + half, order.end(), before);
+      for (size_t i = 0; i < order.size(); ++i) side_[order[i]] = i < half ? kFirst : kSecond;
+      std::vector<int> cover = smallest_cover({order.begin(), order.begin() + half});
       if (cover.size() >= fewest) continue;
       fewest = cover.size(), best = std::move(cover);
       best_side.clear();
-      for (const int b : blocks) best_side.push_back(side_[static_cast<size_t>(b)]);
+      for (const int b : blocks) best_side.push_back(side_[b]);
     }
-    for (const int b : best) side_[static_cast<size_t>(b)] = kOutside;
+    for (const int b : best) side_[b] = kOutside;
     for (size_t i = 0; i < blocks.size(); ++i) {
-      const auto b = static_cast<size_t>(blocks[i]);
+      const int b = blocks[i];
       if (std::binary_search(best.begin(), best.end(), blocks[i])) continue;
       (best_side[i] == kFirst ? first : second).push_back(blocks[i]);
       side_[b] = kOutside;
@@ -143,14 +139,14 @@ class BlockFactor::Dissection {
     ++turn_;
     std::vector<int> reached_second;
     for (const int a : rim)
-      if (mate_[static_cast<size_t>(a)] < 0) reach(a, reached_second);
+      if (mate_[a] < 0) reach(a, reached_second);
     std::vector<int> cover = reached_second;
     for (const int a : rim)
-      if (seen_[static_cast<size_t>(a)] != turn_) cover.push_back(a);
+      if (seen_[a] != turn_) cover.push_back(a);
     for (const int a : rim) {
-      const int b = mate_[static_cast<size_t>(a)];
-      if (b >= 0) mate_[static_cast<size_t>(b)] = -1;
-      mate_[static_cast<size_t>(a)] = -1;
+      const int b = mate_[a];
+      if (b >= 0) mate_[b] = -1;
+      mate_[a] = -1;
     }
     std::sort(cover.begin(), cover.end());
     return cover;
@@ -158,8 +154,8 @@ class BlockFactor::Dissection {
 
   template <class F>
   void others(int a, F f) const {
-    for (size_t i = begin_[static_cast<size_t>(a)]; i < begin_[static_cast<size_t>(a) + 1]; ++i)
-      if (side_[static_cast<size_t>(near_[i])] == kSecond && !f(near_[i])) return;
+    for (size_t i = begin_[a]; i < begin_[a + 1]; ++i)
+      if (side_[near_[i]] == kSecond && !f(near_[i])) return;
   }
   bool has_other_side(int a) const {
     bool found = false;
@@ -169,23 +165,23 @@ class BlockFactor::Dissection {
   bool augment(int a) {
     bool done = false;
     others(a, [&](int b) {
-      if (seen_[static_cast<size_t>(b)] == turn_) return true;
-      seen_[static_cast<size_t>(b)] = turn_;
-      int& mate = mate_[static_cast<size_t>(b)];
+      if (seen_[b] == turn_) return true;
+      seen_[b] = turn_;
+      int& mate = mate_[b];
       if (mate >= 0 && !augment(mate)) return true;
-      mate = a, mate_[static_cast<size_t>(a)] = b;
+      mate = a, mate_[a] = b;
       done = true;
       return false;
     });
     return done;
   }
   void reach(int a, std::vector<int>& second) {
-    seen_[static_cast<size_t>(a)] = turn_;
+    seen_[a] = turn_;
     others(a, [&](int b) {
-      if (seen_[static_cast<size_t>(b)] == turn_) return true;
-      seen_[static_cast<size_t>(b)] = turn_;
+      if (seen_[b] == turn_) return true;
+      seen_[b] = turn_;
       second.push_back(b);
-      reach(mate_[static_cast<size_t>(b)], second);
+      reach(mate_[b], second);
       return true;
     });
   }
@@ -203,10 +199,10 @@ void BlockFactor::analyse(const std::vector<std::array<int, 2>>& pairs, const st
   fronts_ = Dissection(pairs, place).fronts();
   pairs_ = pairs;
   front_of_.assign(place.size(), -1), place_in_front_.assign(place.size(), -1);
-  for (size_t f = 0; f < fronts_.size(); ++f)
-    for (size_t i = 0; i < fronts_[f].own.size(); ++i) {
-      const auto b = static_cast<size_t>(fronts_[f].own[i]);
-      front_of_[b] = static_cast<int>(f), place_in_front_[b] = static_cast<int>(i);
+  for (int f = 0; f < count_of(fronts_); ++f)
+    for (int i = 0; i < count_of(fronts_[f].own); ++i) {
+      const int b = fronts_[f].own[i];
+      front_of_[b] = f, place_in_front_[b] = i;
     }
   join_fronts(pairs);
   cost_ = {};
@@ -221,35 +217,34 @@ void BlockFactor::analyse(const std::vector<std::array<int, 2>>& pairs, const st
 }
 
 bool BlockFactor::goes_before(int a, int b) const {
-  const auto i = static_cast<size_t>(a), j = static_cast<size_t>(b);
-  return front_of_[i] != front_of_[j] ? front_of_[i] < front_of_[j] : place_in_front_[i] < place_in_front_[j];
+  return front_of_[a] != front_of_[b] ? front_of_[a] < front_of_[b] : place_in_front_[a] < place_in_front_[b];
 }
 
 // Boundaries, from the leaves upwards.
 void BlockFactor::join_fronts(const std::vector<std::array<int, 2>>& pairs) {
-  for (size_t k = 0; k < pairs.size(); ++k) {
+  for (int k = 0; k < count_of(pairs); ++k) {
     const auto [a, b] = pairs[k];
     const int first = goes_before(a, b) ? a : b;
-    fronts_[static_cast<size_t>(front_of_[static_cast<size_t>(first)])].pairs.push_back(static_cast<int>(k));
+    fronts_[front_of_[first]].pairs.push_back(k);
   }
-  for (size_t f = 0; f < fronts_.size(); ++f) {
+  for (int f = 0; f < count_of(fronts_); ++f) {
     Front& front = fronts_[f];
     std::vector<int>& rim = front.boundary;
     const auto take = [&](int b) {
-      if (front_of_[static_cast<size_t>(b)] != static_cast<int>(f)) rim.push_back(b);
+      if (front_of_[b] != f) rim.push_back(b);
     };
     for (const int k : front.pairs)
-      for (const int b : pairs[static_cast<size_t>(k)]) take(b);
+      for (const int b : pairs[k]) take(b);
     for (const int c : front.children)
-      for (const int b : fronts_[static_cast<size_t>(c)].boundary) take(b);
+      for (const int b : fronts_[c].boundary) take(b);
     std::sort(rim.begin(), rim.end(), [this](int a, int b) { return goes_before(a, b); });
     rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
     for (const int c : front.children) {
-      Front& child = fronts_[static_cast<size_t>(c)];
+      Front& child = fronts_[c];
       size_t at = 0;  // both lists rise
       for (const int b : child.boundary) {
-        if (front_of_[static_cast<size_t>(b)] == static_cast<int>(f)) {
-          child.in_parent.push_back(place_in_front_[static_cast<size_t>(b)]);
+        if (front_of_[b] == f) {
+          child.in_parent.push_back(place_in_front_[b]);
           continue;
         }
         while (rim[at] != b) ++at;
@@ -267,25 +262,25 @@ void BlockFactor::share_out() {
   for (size_t f = 0; f < fronts_.size(); ++f) {
     below[f] += fronts_[f].operations();
     all += fronts_[f].operations();
-    if (fronts_[f].parent >= 0) below[static_cast<size_t>(fronts_[f].parent)] += below[f];
+    if (fronts_[f].parent >= 0) below[fronts_[f].parent] += below[f];
   }
   // children come before parents: from the top down, a front is its parent's subtree or the root of one
   std::vector<int> root(fronts_.size(), -1), list(fronts_.size(), -1);
   for (size_t f = fronts_.size(); f-- > 0;) {
     const int parent = fronts_[f].parent;
-    if (parent >= 0 && root[static_cast<size_t>(parent)] >= 0)
-      root[f] = root[static_cast<size_t>(parent)];
+    if (parent >= 0 && root[parent] >= 0)
+      root[f] = root[parent];
     else if (below[f] <= kSmallShare * all || fronts_[f].children.empty())
       root[f] = static_cast<int>(f);
   }
-  for (size_t f = 0; f < fronts_.size(); ++f) {
+  for (int f = 0; f < count_of(fronts_); ++f) {
     if (root[f] < 0) {
-      rest_.push_back(static_cast<int>(f));
+      rest_.push_back(f);
       continue;
     }
-    int& l = list[static_cast<size_t>(root[f])];
-    if (l < 0) l = static_cast<int>(subtrees_.size()), subtrees_.emplace_back();
-    subtrees_[static_cast<size_t>(l)].push_back(static_cast<int>(f));
+    int& l = list[root[f]];
+    if (l < 0) l = count_of(subtrees_), subtrees_.emplace_back();
+    subtrees_[l].push_back(f);
   }
   place_boundaries();
 }
@@ -294,24 +289,24 @@ void BlockFactor::share_out() {
 void BlockFactor::place_boundaries() {
   outside_ = {6 * front_of_.size()};
   for (const int f : rest_) {
-    Front& front = fronts_[static_cast<size_t>(f)];
+    Front& front = fronts_[f];
     front.at.clear();
-    for (const int b : front.boundary) front.at.push_back(6 * static_cast<size_t>(b));
+    for (const int b : front.boundary) front.at.push_back(6 * b);
   }
   for (const std::vector<int>& subtree : subtrees_) {
     const int top = subtree.back();
-    const std::vector<int>& rim = fronts_[static_cast<size_t>(top)].boundary;
+    const std::vector<int>& rim = fronts_[top].boundary;
     for (const int f : subtree) {
-      Front& front = fronts_[static_cast<size_t>(f)];
+      Front& front = fronts_[f];
       front.at.clear();
       for (const int b : front.boundary) {
-        if (front_of_[static_cast<size_t>(b)] <= top) {
-          front.at.push_back(6 * static_cast<size_t>(b));
+        if (front_of_[b] <= top) {
+          front.at.push_back(6 * b);
           continue;
         }
         const auto place =
             std::lower_bound(rim.begin(), rim.end(), b, [this](int x, int y) { return goes_before(x, y); });
-        front.at.push_back(outside_.back() + 6 * static_cast<size_t>(place - rim.begin()));
+        front.at.push_back(outside_.back() + 6 * (place - rim.begin()));
       }
     }
     outside_.push_back(outside_.back() + 6 * rim.size());
@@ -342,7 +337,7 @@ void BlockFactor::gather(Front& front, const std::vector<Tile>& diagonal, const 
   front.left.assign(own_strip(rim), 0);
   const Places at{own, front.columns.data(), front.left.data()};
   for (size_t i = 0; i < front.own.size(); ++i) {
-    const Tile& tile = diagonal[static_cast<size_t>(front.own[i])];
+    const Tile& tile = diagonal[front.own[i]];
     double* to = at(i, i);
     for (size_t c = 0; c < 6; ++c)
       for (size_t r = 0; r < 6; ++r) to[kStrip * c + r] = tile[6 * r + c];
@@ -350,27 +345,26 @@ void BlockFactor::gather(Front& front, const std::vector<Tile>& diagonal, const 
   if (front.own.size() % 2 == 1)  // a block that is none
     for (size_t r = 0; r < 6; ++r) at(front.own.size(), front.own.size())[(kStrip + 1) * r] = 1;
   const auto local = [&](int block) -> size_t {
-    const auto b = static_cast<size_t>(block);
-    if (&fronts_[static_cast<size_t>(front_of_[b])] == &front) return static_cast<size_t>(place_in_front_[b]);
+    if (&fronts_[front_of_[block]] == &front) return place_in_front_[block];
     const auto it = std::lower_bound(front.boundary.begin(), front.boundary.end(), block,
                                      [this](int x, int y) { return goes_before(x, y); });
-    return 2 * own + static_cast<size_t>(it - front.boundary.begin());
+    return 2 * own + (it - front.boundary.begin());
   };
   for (const int k : front.pairs) {
-    const auto [a, b] = pairs_[static_cast<size_t>(k)];
+    const auto [a, b] = pairs_[k];
     const size_t i = local(a), j = local(b);
-    const Tile& tile = beside[static_cast<size_t>(k)];
+    const Tile& tile = beside[k];
     double* to = i > j ? at(i, j) : at(j, i);
     for (size_t c = 0; c < 6; ++c)
       for (size_t r = 0; r < 6; ++r) to[kStrip * c + r] = i > j ? tile[6 * r + c] : tile[6 * c + r];
   }
   for (const int c : front.children) {
-    Front& child = fronts_[static_cast<size_t>(c)];
+    Front& child = fronts_[c];
     const Places from{0, nullptr, child.left.data()};
     for (size_t i = 0; i < child.in_parent.size(); ++i)
       for (size_t j = 0; j <= i; ++j) {
         const double* tile = from(i, j);
-        double* to = at(static_cast<size_t>(child.in_parent[i]), static_cast<size_t>(child.in_parent[j]));
+        double* to = at(child.in_parent[i], static_cast<size_t>(child.in_parent[j]));
         for (size_t k = 0; k < 6; ++k)
           for (size_t r = 0; r < 6; ++r) to[kStrip * k + r] += tile[kStrip * k + r];
       }
@@ -462,7 +456,7 @@ bool BlockFactor::factorize(const std::vector<Tile>& diagonal, const std::vector
   std::atomic<bool> good = true;
   const Workers alone;
   const auto work = [&](int f, const Workers& by) {
-    Front& front = fronts_[static_cast<size_t>(f)];
+    Front& front = fronts_[f];
     gather(front, diagonal, beside);
     if (!eliminate(front, by)) good = false;
   };
@@ -492,8 +486,7 @@ double BlockFactor::pivot_ratio() const {
 void BlockFactor::fetch(const Front& front, const double* x, std::vector<double>& y) {
   const size_t own = front.own_strips();
   y.assign(kStrip * (own + front.boundary_strips()), 0);
-  for (size_t i = 0; i < front.own.size(); ++i)
-    std::copy_n(x + 6 * static_cast<size_t>(front.own[i]), 6, &y[6 * i]);
+  for (size_t i = 0; i < front.own.size(); ++i) std::copy_n(x + 6 * front.own[i], 6, &y[6 * i]);
   for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(x + front.at[i], 6, &y[kStrip * own + 6 * i]);
 }
 
@@ -516,8 +509,7 @@ void BlockFactor::forward(const Front& front, const Workers& workers, double* x,
       kernels_->subtract_columns(front.columns.data() + boundary_strip(own, s), y.data(), kStrip * own,
                                  &y[kStrip * (own + s)]);
   });
-  for (size_t i = 0; i < front.own.size(); ++i)
-    std::copy_n(&y[6 * i], 6, x + 6 * static_cast<size_t>(front.own[i]));
+  for (size_t i = 0; i < front.own.size(); ++i) std::copy_n(&y[6 * i], 6, x + 6 * front.own[i]);
   for (size_t i = 0; i < front.at.size(); ++i) std::copy_n(&y[kStrip * own + 6 * i], 6, x + front.at[i]);
 }
 
@@ -540,8 +532,7 @@ void BlockFactor::backward(const Front& front, const Workers& workers, double* x
     }
     kernels_->subtract_rows(a, here, kStrip * s, y.data());
   }
-  for (size_t i = 0; i < front.own.size(); ++i)
-    std::copy_n(&y[6 * i], 6, x + 6 * static_cast<size_t>(front.own[i]));
+  for (size_t i = 0; i < front.own.size(); ++i) std::copy_n(&y[6 * i], 6, x + 6 * front.own[i]);
 }
 
 void BlockFactor::solve(std::vector<double>& x, const Workers& workers) const {
@@ -549,29 +540,25 @@ void BlockFactor::solve(std::vector<double>& x, const Workers& workers) const {
   TALUS_ASSERT(x.size() == size);
   x.resize(outside_.back(), 0);
   const Workers alone;
-  const auto root = [&](size_t t) -> const Front& {
-    return fronts_[static_cast<size_t>(subtrees_[t].back())];
-  };
+  const auto root = [&](size_t t) -> const Front& { return fronts_[subtrees_[t].back()]; };
   workers.run(subtrees_.size(), [&](size_t t) {
     std::vector<double> y;
-    for (const int f : subtrees_[t]) forward(fronts_[static_cast<size_t>(f)], alone, x.data(), y);
+    for (const int f : subtrees_[t]) forward(fronts_[f], alone, x.data(), y);
   });
   for (size_t t = 0; t < subtrees_.size(); ++t) {
     const std::vector<int>& rim = root(t).boundary;
     for (size_t i = 0; i < rim.size(); ++i)
-      for (size_t k = 0; k < 6; ++k) x[6 * static_cast<size_t>(rim[i]) + k] += x[outside_[t] + 6 * i + k];
+      for (size_t k = 0; k < 6; ++k) x[6 * rim[i] + k] += x[outside_[t] + 6 * i + k];
   }
   std::vector<double> y;
-  for (const int f : rest_) forward(fronts_[static_cast<size_t>(f)], workers, x.data(), y);
-  for (auto f = rest_.rbegin(); f != rest_.rend(); ++f)
-    backward(fronts_[static_cast<size_t>(*f)], workers, x.data(), y);
+  for (const int f : rest_) forward(fronts_[f], workers, x.data(), y);
+  for (auto f = rest_.rbegin(); f != rest_.rend(); ++f) backward(fronts_[*f], workers, x.data(), y);
   workers.run(subtrees_.size(), [&](size_t t) {
     const std::vector<int>& rim = root(t).boundary;
-    for (size_t i = 0; i < rim.size(); ++i)
-      std::copy_n(&x[6 * static_cast<size_t>(rim[i])], 6, &x[outside_[t] + 6 * i]);
+    for (size_t i = 0; i < rim.size(); ++i) std::copy_n(&x[6 * rim[i]], 6, &x[outside_[t] + 6 * i]);
     std::vector<double> mine;
     for (auto f = subtrees_[t].rbegin(); f != subtrees_[t].rend(); ++f)
-      backward(fronts_[static_cast<size_t>(*f)], alone, x.data(), mine);
+      backward(fronts_[*f], alone, x.data(), mine);
   });
   x.resize(size);
 }

@@ -28,11 +28,10 @@ double point_error(const std::vector<Mobility>& mobility, const RowSet& set, siz
   const Impulse& impulse = set.impulse[i];
   double e[2], lower[2], upper[2];
   bool passed = true;
-  for (size_t k = 0; k < 2; ++k) {
+  for (int k = 0; k < 2; ++k) {
     e[k] = u[k] + point.row[k].bias + point.row[k].compliance * impulse[k];
-    if (point.partner >= 0)
-      e[k] += point.cross(static_cast<int>(k)) * set.impulse[static_cast<size_t>(point.partner)][k];
-    const Bounds bounds = bounds_of(point, static_cast<int>(k), impulse[0]);
+    if (point.partner >= 0) e[k] += point.cross(k) * set.impulse[point.partner][k];
+    const Bounds bounds = bounds_of(point, k, impulse[0]);
     lower[k] = bounds.lower, upper[k] = bounds.upper;
     // within its bounds an impulse is never further from its projection than e / Wii, and at a bound that e
     // pushes it against it is there
@@ -43,10 +42,8 @@ double point_error(const std::vector<Mobility>& mobility, const RowSet& set, siz
   if (passed) return 0;
 
   double w[2] = {point.row[0].compliance, point.row[1].compliance};
-  if (point.block_a >= 0)
-    add_diagonal(mobility[static_cast<size_t>(point.block_a)], point.arm_a, point.normal, w);
-  if (point.block_b >= 0)
-    add_diagonal(mobility[static_cast<size_t>(point.block_b)], point.arm_b, point.normal, w);
+  if (point.block_a >= 0) add_diagonal(mobility[point.block_a], point.arm_a, point.normal, w);
+  if (point.block_b >= 0) add_diagonal(mobility[point.block_b], point.arm_b, point.normal, w);
   double worst = 0;
   for (size_t k = 0; k < 2; ++k) {
     const double p = impulse[k];

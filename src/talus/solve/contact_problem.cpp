@@ -4,6 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -28,10 +30,10 @@ RowState row_state(const ContactProblem& problem, size_t point, int k, double e,
 
 std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::VectorXd& p,
                                  const Eigen::VectorXd& e) {
-  std::vector<RowState> states(static_cast<size_t>(problem.size()));
+  std::vector<RowState> states(problem.size());
   for (size_t i = 0; i < problem.rows.size(); ++i) {
     for (int k = 0; k < 2; ++k) {
-      const size_t r = 2 * i + static_cast<size_t>(k);
+      const size_t r = 2 * i + k;
       const auto row = static_cast<Eigen::Index>(r);
       states[r] = row_state(problem, i, k, e[row], p[row], p[static_cast<Eigen::Index>(2 * i)]);
     }
@@ -50,8 +52,8 @@ Eigen::VectorXd residual_smoothed(const ContactProblem& problem, const Eigen::Ve
   Eigen::VectorXd h(problem.size());
   const std::vector<RowState> states = row_states(problem, p, e);
   for (Eigen::Index r = 0; r < h.size(); ++r) {
-    const PointRows& rows = problem.rows[static_cast<size_t>(r / 2)];
-    const RowState& state = states[static_cast<size_t>(r)];
+    const PointRows& rows = problem.rows[r / 2];
+    const RowState& state = states[r];
     const double w = problem.diagonal[r];
     if (!is_smoothed(rows)) {
       h[r] = state.free ? e[r] : w * (p[r] - state.held_at);
@@ -79,12 +81,12 @@ ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet
   ContactProblem problem;
   problem.point = points;
   std::unordered_map<int, int> local_of;  // looked up only, never walked: its order does not matter
-  for (size_t i = 0; i < points.size(); ++i) local_of[points[i]] = static_cast<int>(i);
+  for (int i = 0; i < count_of(points); ++i) local_of[points[i]] = i;
   std::vector<std::pair<int, Side>> sides;  // (block, side), sorted by block: a fixed order of sums
-  for (size_t i = 0; i < points.size(); ++i) {
-    const PointRows& p = set.points[static_cast<size_t>(points[i])];
+  for (int i = 0; i < count_of(points); ++i) {
+    const PointRows& p = set.points[points[i]];
     problem.rows.push_back(p);
-    const int local = static_cast<int>(i);
+    const int local = i;
     if (moves(mobility, p.block_a)) sides.push_back({p.block_a, {local, 1, p.arm_a}});
     if (moves(mobility, p.block_b)) sides.push_back({p.block_b, {local, -1, p.arm_b}});
   }
@@ -99,10 +101,8 @@ ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet
     for (size_t i = begin; i < end; ++i) {
       for (size_t j = begin; j < end; ++j) {
         const Side &s = sides[i].second, &r = sides[j].second;
-        const Mat2 w =
-            (s.sign * r.sign) * influence(mobility[static_cast<size_t>(sides[i].first)], s.arm, r.arm);
-        const Vec2 ns = problem.rows[static_cast<size_t>(s.local)].normal,
-                   nr = problem.rows[static_cast<size_t>(r.local)].normal;
+        const Mat2 w = (s.sign * r.sign) * influence(mobility[sides[i].first], s.arm, r.arm);
+        const Vec2 ns = problem.rows[s.local].normal, nr = problem.rows[r.local].normal;
         const Vec2 ds[2] = {ns, turn_right(ns)}, dr[2] = {nr, turn_right(nr)};
         for (int k = 0; k < 2; ++k)
           for (int l = 0; l < 2; ++l)
@@ -112,12 +112,12 @@ ContactProblem build_problem(const std::vector<Mobility>& mobility, const RowSet
     begin = end;
   }
   problem.velocity_free.resize(n);
-  for (size_t i = 0; i < points.size(); ++i) {
+  for (int i = 0; i < count_of(points); ++i) {
     const PointRows& p = problem.rows[i];
     const auto u = relative_velocity(p, rate);
     for (int k = 0; k < 2; ++k) {
-      const int row = static_cast<int>(2 * i) + k;
-      problem.velocity_free[row] = u[static_cast<size_t>(k)] + p.row[k].bias;
+      const int row = (2 * i) + k;
+      problem.velocity_free[row] = u[k] + p.row[k].bias;
       entries.emplace_back(row, row, p.row[k].compliance);
       if (p.partner >= 0) entries.emplace_back(row, 2 * local_of.at(p.partner) + k, p.cross(k));
     }
@@ -134,7 +134,7 @@ Eigen::VectorXd residual(const ContactProblem& problem, const Eigen::VectorXd& p
   const std::vector<RowState> states = row_states(problem, p, e);
   Eigen::VectorXd h(problem.size());
   for (Eigen::Index r = 0; r < h.size(); ++r) {
-    const RowState& s = states[static_cast<size_t>(r)];
+    const RowState& s = states[r];
     h[r] = s.free ? e[r] : problem.diagonal[r] * (p[r] - s.held_at);
   }
   return h;
@@ -147,9 +147,9 @@ std::vector<RowState> row_states(const ContactProblem& problem, const Eigen::Vec
 // Theory 5.2.
 SparseMatrix jacobian(const ContactProblem& problem, const std::vector<RowState>& states) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<size_t>(problem.influence.nonZeros()));
+  entries.reserve(problem.influence.nonZeros());
   for (int row = 0; row < problem.size(); ++row) {
-    const RowState& s = states[static_cast<size_t>(row)];
+    const RowState& s = states[row];
     if (s.free) {
       for (SparseMatrix::InnerIterator it(problem.influence, row); it; ++it)
         entries.emplace_back(row, static_cast<int>(it.col()), it.value());
@@ -173,9 +173,9 @@ SparseMatrix jacobian_smoothed(const ContactProblem& problem, const Eigen::Vecto
       entries.emplace_back(row, static_cast<int>(it.col()), factor * it.value());
   };
   for (int row = 0; row < problem.size(); ++row) {
-    const PointRows& rows = problem.rows[static_cast<size_t>(row / 2)];
+    const PointRows& rows = problem.rows[row / 2];
     const double w = problem.diagonal[row];
-    const RowState& s = states[static_cast<size_t>(row)];
+    const RowState& s = states[row];
     if (!is_smoothed(rows)) {
       if (s.free) {
         add_row(row, 1);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "talus/base/index.h"
 #include "talus/base/prefetch.h"
 #include "talus/solve/contact_error.h"
 
@@ -66,39 +67,36 @@ bool has_still(const Record& r) {
 template <class Record>
 void write_empty(Record& r, wide::Give& give, int lane, int point) {
   auto& p = r.point[point];
-  const auto l = static_cast<size_t>(lane);
   // no direction: whatever the blocks do, its residual is the bias and no impulse comes of it
-  p.nx[l] = p.ny[l] = 0;
-  p.ax[l] = p.ay[l] = p.bx[l] = p.by[l] = 0;
-  p.bias_n[l] = 1, p.bias_t[l] = 0;
-  p.p_n[l] = p.p_t[l] = 0;
-  give.n[point][l] = give.t[point][l] = 1;
-  p.mu[l] = 0;
+  p.nx[lane] = p.ny[lane] = 0;
+  p.ax[lane] = p.ay[lane] = p.bx[lane] = p.by[lane] = 0;
+  p.bias_n[lane] = 1, p.bias_t[lane] = 0;
+  p.p_n[lane] = p.p_t[lane] = 0;
+  give.n[point][lane] = give.t[point][lane] = 1;
+  p.mu[lane] = 0;
 }
 
 void write_bounds(wide::ContactLanes&, int, const PointRows*) {}
 void write_bounds(wide::TieLanes& p, int lane, const PointRows* rows) {
-  const auto l = static_cast<size_t>(lane);
   const auto clip = [](double v) { return std::clamp(v, -kEndless, kEndless); };
-  p.lower_n[l] = rows ? clip(rows->lower) : 0, p.upper_n[l] = rows ? clip(rows->upper) : 0;
-  p.cohesion[l] = rows ? clip(rows->cohesion) : 0;
+  p.lower_n[lane] = rows ? clip(rows->lower) : 0, p.upper_n[lane] = rows ? clip(rows->upper) : 0;
+  p.cohesion[lane] = rows ? clip(rows->cohesion) : 0;
 }
 
 template <class Record>
 void write_point(const std::vector<Mobility>& mobility, const PointRows& rows, const Impulse& impulse,
                  Record& r, wide::Give& give, int lane, int point, int block_a) {
   auto& p = r.point[point];
-  const auto l = static_cast<size_t>(lane);
   const Seen s = seen_from(rows, block_a);
   const int block_b = rows.block_a == block_a ? rows.block_b : rows.block_a;
-  const Vec2 a = block_a >= 0 ? turned_back(mobility[static_cast<size_t>(block_a)].right, s.arm_a) : Vec2{};
-  const Vec2 b = block_b >= 0 ? turned_back(mobility[static_cast<size_t>(block_b)].right, s.arm_b) : Vec2{};
-  p.nx[l] = s.normal.x, p.ny[l] = s.normal.y;
-  p.ax[l] = a.x, p.ay[l] = a.y, p.bx[l] = b.x, p.by[l] = b.y;
-  p.bias_n[l] = rows.row[0].bias, p.bias_t[l] = rows.row[1].bias;
-  p.p_n[l] = impulse[0], p.p_t[l] = impulse[1];
-  give.n[point][l] = rows.row[0].compliance, give.t[point][l] = rows.row[1].compliance;
-  p.mu[l] = rows.friction;
+  const Vec2 a = block_a >= 0 ? turned_back(mobility[block_a].right, s.arm_a) : Vec2{};
+  const Vec2 b = block_b >= 0 ? turned_back(mobility[block_b].right, s.arm_b) : Vec2{};
+  p.nx[lane] = s.normal.x, p.ny[lane] = s.normal.y;
+  p.ax[lane] = a.x, p.ay[lane] = a.y, p.bx[lane] = b.x, p.by[lane] = b.y;
+  p.bias_n[lane] = rows.row[0].bias, p.bias_t[lane] = rows.row[1].bias;
+  p.p_n[lane] = impulse[0], p.p_t[lane] = impulse[1];
+  give.n[point][lane] = rows.row[0].compliance, give.t[point][lane] = rows.row[1].compliance;
+  p.mu[lane] = rows.friction;
 }
 
 }  // namespace
@@ -137,7 +135,7 @@ struct GaussSeidel::Plan {
 // The two ends of a face, else neighbours in the list with the same two blocks.
 std::vector<GaussSeidel::Rows> GaussSeidel::couples() const {
   std::vector<Rows> couples;
-  const auto n = static_cast<int>(seen_.size());
+  const auto n = count_of(seen_);
   const auto same_blocks = [&](int i, int j) {
     const Point &p = at(i), &q = at(j);
     return p.tie() == q.tie() && p.block_a == q.block_a && p.block_b == q.block_b;
@@ -163,14 +161,12 @@ bool GaussSeidel::has_tie(const Rows& c) const {
 
 void GaussSeidel::part_couples(const std::vector<Mobility>& mobility, std::span<const int> tile,
                                Plan& plan) const {
-  if (!tile.empty()) plan.tiles = 1 + static_cast<size_t>(*std::max_element(tile.begin(), tile.end()));
-  const auto tile_of = [&](int block) {
-    return !tile.empty() && moves(mobility, block) ? tile[static_cast<size_t>(block)] : -1;
-  };
+  if (!tile.empty()) plan.tiles = 1 + *std::max_element(tile.begin(), tile.end());
+  const auto tile_of = [&](int block) { return !tile.empty() && moves(mobility, block) ? tile[block] : -1; };
   const auto group_of = [&](const Rows& c) {
     const int a = tile_of(at(c.row[0]).block_a), b = tile_of(at(c.row[0]).block_b);
     const int only = a < 0 ? b : b < 0 || a == b ? a : -1;
-    return only < 0 ? plan.tiles : static_cast<size_t>(only);
+    return only < 0 ? plan.tiles : only;
   };
   std::vector<size_t> group(plan.couples.size());
   plan.group_begin.assign(plan.tiles + 2, 0);
@@ -192,15 +188,15 @@ void GaussSeidel::give_colours(const std::vector<Mobility>& mobility, const Work
       const size_t c = plan.in_group[i];
       const Point& p = at(plan.couples[c].row[0]);
       uint64_t taken = 0;
-      if (moves(mobility, p.block_a)) taken |= used[static_cast<size_t>(p.block_a)];
-      if (moves(mobility, p.block_b)) taken |= used[static_cast<size_t>(p.block_b)];
+      if (moves(mobility, p.block_a)) taken |= used[p.block_a];
+      if (moves(mobility, p.block_b)) taken |= used[p.block_b];
       const int colour = std::min(__builtin_ctzll(~taken | (1ULL << kMostColours)), kMostColours);
       plan.colour[c] = colour;
       Plan::PerColour& count = plan.count[g];
-      ++(has_tie(plan.couples[c]) ? count.ties : count.contacts)[static_cast<size_t>(colour)];
+      ++(has_tie(plan.couples[c]) ? count.ties : count.contacts)[colour];
       if (colour == kMostColours) continue;
-      if (moves(mobility, p.block_a)) used[static_cast<size_t>(p.block_a)] |= 1ULL << colour;
-      if (moves(mobility, p.block_b)) used[static_cast<size_t>(p.block_b)] |= 1ULL << colour;
+      if (moves(mobility, p.block_a)) used[p.block_a] |= 1ULL << colour;
+      if (moves(mobility, p.block_b)) used[p.block_b] |= 1ULL << colour;
     }
   };
   // tiles share no moving block
@@ -232,7 +228,7 @@ void GaussSeidel::place_rows(const Workers& workers, Plan& plan) {
   workers.for_chunks(plan.tiles + 1, 1, [&](size_t g, size_t) {
     for (size_t i = plan.group_begin[g]; i < plan.group_begin[g + 1]; ++i) {
       const size_t c = plan.in_group[i];
-      const auto k = static_cast<size_t>(plan.colour[c]);
+      const int k = plan.colour[c];
       const bool tie = has_tie(plan.couples[c]);
       size_t& place = (tie ? plan.free_at[g].ties : plan.free_at[g].contacts)[k];
       (tie ? tie_rows_ : contact_rows_)[place] = plan.couples[c];
@@ -245,7 +241,7 @@ void GaussSeidel::place_rows(const Workers& workers, Plan& plan) {
 
 // Blocks that do not move are written to lines that nobody reads, one for each record that has any.
 void GaussSeidel::place_blocks(const std::vector<Mobility>& mobility, const Workers& workers) {
-  const auto line_of = [&](int block) { return block < 0 ? ground_ : line_[static_cast<size_t>(block)]; };
+  const auto line_of = [&](int block) { return block < 0 ? ground_ : line_[block]; };
   int line = ground_ + 1;
   const auto set_blocks = [&](auto& records, const std::vector<Rows>& rows) {
     constexpr size_t kChunk = 1024;
@@ -278,8 +274,8 @@ void GaussSeidel::place_blocks(const std::vector<Mobility>& mobility, const Work
   };
   set_blocks(contacts_, contact_rows_);
   set_blocks(ties_, tie_rows_);
-  resize_sparingly(lines_, static_cast<size_t>(line));
-  lines_[static_cast<size_t>(ground_)] = {};
+  resize_sparingly(lines_, line);
+  lines_[ground_] = {};
 }
 
 // Theory 5.5.
@@ -291,7 +287,7 @@ void GaussSeidel::lay_out(const std::vector<Mobility>& mobility, std::span<const
   part_couples(mobility, tile, plan);
   give_colours(mobility, workers, plan);
   place_rows(workers, plan);
-  ground_ = static_cast<int>(mobility.size());
+  ground_ = count_of(mobility);
   order_lines(tile, plan.tiles);
   place_blocks(mobility, workers);
 }
@@ -307,12 +303,11 @@ int GaussSeidel::most_colours() const {
 
 // Blocks of a tile have their lines side by side: they are fetched as one piece.
 void GaussSeidel::order_lines(std::span<const int> tile, size_t tiles) {
-  line_.resize(static_cast<size_t>(ground_));
+  line_.resize(ground_);
   std::vector<int> next(tiles + 1);
-  for (const int t : tile) ++next[static_cast<size_t>(t) + 1];
+  for (const int t : tile) ++next[t + 1];
   for (size_t t = 0; t < tiles; ++t) next[t + 1] += next[t];
-  for (size_t i = 0; i < line_.size(); ++i)
-    line_[i] = tile.empty() ? static_cast<int>(i) : next[static_cast<size_t>(tile[i])]++;
+  for (int i = 0; i < count_of(line_); ++i) line_[i] = tile.empty() ? i : next[tile[i]]++;
 }
 
 void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::vector<BlockRate>& rate,
@@ -320,7 +315,7 @@ void GaussSeidel::write_lines(const std::vector<Mobility>& mobility, const std::
   workers.for_chunks(mobility.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Mobility& m = mobility[i];
-      wide::BlockLine& line = lines_[static_cast<size_t>(line_[i])];
+      wide::BlockLine& line = lines_[line_[i]];
       const Mat2 g = transpose(rotation(m.left)) * rate[i].G * rotation(m.right);
       const double values[] = {rate[i].a.x, rate[i].a.y, g.xx, g.xy, g.yx, g.yy, m.mass, 0};
       const double answer[] = {m.stretch[0], m.stretch[1], m.stretch[2], m.shear[0],
@@ -341,7 +336,7 @@ void GaussSeidel::read_lines(const StepProblem& problem, const Workers& workers)
         rate[i] = problem.rate_free[i];
         continue;
       }
-      const double* v = lines_[static_cast<size_t>(line_[i])].rate;
+      const double* v = lines_[line_[i]].rate;
       rate[i] = {{v[0], v[1]},
                  rotation(m.left) * Mat2{v[2], v[3], v[4], v[5]} * transpose(rotation(m.right))};
     }
@@ -405,8 +400,8 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
   const auto write = [&](auto& record, wide::Give& give, const Rows* rows) {
     for (int l = 0; l < kLanes; ++l) {
       const Rows& couple = rows[l];
-      const int a = couple.row[0] < 0 ? -1 : seen_[static_cast<size_t>(couple.row[0])].block_a;
-      record.cross_n[static_cast<size_t>(l)] = record.cross_t[static_cast<size_t>(l)] = 0;
+      const int a = couple.row[0] < 0 ? -1 : seen_[couple.row[0]].block_a;
+      record.cross_n[l] = record.cross_t[l] = 0;
       for (int k = 0; k < 2; ++k) {
         const int row = couple.row[k];
         if (row < 0) {
@@ -414,12 +409,11 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
           write_bounds(record.point[k], l, nullptr);
           continue;
         }
-        const PointRows& p = set.points[static_cast<size_t>(row)];
-        write_point(mobility, p, set.impulse[static_cast<size_t>(row)], record, give, l, k, a);
+        const PointRows& p = set.points[row];
+        write_point(mobility, p, set.impulse[row], record, give, l, k, a);
         write_bounds(record.point[k], l, &p);
         if (p.partner < 0) continue;
-        record.cross_n[static_cast<size_t>(l)] = p.cross(0),
-        record.cross_t[static_cast<size_t>(l)] = p.cross(1);
+        record.cross_n[l] = p.cross(0), record.cross_t[l] = p.cross(1);
       }
     }
   };
@@ -428,8 +422,8 @@ void GaussSeidel::write_records(const std::vector<Mobility>& mobility, const Row
     for (int l = 0; l < kLanes; ++l)
       for (const int row : rows[l].row) {
         if (row < 0) continue;
-        prefetch_all(set.points[static_cast<size_t>(row)]);
-        prefetch(&set.impulse[static_cast<size_t>(row)]);
+        prefetch_all(set.points[row]);
+        prefetch(&set.impulse[row]);
       }
   };
   const auto write_all = [&](auto& records, std::vector<wide::Give>& give, const std::vector<Rows>& rows,
@@ -461,7 +455,7 @@ void GaussSeidel::read_records(const Workers& workers, RowSet& set) const {
             const int row = rows[r * kLanes + l].row[k];
             if (row < 0) continue;
             const auto& p = records[r].point[k];
-            set.impulse[static_cast<size_t>(row)] = {p.p_n[l], p.p_t[l]};
+            set.impulse[row] = {p.p_n[l], p.p_t[l]};
           }
     });
   };
@@ -515,7 +509,7 @@ void GaussSeidel::keep(const Workers& workers) {
   };
   keep_impulses(contacts_, contact_direction_);
   keep_impulses(ties_, tie_direction_);
-  rate_direction_.resize(static_cast<size_t>(ground_));
+  rate_direction_.resize(ground_);
   workers.for_chunks(rate_direction_.size(), kLines, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       std::copy(lines_[i].rate, lines_[i].rate + 6, rate_direction_[i].old.begin());

@@ -41,7 +41,7 @@ class GaussSeidel : public Solver {
   bool layout_holds(const RowSet& set, const Workers& workers);
   void lay_out(const std::vector<Mobility>& mobility, std::span<const int> tile, const Workers& workers);
   struct Plan;
-  const Point& at(int row) const { return seen_[static_cast<size_t>(row)]; }
+  const Point& at(int row) const { return seen_[row]; }
   bool has_tie(const Rows& couple) const;
   std::vector<Rows> couples() const;
   void part_couples(const std::vector<Mobility>& mobility, std::span<const int> tile, Plan& plan) const;

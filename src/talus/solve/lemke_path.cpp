@@ -318,7 +318,7 @@ Event Path::first_event(double t, int sense) const {
 }
 
 double Path::pass(const Event& event, double t) {
-  const auto i = static_cast<size_t>(event.point);
+  const int i = event.point;
   const Point& a = r_.points[i];
   Stands& s = stands_[i];
   const Stands before = s;

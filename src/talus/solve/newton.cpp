@@ -6,6 +6,7 @@
 #include <deque>
 #include <numeric>
 
+#include "talus/base/index.h"
 #include "talus/solve/contact_problem.h"
 #include "talus/solve/symmetric_factor.h"
 
@@ -64,8 +65,8 @@ class Direction {
     int n_free = 0;
     d.resize(problem_.size());
     for (int r = 0; r < problem_.size(); ++r) {
-      if (states[static_cast<size_t>(r)].free)
-        free_index[static_cast<size_t>(r)] = n_free++;
+      if (states[r].free)
+        free_index[r] = n_free++;
       else
         d[r] = -h[r] / problem_.diagonal[r];
     }
@@ -75,12 +76,12 @@ class Direction {
     free_rows_.resize(n_free, n_free);
     free_rows_.reserve(w.nonZeros());
     for (int r = 0; r < problem_.size(); ++r) {
-      const int row = free_index[static_cast<size_t>(r)];
+      const int row = free_index[r];
       if (row < 0) continue;
       rhs[row] = -h[r];
       free_rows_.startVec(row);
       for (SparseMatrix::InnerIterator it(w, r); it; ++it) {
-        const int column = free_index[static_cast<size_t>(it.col())];
+        const int column = free_index[it.col()];
         if (column >= 0)
           free_rows_.insertBack(row, column) = it.value();
         else
@@ -91,13 +92,13 @@ class Direction {
     const ColumnMatrix a = free_rows_;
     ColumnMatrix held = a;
     for (int r = 0; r < problem_.size(); ++r)
-      if (const int row = free_index[static_cast<size_t>(r)]; row >= 0)
+      if (const int row = free_index[r]; row >= 0)
         held.coeffRef(row, row) += kRegularisation * problem_.diagonal[r];
     if (!factor_.factorize(held)) return false;
     const Eigen::VectorXd x = refined(factor_, a, rhs);
     if (!x.allFinite()) return false;
     for (int r = 0; r < problem_.size(); ++r) {
-      const int row = free_index[static_cast<size_t>(r)];
+      const int row = free_index[r];
       if (row >= 0) d[r] = x[row];
     }
     return true;
@@ -109,7 +110,7 @@ class Direction {
     const Eigen::SparseMatrix<double> a = jacobian(problem_, states);
     Eigen::SparseMatrix<double> held = a;
     for (int r = 0; r < problem_.size(); ++r)
-      if (states[static_cast<size_t>(r)].free) held.coeffRef(r, r) += kRegularisation * problem_.diagonal[r];
+      if (states[r].free) held.coeffRef(r, r) += kRegularisation * problem_.diagonal[r];
     held.makeCompressed();
     Eigen::SparseLU<Eigen::SparseMatrix<double>> factor(held);
     if (factor.info() != Eigen::Success) return false;
@@ -147,9 +148,9 @@ bool direction_by_differences(const ContactProblem& problem, const Eigen::Vector
 void settle_on_bounds(const ContactProblem& problem, Eigen::VectorXd& p) {
   const std::vector<RowState> states = row_states(problem, p);
   for (Eigen::Index r = 0; r < p.size(); ++r) {
-    if (states[static_cast<size_t>(r)].free) continue;
+    if (states[r].free) continue;
     const auto k = static_cast<int>(r % 2);
-    const Bounds b = bounds_of(problem.rows[static_cast<size_t>(r / 2)], k, p[r - k]);
+    const Bounds b = bounds_of(problem.rows[r / 2], k, p[r - k]);
     p[r] = std::abs(p[r] - b.lower) < std::abs(p[r] - b.upper) ? b.lower : b.upper;
   }
 }
@@ -210,30 +211,30 @@ std::vector<std::vector<int>> find_islands(const std::vector<Mobility>& mobility
   std::vector<int> parent(mobility.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&parent](int i) {
-    while (parent[static_cast<size_t>(i)] != i) {
-      int& up = parent[static_cast<size_t>(i)];
-      up = parent[static_cast<size_t>(up)];
+    while (parent[i] != i) {
+      int& up = parent[i];
+      up = parent[up];
       i = up;
     }
     return i;
   };
-  const auto free_block = [&mobility](int i) { return i >= 0 && mobility[static_cast<size_t>(i)].moves(); };
+  const auto free_block = [&mobility](int i) { return i >= 0 && mobility[i].moves(); };
   for (const PointRows& p : set.points) {
     if (!free_block(p.block_a) || !free_block(p.block_b)) continue;
     const int a = root(p.block_a), b = root(p.block_b);
-    parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+    parent[std::max(a, b)] = std::min(a, b);
   }
   std::vector<std::vector<int>> islands;
   std::vector<int> island_of(mobility.size(), -1);
-  for (size_t i = 0; i < set.points.size(); ++i) {
+  for (int i = 0; i < count_of(set.points); ++i) {
     const PointRows& p = set.points[i];
     const int block = free_block(p.block_a) ? p.block_a : p.block_b;
-    int& island = island_of[static_cast<size_t>(root(block))];
+    int& island = island_of[root(block)];
     if (island < 0) {
-      island = static_cast<int>(islands.size());
+      island = count_of(islands);
       islands.emplace_back();
     }
-    islands[static_cast<size_t>(island)].push_back(static_cast<int>(i));
+    islands[island].push_back(i);
   }
   return islands;
 }
@@ -246,13 +247,13 @@ SolveReport solve_islands(const std::vector<Mobility>& mobility, const std::vect
                           std::deque<SymmetricFactor>& factors, RowSet& set) {
   SolveReport report;
   for (const std::vector<int>& points : find_islands(mobility, set)) {
-    if (factors.size() <= static_cast<size_t>(report.islands)) factors.emplace_back();
-    SymmetricFactor& factor = factors[static_cast<size_t>(report.islands)];
+    if (count_of(factors) <= report.islands) factors.emplace_back();
+    SymmetricFactor& factor = factors[report.islands];
     ContactProblem problem = build_problem(mobility, set, points, rate);
     problem.smoothing = smoothing;
     Eigen::VectorXd p(problem.size());
     for (size_t i = 0; i < points.size(); ++i) {
-      const Impulse& guess = set.impulse[static_cast<size_t>(points[i])];
+      const Impulse& guess = set.impulse[points[i]];
       p[static_cast<Eigen::Index>(2 * i)] = guess[0], p[static_cast<Eigen::Index>(2 * i) + 1] = guess[1];
     }
     const int iterations = solve_island(problem, options, tolerance, factor, p);
@@ -260,10 +261,10 @@ SolveReport solve_islands(const std::vector<Mobility>& mobility, const std::vect
     if (iterations < 0) report.converged = false;
     for (size_t i = 0; i < points.size(); ++i) {
       const auto r = static_cast<Eigen::Index>(2 * i);
-      set.impulse[static_cast<size_t>(points[i])] = {p[r], p[r + 1]};
+      set.impulse[points[i]] = {p[r], p[r + 1]};
     }
     report.iterations = std::max(report.iterations, iterations < 0 ? -iterations - 1 : iterations);
-    report.largest_island = std::max(report.largest_island, static_cast<int>(points.size()));
+    report.largest_island = std::max(report.largest_island, count_of(points));
     ++report.islands;
   }
   return report;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/contact_problem.h"
 #include "talus/solve/lemke_path.h"
@@ -37,9 +38,8 @@ constexpr double kFewChanges = 0.25, kMostChanges = 2;
 // The rows of an island: those that only tie are eliminated, those that may reach a bound stay.
 class Island {
  public:
-  explicit Island(const ContactProblem& problem)
-      : problem_(problem), place_(static_cast<size_t>(problem.size()), -1) {
-    for (int i = 0; i < static_cast<int>(problem.rows.size()); ++i) sort_point(i);
+  explicit Island(const ContactProblem& problem) : problem_(problem), place_(problem.size(), -1) {
+    for (int i = 0; i < count_of(problem.rows); ++i) sort_point(i);
   }
   size_t live() const { return live_.size(); }
 
@@ -109,13 +109,13 @@ class Island {
   }
 
   int add(int row, std::vector<int>& rows) {
-    place_[static_cast<size_t>(row)] = static_cast<int>(rows.size());
+    place_[row] = count_of(rows);
     rows.push_back(row);
-    return place_[static_cast<size_t>(row)];
+    return place_[row];
   }
 
   void sort_point(int i) {
-    const PointRows& rows = problem_.rows[static_cast<size_t>(i)];
+    const PointRows& rows = problem_.rows[i];
     const bool stuck[2] = {!(problem_.diagonal[2 * i] > 0), !(problem_.diagonal[2 * i + 1] > 0)};
     const bool bounded = rows.cohesion < std::numeric_limits<double>::infinity();
     const bool coupled = bounded && rows.friction > 0 && !stuck[1];
@@ -145,31 +145,31 @@ class Island {
     const auto n = static_cast<Index>(live_.size()), ties = static_cast<Index>(ties_.size());
     for (const auto& [row, value] : fixed_) p[row] = value;
     is_live_.assign(place_.size(), 0);
-    for (const int row : live_) is_live_[static_cast<size_t>(row)] = 1;
+    for (const int row : live_) is_live_[row] = 1;
     std::vector<char> is_tie(place_.size(), 0);
-    for (const int row : ties_) is_tie[static_cast<size_t>(row)] = 1;
+    for (const int row : ties_) is_tie[row] = 1;
     share_.resize(n);
-    for (Index i = 0; i < n; ++i) share_[i] = 1 / std::sqrt(problem_.diagonal[live_[static_cast<size_t>(i)]]);
+    for (Index i = 0; i < n; ++i) share_[i] = 1 / std::sqrt(problem_.diagonal[live_[i]]);
 
     std::vector<Eigen::Triplet<double>> tied, between;
     reduced_.C = Eigen::MatrixXd::Zero(n, n);
     give_ = Eigen::VectorXd::Zero(n);
     for (Index i = 0; i < n; ++i) {
-      const int row = live_[static_cast<size_t>(i)];
+      const int row = live_[i];
       for (SparseMatrix::InnerIterator it(problem_.influence, row); it; ++it) {
-        const auto col = static_cast<size_t>(it.col());
+        const Eigen::Index col = it.col();
         if (is_live_[col])
           reduced_.C(i, place_[col]) = share_[i] * it.value() * share_[place_[col]];
         else if (is_tie[col])
           between.emplace_back(place_[col], static_cast<int>(i), it.value() * share_[i]);
       }
-      const PointRows& point = problem_.rows[static_cast<size_t>(row / 2)];
+      const PointRows& point = problem_.rows[row / 2];
       if (point.row[row % 2].compliance == 0) give_[i] = kGive;
     }
     for (Index i = 0; i < ties; ++i) {
-      const int row = ties_[static_cast<size_t>(i)];
+      const int row = ties_[i];
       for (SparseMatrix::InnerIterator it(problem_.influence, row); it; ++it)
-        if (const auto col = static_cast<size_t>(it.col()); is_tie[col])
+        if (const Eigen::Index col = it.col(); is_tie[col])
           tied.emplace_back(static_cast<int>(i), place_[col],
                             it.value() * (it.col() == row ? 1 + kTieGive : 1));
     }
@@ -275,9 +275,9 @@ class Island {
 double worst_of(const StepProblem& problem, const std::vector<int>& points) {
   double worst = 0;
   for (const int point : points) {
-    const auto i = static_cast<size_t>(point);
-    const auto u = relative_velocity(problem.rows.points[i], problem.rate);
-    const double here = problem.dt * point_error(problem.mobility, problem.rows, i, u, worst / problem.dt);
+    const auto u = relative_velocity(problem.rows.points[point], problem.rate);
+    const double here =
+        problem.dt * point_error(problem.mobility, problem.rows, point, u, worst / problem.dt);
     if (std::isnan(here)) return here;
     worst = std::max(worst, here);
   }
@@ -303,7 +303,7 @@ SolveReport Pivoting::solve(const StepProblem& problem, const SolverGoal& goal, 
   let_act(problem);
   for (const std::vector<int>& points : find_islands(problem.mobility, problem.rows)) {
     ++report.islands;
-    report.largest_island = std::max(report.largest_island, static_cast<int>(points.size()));
+    report.largest_island = std::max(report.largest_island, count_of(points));
     const double before = worst_of(problem, points);
     if (before <= goal.enough) continue;
     const ContactProblem equations = build_problem(problem.mobility, problem.rows, points, problem.rate_free);
@@ -314,18 +314,16 @@ SolveReport Pivoting::solve(const StepProblem& problem, const SolverGoal& goal, 
       std::vector<Impulse> kept;
       Eigen::VectorXd p(equations.size());
       for (size_t i = 0; i < points.size(); ++i) {
-        kept.push_back(problem.rows.impulse[static_cast<size_t>(points[i])]);
+        kept.push_back(problem.rows.impulse[points[i]]);
         p[static_cast<Index>(2 * i)] = kept.back()[0], p[static_cast<Index>(2 * i) + 1] = kept.back()[1];
       }
       if (island.solve(p, goal.enough / problem.dt, report.iterations)) {
         for (size_t i = 0; i < points.size(); ++i)
-          problem.rows.impulse[static_cast<size_t>(points[i])] = {p[static_cast<Index>(2 * i)],
-                                                                  p[static_cast<Index>(2 * i) + 1]};
+          problem.rows.impulse[points[i]] = {p[static_cast<Index>(2 * i)], p[static_cast<Index>(2 * i) + 1]};
         let_act(problem);
         better = std::isnan(before) || worst_of(problem, points) < before;
         if (!better) {
-          for (size_t i = 0; i < points.size(); ++i)
-            problem.rows.impulse[static_cast<size_t>(points[i])] = kept[i];
+          for (size_t i = 0; i < points.size(); ++i) problem.rows.impulse[points[i]] = kept[i];
           let_act(problem);
         }
       }

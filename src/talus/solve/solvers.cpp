@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/solve/gauss_seidel.h"
 #include "talus/solve/newton.h"
 #include "talus/solve/pivoting.h"
@@ -62,7 +63,7 @@ constexpr std::array kSolvers{SolverEntry{.kind = SolverKind::kNewton,
                                           .most_points = kMostPivotedPoints}};
 static_assert(kSolvers.size() + 1 == kSolverName.size());
 static_assert(std::ranges::all_of(kSolvers, [](const SolverEntry& e) {
-  return static_cast<size_t>(e.kind) == static_cast<size_t>(&e - kSolvers.data()) + 1;
+  return place_of(e.kind) == &e - kSolvers.data() + 1;
 }));
 
 // Up to so many points `auto` takes Newton: it is as fast there and reaches round-off. Where bodies are tied
@@ -130,10 +131,10 @@ int worth_of_sweeps(SolverKind kind, const RowKinds& kinds, size_t points) {
 
 }  // namespace
 
-const SolverEntry& entry(SolverKind kind) { return kSolvers.at(static_cast<size_t>(kind) - 1); }
+const SolverEntry& entry(SolverKind kind) { return kSolvers.at(place_of(kind) - 1); }
 
 Solver& SolverSet::of(SolverKind kind) {
-  std::unique_ptr<Solver>& made = made_[static_cast<size_t>(kind)];
+  std::unique_ptr<Solver>& made = made_[place_of(kind)];
   if (!made) made = entry(kind).make();
   return *made;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 
+#include "talus/base/index.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/solver.h"
 
@@ -28,7 +29,7 @@ const SolverEntry& entry(SolverKind kind);
 class SolverSet {
  public:
   Solver& of(SolverKind kind);
-  void drop(SolverKind kind) { made_[static_cast<size_t>(kind)].reset(); }
+  void drop(SolverKind kind) { made_[place_of(kind)].reset(); }
   /// Blocks are no longer the same.
   void forget() { made_ = {}; }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 using ColumnMatrix = Eigen::SparseMatrix<double>;
@@ -15,7 +17,7 @@ class SymmetricFactor {
   /// False when there is no factor.
   bool factorize(const ColumnMatrix& a) {
     const auto same = [](const std::vector<int>& kept, const int* now, Eigen::Index n) {
-      return kept.size() == static_cast<size_t>(n) && std::equal(kept.begin(), kept.end(), now);
+      return count_of(kept) == n && std::equal(kept.begin(), kept.end(), now);
     };
     if (!same(outer_, a.outerIndexPtr(), a.outerSize() + 1) ||
         !same(inner_, a.innerIndexPtr(), a.nonZeros())) {

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -229,7 +231,7 @@ void VelocityEquations::tiles(const std::vector<FaceTangent>& tangent, std::vect
   workers_.for_chunks(own.size(), 64, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
       own[c][0].fill(0), own[c][1].fill(0);
-      Tile* between = couple_pair_[c] < 0 ? nullptr : &beside[static_cast<size_t>(couple_pair_[c])];
+      Tile* between = couple_pair_[c] < 0 ? nullptr : &beside[couple_pair_[c]];
       for (size_t f = couple_begin_[c]; f < couple_begin_[c + 1]; ++f)
         add_face(faces_[f], tangent[f], own[c][0], own[c][1], between);
     }
@@ -237,8 +239,8 @@ void VelocityEquations::tiles(const std::vector<FaceTangent>& tangent, std::vect
   for (size_t c = 0; c < own.size(); ++c) {
     const Face& face = faces_[couple_begin_[c]];
     for (size_t k = 0; k < 36; ++k) {
-      if (face.a >= 0) diagonal[static_cast<size_t>(face.a)][k] += own[c][0][k];
-      if (face.b >= 0) diagonal[static_cast<size_t>(face.b)][k] += own[c][1][k];
+      if (face.a >= 0) diagonal[face.a][k] += own[c][0][k];
+      if (face.b >= 0) diagonal[face.b][k] += own[c][1][k];
     }
   }
 }
@@ -251,9 +253,9 @@ std::vector<Vec2> VelocityEquations::places() const {
     if (face.a < 0 || face.b < 0) continue;
     const PointRows& p = problem_.rows.points[index(face, 0)];
     Vec2 from_a_to_b = p.arm_a - p.arm_b;
-    if (number_[static_cast<size_t>(p.block_a)] != face.a) from_a_to_b = -1.0 * from_a_to_b;
-    near[static_cast<size_t>(face.a)].emplace_back(face.b, from_a_to_b);
-    near[static_cast<size_t>(face.b)].emplace_back(face.a, -1.0 * from_a_to_b);
+    if (number_[p.block_a] != face.a) from_a_to_b = -1.0 * from_a_to_b;
+    near[face.a].emplace_back(face.b, from_a_to_b);
+    near[face.b].emplace_back(face.a, -1.0 * from_a_to_b);
   }
   std::vector<char> known(moving_.size(), 0);
   std::vector<size_t> next;
@@ -262,9 +264,8 @@ std::vector<Vec2> VelocityEquations::places() const {
     known[first] = 1, next = {first};
     for (size_t i = 0; i < next.size(); ++i)
       for (const auto& [b, step] : near[next[i]]) {
-        const auto k = static_cast<size_t>(b);
-        if (known[k]) continue;
-        known[k] = 1, place[k] = place[next[i]] + step, next.push_back(k);
+        if (known[b]) continue;
+        known[b] = 1, place[b] = place[next[i]] + step, next.push_back(b);
       }
   }
   return place;
@@ -279,7 +280,7 @@ std::vector<double> VelocityEquations::unknowns(const std::vector<BlockRate>& ra
 void VelocityEquations::number_blocks() {
   number_.assign(problem_.mobility.size(), -1);
   for (size_t i = 0; i < number_.size(); ++i)
-    if (problem_.mobility[i].moves()) number_[i] = static_cast<int>(moving_.size()), moving_.push_back(i);
+    if (problem_.mobility[i].moves()) number_[i] = count_of(moving_), moving_.push_back(i);
   mass_.resize(moving_.size()), inverse_.resize(moving_.size()), free_.resize(6 * moving_.size());
   for (size_t k = 0; k < moving_.size(); ++k) {
     mass_tiles(mobility(k), mass_[k], inverse_[k]);
@@ -289,13 +290,13 @@ void VelocityEquations::number_blocks() {
 
 void VelocityEquations::number_faces() {
   const std::vector<PointRows>& points = problem_.rows.points;
-  for (size_t i = 0; i < problem_.rows.size(); ++i) {
+  for (int i = 0; i < count_of(problem_.rows); ++i) {
     const PointRows& p = points[i];
-    if (p.partner >= 0 && p.partner < static_cast<int>(i)) continue;
+    if (p.partner >= 0 && p.partner < i) continue;
     const int a = number(p.block_a), b = number(p.block_b);
     if (a < 0 && b < 0) continue;
     Face f;
-    f.point[0] = static_cast<int>(i), f.point[1] = p.partner;
+    f.point[0] = i, f.point[1] = p.partner;
     f.a = a < 0 ? b : b < 0 ? a : std::min(a, b), f.b = a < 0 || b < 0 ? -1 : std::max(a, b);
     faces_.push_back(f);
   }
@@ -305,7 +306,7 @@ void VelocityEquations::number_faces() {
   for (size_t f = 0; f < faces_.size(); ++f) {
     if (f > 0 && faces_[f].a == faces_[f - 1].a && faces_[f].b == faces_[f - 1].b) continue;
     couple_begin_.push_back(f);
-    couple_pair_.push_back(faces_[f].b < 0 ? -1 : static_cast<int>(pairs_.size()));
+    couple_pair_.push_back(faces_[f].b < 0 ? -1 : count_of(pairs_));
     if (faces_[f].b >= 0) pairs_.push_back({faces_[f].a, faces_[f].b});
   }
   couple_begin_.push_back(faces_.size());
@@ -318,7 +319,7 @@ void VelocityEquations::find_least_give() {
       for (const Row& row : p.row) {
         const int b = number(block);
         if (b < 0 || row.compliance <= 0) continue;
-        double& least = least_give_[static_cast<size_t>(b)];
+        double& least = least_give_[b];
         least = std::min(least, row.compliance);
       }
 }
@@ -337,12 +338,10 @@ void VelocityEquations::add_row(size_t i) {
       r.of[k][s] = {};
       if (r.block[s] < 0) {
         if (block[s] >= 0)
-          bias_[i][k] +=
-              sign *
-              talus::dot(axis[k], velocity_at(problem_.rate_free[static_cast<size_t>(block[s])], arm[s]));
+          bias_[i][k] += sign * talus::dot(axis[k], velocity_at(problem_.rate_free[block[s]], arm[s]));
         continue;
       }
-      const auto b = static_cast<size_t>(r.block[s]);
+      const int b = r.block[s];
       Six x = coefficients(mobility(b), axis[k], arm[s]);
       for (double& c : x) c *= sign;
       r.of[k][s] = x;
@@ -351,7 +350,7 @@ void VelocityEquations::add_row(size_t i) {
     }
     double own = influence / kStiff;
     for (const int b : r.block)
-      if (b >= 0) own = std::min(own, least_give_[static_cast<size_t>(b)] / kBeside);
+      if (b >= 0) own = std::min(own, least_give_[b] / kBeside);
     prox_[i][k] = p.row[k].compliance > 0 ? 0 : own;
     centre_[i][k] = problem_.rows.impulse[i][k];
   }
@@ -361,7 +360,7 @@ double VelocityEquations::along(size_t i, size_t k, const std::vector<double>& v
   const Rows& r = row_[i];
   double u = 0;
   for (size_t s = 0; s < 2; ++s)
-    if (r.block[s] >= 0) u += dot(r.of[k][s], &v[6 * static_cast<size_t>(r.block[s])]);
+    if (r.block[s] >= 0) u += dot(r.of[k][s], &v[6 * r.block[s]]);
   return u;
 }
 
@@ -384,9 +383,9 @@ void VelocityEquations::push_face(const Face& face, const std::vector<double>& v
   for (size_t e = 0; e < count; ++e) {
     const size_t i = index(face, e);
     const PointRows& p = problem_.rows.points[i];
-    for (size_t k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2; ++k) {
       C[k][e][e] = soft_ * p.row[k].compliance + prox_[i][k];
-      if (count > 1) C[k][e][1 - e] = soft_ * p.cross(static_cast<int>(k));
+      if (count > 1) C[k][e][1 - e] = soft_ * p.cross(k);
       q[k][e] = along(i, k, v) + bias_[i][k] - prox_[i][k] * centre_[i][k];
     }
     bounds[e] = bounds_of(p, 0, 0);

@@ -81,13 +81,13 @@ class VelocityEquations {
 
   std::vector<double> unknowns(const std::vector<BlockRate>& rate) const;
   const Mobility& mobility(size_t k) const { return problem_.mobility[moving_[k]]; }
-  static size_t index(const Face& f, size_t end) { return static_cast<size_t>(f.point[end]); }
+  static size_t index(const Face& f, size_t end) { return f.point[end]; }
   static void put(std::vector<double>& v, size_t k, const Six& x) {
     std::copy(x.begin(), x.end(), &v[6 * k]);
   }
 
   void number_blocks();
-  int number(int block) const { return block < 0 ? -1 : number_[static_cast<size_t>(block)]; }
+  int number(int block) const { return block < 0 ? -1 : number_[block]; }
 
   // Faces in the order of their blocks; those of the same two stand together.
   void number_faces();
@@ -119,7 +119,7 @@ class VelocityEquations {
       const Impulse p = impulse_of(i);
       for (size_t s = 0; s < 2; ++s) {
         if (r.block[s] < 0) continue;
-        double* y = &to[6 * static_cast<size_t>(r.block[s])];
+        double* y = &to[6 * r.block[s]];
         for (size_t m = 0; m < 6; ++m) y[m] += sign * (p[0] * r.of[0][s][m] + p[1] * r.of[1][s][m]);
       }
     }

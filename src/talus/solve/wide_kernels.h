@@ -270,8 +270,7 @@ inline void judge_records(const BlockLine* lines, const Record<Point>* records, 
       if (fine[0] & fine[1] & fine[2] & fine[3]) continue;
       for (int l = 0; l < kLanes; ++l) {
         const bool number = std::isfinite(e_n[l]) && std::isfinite(e_t[l]) && std::isfinite(here[l]);
-        worst += {number ? here[l] : std::nan(""),
-                  rows[(r * kLanes + static_cast<size_t>(l)) * 2 + static_cast<size_t>(i)]};
+        worst += {number ? here[l] : std::nan(""), rows[(r * kLanes + l) * 2 + i]};
       }
     }
   }

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -58,7 +60,7 @@ struct Place {
 };
 
 double restitution_of(const Scene& scene, const Patch& patch) {
-  return patch.joint < 0 ? -1 : scene.laws[static_cast<size_t>(patch.joint)].restitution();
+  return patch.joint < 0 ? -1 : scene.laws[patch.joint].restitution();
 }
 
 // How far an end of a patch is apart, but for an overlap that it may keep [m].
@@ -151,18 +153,18 @@ class Waves {
   }
 
   void find_bodies() {
-    const auto n = static_cast<size_t>(blocks_.count);
+    const int n = blocks_.count;
     Sets sets(n);
     for (size_t f = 0; f < scene_.bonds.faces.size(); ++f) {
       const BondFace& face = scene_.bonds.faces[f];
-      if (!state_.face[f].broken && !scene_.laws[static_cast<size_t>(face.joint)].is_soft() &&
-          !blocks_.removed(face.block_a) && !blocks_.removed(face.block_b))
-        sets.join(static_cast<size_t>(face.block_a), static_cast<size_t>(face.block_b));
+      if (!state_.face[f].broken && !scene_.laws[face.joint].is_soft() && !blocks_.removed(face.block_a) &&
+          !blocks_.removed(face.block_b))
+        sets.join(face.block_a, face.block_b);
     }
     root_.resize(n), body_.assign(n, {});
-    for (size_t i = 0; i < n; ++i) root_[i] = sets.find(i);
-    for (size_t i = 0; i < n; ++i)
-      if (!blocks_.moves_freely(static_cast<int>(i))) body_[root_[i]].moves = false;
+    for (int i = 0; i < n; ++i) root_[i] = sets.find(i);
+    for (int i = 0; i < n; ++i)
+      if (!blocks_.moves_freely(i)) body_[root_[i]].moves = false;
   }
 
   void place_bodies() {
@@ -236,7 +238,7 @@ class Waves {
       Place p;
       p.row = r, p.held = true, p.rows = work_.rows.points[r];
       const int block = std::max(p.rows.block_a, p.rows.block_b);
-      if (block < 0 || !body_[root_[static_cast<size_t>(block)]].moves) continue;
+      if (block < 0 || !body_[root_[block]].moves) continue;
       for (auto [of, arm] :
            {std::pair(&p.rows.block_a, &p.rows.arm_a), std::pair(&p.rows.block_b, &p.rows.arm_b)})
         if (*of >= 0) std::tie(*of, *arm, std::ignore) = on_body(*of, *arm, rate_);
@@ -247,10 +249,9 @@ class Waves {
 
   // A point of a block as one of its body, if that moves; else -1 and the velocity there.
   std::tuple<int, Vec2, Vec2> on_body(int block, Vec2 arm, const std::vector<BlockRate>& rate) const {
-    const auto k = static_cast<size_t>(block);
-    if (!body_[root_[k]].moves) return {-1, Vec2{}, velocity_at(rate[k], arm)};
-    const Vec2 now = deforms(k) ? shape_of(k) * arm : arm;
-    return {static_cast<int>(root_[k]), place_of(k) - body_[root_[k]].centre + now, Vec2{}};
+    if (!body_[root_[block]].moves) return {-1, Vec2{}, velocity_at(rate[block], arm)};
+    const Vec2 now = deforms(block) ? shape_of(block) * arm : arm;
+    return {static_cast<int>(root_[block]), place_of(block) - body_[root_[block]].centre + now, Vec2{}};
   }
 
   std::array<double, 2> speed(const Place& p) const {
@@ -278,9 +279,9 @@ class Waves {
     std::vector<char> met(body_.size(), 0);
     for (const Place* p : meet)
       for (const int body : {p->rows.block_a, p->rows.block_b})
-        if (body >= 0) met[static_cast<size_t>(body)] = 1;
+        if (body >= 0) met[body] = 1;
     for (Place& p : places_)
-      if (p.held && met[static_cast<size_t>(std::max(p.rows.block_a, p.rows.block_b))]) meet.push_back(&p);
+      if (p.held && met[std::max(p.rows.block_a, p.rows.block_b)]) meet.push_back(&p);
   }
 
   // Eq. 4.7a, with a share of the restitution.
@@ -309,8 +310,7 @@ class Waves {
     Sets sets(body_.size());
     std::vector<size_t> out;
     for (const Place* p : meet)
-      if (p->rows.block_a >= 0 && p->rows.block_b >= 0)
-        sets.join(static_cast<size_t>(p->rows.block_a), static_cast<size_t>(p->rows.block_b));
+      if (p->rows.block_a >= 0 && p->rows.block_b >= 0) sets.join(p->rows.block_a, p->rows.block_b);
     for (const Place* p : meet)
       out.push_back(sets.find(static_cast<size_t>(std::max(p->rows.block_a, p->rows.block_b))));
     return out;
@@ -405,8 +405,7 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
       const PointRows& p = work.rows.points[first + 2 * i + end];
       if (p.is_soft(0)) continue;
       const double gap = gap_of(state, i, end);
-      const bool apart =
-          gap > noticeable(blocks, static_cast<size_t>(c.block_a), static_cast<size_t>(c.block_b));
+      const bool apart = gap > noticeable(blocks, c.block_a, c.block_b);
       if (!apart && (!(restitution_of(scene, c) >= 0) || c.force[end][0] != 0)) continue;
       if (relative_velocity(p, work.rate_before)[0] < -slow &&
           gap + work.clock.dt * relative_velocity(p, work.rate_free)[0] <= 0)
@@ -419,34 +418,29 @@ std::vector<size_t> closing_rows(const Scene& scene, const StepWork& work, const
   for (const Patch& c : state.patches)
     for (const int block : {c.block_a, c.block_b})
       if (blocks.moves_freely(block)) {
-        const auto k = static_cast<size_t>(block);
-        pressed[k] += (std::abs(c.force[0][0]) + std::abs(c.force[1][0])) / blocks.mass[k];
+        pressed[block] += (std::abs(c.force[0][0]) + std::abs(c.force[1][0])) / blocks.mass[block];
       }
   std::erase_if(closing, [&](size_t r) {
     if (restitution_of(scene, state.patches[(r - first) / 2]) >= 0) return false;
     const PointRows& p = work.rows.points[r];
-    const double back =
-        std::max(pressed[static_cast<size_t>(p.block_a)], pressed[static_cast<size_t>(p.block_b)]);
+    const double back = std::max(pressed[p.block_a], pressed[p.block_b]);
     return !(relative_velocity(p, work.rate_before)[0] < -back * work.clock.dt);
   });
   return closing;
 }
 
 bool rings(const Scene& scene, const StepWork& work, const State& state, const std::vector<size_t>& closing) {
-  std::vector<char> tied(static_cast<size_t>(scene.blocks.count), 0);
+  std::vector<char> tied(scene.blocks.count, 0);
   for (size_t f = 0; f < scene.bonds.faces.size(); ++f) {
     const BondFace& face = scene.bonds.faces[f];
     if (state.face[f].broken || scene.blocks.removed(face.block_a) || scene.blocks.removed(face.block_b))
       continue;
-    tied[static_cast<size_t>(face.block_a)] = tied[static_cast<size_t>(face.block_b)] = 1;
+    tied[face.block_a] = tied[face.block_b] = 1;
   }
   const size_t first = work.rows.range(Family::kContact).begin;
   return std::ranges::any_of(closing, [&](size_t r) {
     const Patch& c = state.patches[(r - first) / 2];
-    const auto alone = [&](int i) {
-      const auto k = static_cast<size_t>(i);
-      return scene.blocks.kind[k] == BlockKind::kDeformable && tied[k] == 0;
-    };
+    const auto alone = [&](int i) { return scene.blocks.kind[i] == BlockKind::kDeformable && tied[i] == 0; };
     return restitution_of(scene, c) < 0 && (alone(c.block_a) || alone(c.block_b));
   });
 }

@@ -17,22 +17,21 @@ void set_value(double& value, double to) {
 // Returns whether masses or moduli change.
 bool apply(const ChangeInput& change, Scene& scene) {
   if (change.joint >= 0) {
-    JointProperty& joint = scene.model.joints[static_cast<size_t>(change.joint)];
+    JointProperty& joint = scene.model.joints[change.joint];
     joint = changed(joint, change);
     return false;
   }
   if (change.block.empty()) {
-    Material& material = scene.model.materials[static_cast<size_t>(change.material)];
+    Material& material = scene.model.materials[change.material];
     set_value(material.density, change.density);
     set_value(material.young, change.young);
     set_value(material.poisson, change.poisson);
     return true;
   }
   for (const int i : scene.layout.blocks_called(change.block)) {
-    const auto k = static_cast<size_t>(i);
-    if (change.material >= 0) scene.layout.blocks[k].material = change.material;
-    if (change.kind == ChangeInput::kFixed) scene.blocks.kind[k] = BlockKind::kFixed;
-    if (change.kind == ChangeInput::kFree) scene.blocks.kind[k] = scene.layout.blocks[k].kind;
+    if (change.material >= 0) scene.layout.blocks[i].material = change.material;
+    if (change.kind == ChangeInput::kFixed) scene.blocks.kind[i] = BlockKind::kFixed;
+    if (change.kind == ChangeInput::kFree) scene.blocks.kind[i] = scene.layout.blocks[i].kind;
   }
   return change.material >= 0;
 }
@@ -40,7 +39,7 @@ bool apply(const ChangeInput& change, Scene& scene) {
 void activate(int stage, Scene& scene) {
   const Model& model = scene.model;
   const BlockSet& blocks = scene.blocks;
-  const auto acts = [stage](const auto& list, int i) { return list[static_cast<size_t>(i)].acts_in(stage); };
+  const auto acts = [stage](const auto& list, int i) { return list[i].acts_in(stage); };
   for (SupportedPoint& p : scene.supported)
     p.active = acts(model.supports, p.support) && blocks.moves_freely(p.block);
   for (BoundaryPoint& p : scene.boundaries.points)
@@ -83,9 +82,9 @@ bool blocks_change(const Model& model) {
 }
 
 std::vector<char> excavated_blocks(const Scene& scene, int stage) {
-  std::vector<char> out(static_cast<size_t>(scene.blocks.count));
-  for (const std::string& name : scene.model.stages[static_cast<size_t>(stage)].excavate)
-    for (const int i : scene.layout.blocks_called(name)) out[static_cast<size_t>(i)] = 1;
+  std::vector<char> out(scene.blocks.count);
+  for (const std::string& name : scene.model.stages[stage].excavate)
+    for (const int i : scene.layout.blocks_called(name)) out[i] = 1;
   return out;
 }
 
@@ -96,7 +95,7 @@ std::vector<BlockForce> forces_of_blocks(const StepWork& work, const std::vector
   for (size_t r = 0; r < rows.points.size(); ++r) {
     const PointRows& p = rows.points[r];
     if (p.block_a < 0 || p.block_b < 0) continue;
-    const auto a = static_cast<size_t>(p.block_a), b = static_cast<size_t>(p.block_b);
+    const int a = p.block_a, b = p.block_b;
     if (blocks[a] == blocks[b]) continue;
     const bool on_a = blocks[b] != 0;
     force[on_a ? a : b] += (1 / work.clock.dt_kick) * impulse_on(p, rows.impulse[r], on_a ? 1 : -1);
@@ -110,14 +109,12 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
   TALUS_ASSERT(before.count == scene.blocks.count && supported_before.size() == scene.supported.size());
   const BlockSet& now = scene.blocks;
   for (int i = 0; i < now.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    if (before.moves_freely(i) && !now.moves_freely(i)) state.rate[k] = {}, state.row_force[k] = {};
-    if (scene.layout.blocks[k].kind != BlockKind::kDeformable) continue;
-    const Mat2 stress = initial_stress_for(before.moduli[k], now.moduli[k], state.strain_part[k],
-                                           initial_stress_of(state, k));
-    if (state.initial_stress.empty() && contract(stress, stress) > 0)
-      state.initial_stress.resize(static_cast<size_t>(now.count));
-    if (!state.initial_stress.empty()) state.initial_stress[k] = stress;
+    if (before.moves_freely(i) && !now.moves_freely(i)) state.rate[i] = {}, state.row_force[i] = {};
+    if (scene.layout.blocks[i].kind != BlockKind::kDeformable) continue;
+    const Mat2 stress = initial_stress_for(before.moduli[i], now.moduli[i], state.strain_part[i],
+                                           initial_stress_of(state, i));
+    if (state.initial_stress.empty() && contract(stress, stress) > 0) state.initial_stress.resize(now.count);
+    if (!state.initial_stress.empty()) state.initial_stress[i] = stress;
   }
   for (size_t f = 0; f < scene.bonds.faces.size(); ++f) {
     if (now.interact(scene.bonds.faces[f].block_a, scene.bonds.faces[f].block_b)) continue;
@@ -127,12 +124,11 @@ void adapt_state(const BlockSet& before, const std::vector<SupportedPoint>& supp
   for (size_t i = 0; i < scene.supported.size(); ++i) {
     const SupportedPoint& p = scene.supported[i];
     if (!p.active || supported_before[i].active) continue;
-    const SupportInput& s = scene.model.supports[static_cast<size_t>(p.support)];
+    const SupportInput& s = scene.model.supports[p.support];
     const auto prescribed = [&](const Motion& m) {
       return m.displacement_at(state.history_time, scene.model.histories);
     };
-    state.supports[i].hold =
-        displacement_at(state, static_cast<size_t>(p.block), p.arm) - Vec2{prescribed(s.x), prescribed(s.y)};
+    state.supports[i].hold = displacement_at(state, p.block, p.arm) - Vec2{prescribed(s.x), prescribed(s.y)};
   }
   // pairs with blocks that have gone leave the list, others may have come to matter
   if (before.kind != now.kind) state.candidates.reach.clear();
@@ -150,24 +146,23 @@ double ledger_energy(const Scene& scene, const State& state) {
   const BlockSet& blocks = scene.blocks;
   double sum = 0;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     if (!blocks.moves_freely(i)) continue;
-    const BlockRate& v = state.rate[k];
+    const BlockRate& v = state.rate[i];
     // conventional DDA: everything is of one instant, strains have their own sum
     if (!state.carried_stress.empty()) {
-      sum += 0.5 * work(momentum(blocks, k, v), v) -
-             blocks.mass[k] * dot(scene.model.gravity, state.displacement[k]);
+      sum += 0.5 * work(momentum(blocks, i, v), v) -
+             blocks.mass[i] * dot(scene.model.gravity, state.displacement[i]);
       continue;
     }
     const ElasticState elastic =
-        blocks.kind[k] == BlockKind::kDeformable
-            ? elastic_state(blocks.moduli[k], state.strain_part[k], initial_stress_of(state, k))
+        blocks.kind[i] == BlockKind::kDeformable
+            ? elastic_state(blocks.moduli[i], state.strain_part[i], initial_stress_of(state, i))
             : ElasticState{};
     // velocities are half a step behind: what weight and elasticity do until now counts too
-    const BlockForce own = own_force(scene, k, elastic.stress);
-    sum += 0.5 * work(momentum(blocks, k, v), v) + 0.5 * state.dt_before * work(own, v) +
-           blocks.volume[k] * elastic.density -
-           blocks.mass[k] * dot(scene.model.gravity, state.displacement[k]);
+    const BlockForce own = own_force(scene, i, elastic.stress);
+    sum += 0.5 * work(momentum(blocks, i, v), v) + 0.5 * state.dt_before * work(own, v) +
+           blocks.volume[i] * elastic.density -
+           blocks.mass[i] * dot(scene.model.gravity, state.displacement[i]);
   }
   return sum;
 }

@@ -17,8 +17,7 @@ double Energy::largest() const {
 double kinetic_energy(const BlockSet& blocks, const std::vector<BlockRate>& rate) {
   double sum = 0;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
-    if (blocks.moves_freely(i)) sum += 0.5 * work(momentum(blocks, k, rate[k]), rate[k]);
+    if (blocks.moves_freely(i)) sum += 0.5 * work(momentum(blocks, i, rate[i]), rate[i]);
   }
   return sum;
 }

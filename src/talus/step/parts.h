@@ -17,7 +17,7 @@ inline BlockForce given_force(const Scene& scene, const StepWork& work, size_t k
 
 /// Whether a step from rest does not wait for a block (theory 14.5): nothing that is given acts on it.
 inline bool is_weightless(const StepWork& work, const State& state, size_t k) {
-  return work.clock.from_rest && state.is_left_out(static_cast<int>(k));
+  return work.clock.from_rest && state.is_left_out(k);
 }
 
 /// Weight, elastic force and mobility of each block, and its rates at the end of the kick as they would be

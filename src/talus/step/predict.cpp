@@ -38,7 +38,7 @@ BlockForce local_damping_impulse(const Scheme& scheme, const StepWork& step, con
 void predict_block(const Scene& scene, const Scheme& scheme, size_t k, bool renew, StepWork& work,
                    State& state) {
   const BlockSet& blocks = scene.blocks;
-  if (!blocks.moves_freely(static_cast<int>(k))) {
+  if (!blocks.moves_freely(k)) {
     if (renew) work.mobility[k] = {};
     return;
   }

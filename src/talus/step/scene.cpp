@@ -28,7 +28,7 @@ bool may_meet(const Scene& scene, bool hard_only) {
     return false;
   const auto meets = [&](int joint) {
     if (joint < 0) return false;
-    const JointLaw& law = scene.laws[static_cast<size_t>(joint)];
+    const JointLaw& law = scene.laws[joint];
     return !law.bonded() && !(hard_only && law.is_soft(0)) && law.residual().friction > 0;
   };
   if (meets(layout.default_joint)) return true;
@@ -44,7 +44,7 @@ bool may_meet(const Scene& scene, bool hard_only) {
 bool ties_without_give(const Scene& scene) {
   if (scene.give.stress > 0) return false;
   return std::ranges::any_of(scene.bonds.faces, [&](const BondFace& f) {
-    const JointLaw& law = scene.laws[static_cast<size_t>(f.joint)];
+    const JointLaw& law = scene.laws[f.joint];
     return !law.bonded() && !(law.is_soft(0) && law.is_soft(1));
   });
 }
@@ -98,11 +98,11 @@ Scene build_scene(Model model, Layout layout, Findings& findings) {
     for (StageInput& stage : scene.model.stages) stage.implicit = true, stage.from_rest = false;
   scene.loads = build_loads(scene.model, scene.layout, scene.blocks);
   if (const int above = block_above_ground(scene.model, scene.blocks); above >= 0) {
-    const auto k = static_cast<size_t>(above);
-    findings.error(scene.model.in_situ.where_level, "in_situ.level",
-                   fmt::format("{:g} m is below the centroid of \"{}\", which is at {:g} m",
-                               scene.model.in_situ.level, scene.blocks.name[k], scene.blocks.centroid[k].y),
-                   "give the height of the surface, or of the highest deformable block");
+    findings.error(
+        scene.model.in_situ.where_level, "in_situ.level",
+        fmt::format("{:g} m is below the centroid of \"{}\", which is at {:g} m", scene.model.in_situ.level,
+                    scene.blocks.name[above], scene.blocks.centroid[above].y),
+        "give the height of the surface, or of the highest deformable block");
   }
   return scene;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/blocks/validate.h"
 #include "talus/corners/corner_rows.h"
 #include "talus/rows/validate_rows.h"
@@ -55,7 +56,7 @@ void seek_contacts(const Scene& scene, StepWork& work, State& state, StepReport&
   // threads seek side by side
   work.profile.move(Profile::kMargins, Profile::kSearch, sought.seconds / work.workers.threads());
   work.profile.sought += report.searched = sought.searched;
-  report.contacts = static_cast<int>(state.contacts.size());
+  report.contacts = count_of(state.contacts);
 }
 
 // Family by family, in their order.
@@ -116,8 +117,7 @@ void solve_rows(const Scene& scene, const StepSettings& settings, StepWork& work
       solved.failed && scene.model.contact.law == ContactLaw::kExact && solved.error.worst <= settings.limit;
   report.failed = solved.failed && !report.loose;
   report.attempts = solved.attempts;
-  if (report.error.point >= 0)
-    report.worst = row_name(scene, state, work, static_cast<size_t>(report.error.point));
+  if (report.error.point >= 0) report.worst = row_name(scene, state, work, report.error.point);
 }
 
 // The work of the rows, and in the same look what contacts carry to the step after.
@@ -202,8 +202,7 @@ void solve_forces(const Scene& scene, const StepSettings& settings, StepWork& wo
   const auto give_on = [&](double sign) {
     for (size_t k = 0; k < of_row.size(); ++k)
       for (Row& row : rows.points[of_row[k]].row)
-        row.bias +=
-            sign * row.compliance * stay.impulse[k][static_cast<size_t>(&row - rows.points[of_row[k]].row)];
+        row.bias += sign * row.compliance * stay.impulse[k][&row - rows.points[of_row[k]].row];
   };
   give_on(1);
   solve_rows(scene, settings, work, state, report);

@@ -65,7 +65,7 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
                  BlockSums& s) {
   const BlockSet& blocks = scene.blocks;
   const BlockRate &v0 = step.rate_before[i], &v1 = state.rate[i];
-  if (!blocks.moves_freely(static_cast<int>(i))) return;
+  if (!blocks.moves_freely(i)) return;
   const double late = scheme.late_share(), kick = step.clock.dt_kick;
   if (const double jolt = norm(v1.a - v0.a); jolt > s.jolt) s.jolt = jolt, s.jolted = static_cast<int>(i);
   add(s.work, Cause::kLoads, work_of(kick * step.load[i], v0, v1, late));
@@ -93,7 +93,7 @@ void tally_block(const Scene& scene, const Scheme& scheme, const StepWork& step,
   const BlockForce rows = (1 / kick) * scheme.impulse_for(i, v1 - step.rate_free[i]);
   state.row_force[i] = rows;
   const double unbalanced = force_norm(blocks, i, force + rows);
-  if (unbalanced > s.worst && !state.is_left_out(static_cast<int>(i)))
+  if (unbalanced > s.worst && !state.is_left_out(i))
     s.worst = unbalanced, s.worst_block = static_cast<int>(i);
   const double acting = 0.5 * (force_norm(blocks, i, force) + force_norm(blocks, i, rows));
   s.forces += acting;
@@ -145,7 +145,7 @@ void tally_row(const BlockSet& blocks, const StepWork& step, const State& state,
   }
   if (impulse[0] == 0 && impulse[1] == 0) return;
   for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)})
-    if (block >= 0 && blocks.kind[static_cast<size_t>(block)] == BlockKind::kDriven)
+    if (block >= 0 && blocks.kind[block] == BlockKind::kDriven)
       s.on_driven.emplace_back(block, impulse_on(p, impulse, sign));
   const auto u0 = relative_velocity(p, step.rate_before);
   const std::array<Cause, 2> cause = causes_of(owner.family, p, impulse);
@@ -176,8 +176,8 @@ void tally(const Scene& scene, const Scheme& scheme, const RowSums& rows, StepWo
   report.closed_share = rows.closed_share, report.closed_row = rows.closed_row;
   // a driven block passes on the work that its drive does against the rows
   for (const auto& [block, impulse] : rows.on_driven) {
-    const auto k = static_cast<size_t>(block);
-    add(work.work, Cause::kSupports, work_of(-1.0 * impulse, work.rate_before[k], state.rate[k], 0.5));
+    add(work.work, Cause::kSupports,
+        work_of(-1.0 * impulse, work.rate_before[block], state.rate[block], 0.5));
   }
   const BlockSums sums = work.workers.sum_chunks<BlockSums>(state.rate.size(), kChunkOfBlocks,
                                                             [&](size_t begin, size_t end, BlockSums& s) {

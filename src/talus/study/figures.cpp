@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "talus/base/index.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
 #include "talus/output/files.h"
@@ -191,8 +192,8 @@ class Figures {
   void lines(plot::Figure& figure, size_t k, size_t a, size_t other,
              const std::map<std::string, double>& place, bool numbers, double width, double height) const {
     const Axis& by = study_.axes[other];
-    for (size_t v = 0; v < by.values.size(); ++v) {
-      const int color = static_cast<int>(v);
+    for (int v = 0; v < count_of(by.values); ++v) {
+      const int color = v;
       std::vector<double> x, y;
       std::map<double, std::vector<double>> levels;
       for (const ResultRow& row : found_.rows) {

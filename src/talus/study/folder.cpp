@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
@@ -148,7 +149,7 @@ void take_in(const Study& study, std::vector<PlannedRun>& plan, const StudyFolde
     }
     plan[k].number = static_cast<int>(at->second);
   }
-  const auto gone = static_cast<size_t>(std::find(planned.begin(), planned.end(), false) - planned.begin());
+  const size_t gone = std::find(planned.begin(), planned.end(), false) - planned.begin();
   if (gone < planned.size()) {
     const bool squares = study.latin_hypercube && std::any_of(study.axes.begin(), study.axes.end(),
                                                               [](const Axis& a) { return a.sampled; });
@@ -169,7 +170,7 @@ void take_in(const Study& study, std::vector<PlannedRun>& plan, const StudyFolde
 
 }  // namespace
 
-const char* name_of(Outcome outcome) { return kOutcomeName[static_cast<size_t>(outcome)]; }
+const char* name_of(Outcome outcome) { return kOutcomeName[place_of(outcome)]; }
 
 Outcome outcome_of(int exit_code) {
   switch (exit_code) {
@@ -265,7 +266,7 @@ int StudyFolder::number(const Study& study, std::vector<PlannedRun>& plan) const
     throw InputError(fmt::format("{}: error: names another model, {}: the runs are of {}\n",
                                  study_file().string(), absolute_text(study.model), model()));
   std::map<std::vector<std::string>, int> numbers;
-  for (const Task& task : tasks()) numbers.emplace(sorted(task.overrides), static_cast<int>(numbers.size()));
+  for (const Task& task : tasks()) numbers.emplace(sorted(task.overrides), count_of(numbers));
   size_t known = 0;
   for (PlannedRun& run : plan) {
     const auto at = numbers.find(sorted(run.overrides));
@@ -332,7 +333,7 @@ StudyFolder::Task StudyFolder::task(int number) const {
   if (number < 0 || number >= planned())
     throw FileError(
         fmt::format("{}: there is no run {}; runs are 0 to {}", path_.string(), number, planned() - 1));
-  return tasks()[static_cast<size_t>(number)];
+  return tasks()[number];
 }
 
 fs::path StudyFolder::run_folder(int number) const { return path_ / "runs" / fmt::format("{:06}", number); }

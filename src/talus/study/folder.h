@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/study/study.h"
 
 namespace talus::study {
@@ -69,7 +70,7 @@ class StudyFolder {
   /// The study file that it was begun with, from which paths count.
   std::string study_origin() const { return description().study_file; }
   std::string model() const { return description().model; }
-  int planned() const { return static_cast<int>(tasks().size()); }
+  int planned() const { return count_of(tasks()); }
   /// Overrides of planned run `number`, and the name of its group (runs that share their static stages).
   struct Task {
     std::vector<std::string> overrides, group_overrides;

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text_file.h"
 #include "talus/output/text_table.h"
 #include "talus/study/answers.h"
@@ -102,7 +103,7 @@ StateCurves curves_of(const std::vector<ResultRow>& rows, size_t state, size_t o
   StateCurves out;
   std::array<std::map<double, FragilityPoint>, kNotValidAs> levels;
   const auto add = [&](NotValidAs as, double x, int damaged) {
-    FragilityPoint& p = levels[static_cast<size_t>(as)][x];
+    FragilityPoint& p = levels[place_of(as)][x];
     p.intensity = x, ++p.runs, p.damaged += damaged;
   };
   for (const ResultRow& row : rows) {
@@ -184,7 +185,7 @@ Gathered gather(const Study& study, const std::vector<PlannedRun>& plan, const S
   for (const NamedFormula& answer : study.answers) out.units.push_back(answer.unit);
   for (const PlannedRun& run : plan) {
     ResultRow row = row_of(study, run, folder, out.units, troubles);
-    ++out.count[static_cast<size_t>(row.outcome)];
+    ++out.count[place_of(row.outcome)];
     out.rows.push_back(std::move(row));
   }
   std::set<std::string> arithmetics;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/index.h"
 #include "talus/study/folder.h"
 #include "talus/study/fragility.h"
 #include "talus/study/study.h"
@@ -50,10 +51,8 @@ struct StateCurves {
   std::array<Fragility, kNotValidAs> fit;
   int runs = 0, damaged = 0, not_valid = 0, not_finite = 0;  // of those at an intensity > 0 that ended
 
-  const Fragility& of(NotValidAs as) const { return fit[static_cast<size_t>(as)]; }
-  const std::vector<FragilityPoint>& points_of(NotValidAs as) const {
-    return points[static_cast<size_t>(as)];
-  }
+  const Fragility& of(NotValidAs as) const { return fit[place_of(as)]; }
+  const std::vector<FragilityPoint>& points_of(NotValidAs as) const { return points[place_of(as)]; }
   /// Ways of counting that differ: one where all runs are valid.
   std::vector<NotValidAs> ways() const;
   /// All points of one way together.
@@ -71,7 +70,7 @@ struct Gathered {
   std::vector<std::string> troubles;  // of formulas
   std::array<int, 5> count{};         // of each outcome
 
-  int of(Outcome outcome) const { return count[static_cast<size_t>(outcome)]; }
+  int of(Outcome outcome) const { return count[place_of(outcome)]; }
   /// "20 runs: 16 finished, 4 not valid"
   std::string counts() const;
   /// "slip [m]"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/text_file.h"
 #include "talus/model/units.h"
 #include "talus/record/history_file.h"
@@ -55,10 +56,9 @@ std::vector<PlannedRun> plan_runs(const Study& study) {
   std::vector<size_t> motion(axes.size());
   for (size_t a = 0; a < axes.size(); ++a) {
     if (axes[a].measure.empty()) continue;
-    motion[a] =
-        static_cast<size_t>(std::find_if(axes.begin(), axes.end(),
-                                         [&](const Axis& other) { return other.name == axes[a].motion; }) -
-                            axes.begin());
+    motion[a] = std::find_if(axes.begin(), axes.end(),
+                             [&](const Axis& other) { return other.name == axes[a].motion; }) -
+                axes.begin();
     for (const auto& path : axes[motion[a]].paths) measures[a].push_back(measured(axes[a], path));
   }
   size_t combinations = 1;
@@ -70,7 +70,7 @@ std::vector<PlannedRun> plan_runs(const Study& study) {
   for (size_t c = 0; c < combinations; ++c)
     for (size_t s = 0; s < samples; ++s) {
       PlannedRun run;
-      run.number = static_cast<int>(runs.size());
+      run.number = count_of(runs);
       std::vector<size_t> chosen(axes.size());
       size_t rest = c;
       for (size_t a = axes.size(); a-- > 0;) {  // the last listed key goes fastest

@@ -467,13 +467,13 @@ class StudyReader {
 
   void draw(Axis& axis) {
     Random random(stream_seed(static_cast<uint64_t>(study_.seed), axis.name));
-    const auto n = static_cast<size_t>(study_.samples);
+    const int n = study_.samples;
     std::vector<size_t> part(n);
-    for (size_t i = 0; i < n; ++i) part[i] = i;
+    for (int i = 0; i < n; ++i) part[i] = i;
     if (study_.latin_hypercube)
       for (size_t i = n; i > 1; --i)
         std::swap(part[i - 1], part[static_cast<size_t>(random.uniform() * static_cast<double>(i))]);
-    for (size_t i = 0; i < n; ++i) {
+    for (int i = 0; i < n; ++i) {
       const double r = random.uniform();
       // never 0 or 1
       const double u = study_.latin_hypercube

@@ -14,6 +14,7 @@
 #include "talus/base/clock.h"
 #include "talus/base/descriptor.h"
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/base/spawn.h"
 #include "talus/base/text_file.h"
 #include "talus/output/files.h"
@@ -227,7 +228,7 @@ Progress Runner::run(const std::vector<int>& numbers, const std::function<void(c
 Progress Runner::run_all(const std::vector<int>& numbers, const std::function<void(const Progress&)>& told,
                          const std::function<bool()>& stop) {
   progress_ = {};
-  progress_.all = static_cast<int>(numbers.size());
+  progress_.all = count_of(numbers);
   std::deque<Job> parents;
   for (const int number : numbers) {
     if (const auto record = folder_.record_of(number); record && record->outcome != Outcome::kNotDone) {
@@ -255,8 +256,7 @@ Progress Runner::run_all(const std::vector<int>& numbers, const std::function<vo
   bool stopped = false;
   while (!waiting_.empty() || !running_.empty()) {
     // as many as there is room for; those whose parent is being made wait
-    for (size_t i = 0;
-         i < waiting_.size() && !stopped && static_cast<int>(running_.size()) < settings_.jobs;) {
+    for (size_t i = 0; i < waiting_.size() && !stopped && count_of(running_) < settings_.jobs;) {
       Job& next = waiting_[i];
       if (next.number >= 0 && !next.group.empty()) {
         const int state = group_state_[next.group];
@@ -267,13 +267,13 @@ Progress Runner::run_all(const std::vector<int>& numbers, const std::function<vo
         next.branch = state == 1;
       }
       Job job = std::move(next);
-      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+      waiting_.erase(waiting_.begin() + i);
       start(std::move(job));
     }
     if (stopped) waiting_.clear();  // a branch that was refused meanwhile, too
     if (running_.empty() && waiting_.empty()) break;
     if (running_.empty()) continue;  // none could be started
-    progress_.running = static_cast<int>(running_.size());
+    progress_.running = count_of(running_);
     told(progress_);
     int status = 0;
     const pid_t process = one_that_ended(status);

@@ -249,10 +249,9 @@ std::vector<double> elastic_stiffness(const Bolt& bolt, const std::vector<int>& 
     for (BoltNode& n : elastic.nodes) n.limit = kInfinity, n.plastic = n.slip = 0;
     for (BoltSegment& s : elastic.segments) s.yield = kInfinity, s.plastic = s.start = 0;
     std::vector<double> rock(elastic.segments.size(), 0);
-    rock[static_cast<size_t>(at)] = 1;
+    rock[at] = 1;
     balance_bar(rock, elastic);
-    for (size_t k = 0; k < of.size(); ++k)
-      sum[k] += std::abs(elastic.segments[static_cast<size_t>(of[k])].force);
+    for (size_t k = 0; k < of.size(); ++k) sum[k] += std::abs(elastic.segments[of[k]].force);
   }
   return sum;
 }
@@ -266,7 +265,7 @@ double stored_energy(const Bolt& bolt) {
   }
   for (const BoltCrossing& c : bolt.crossings) {
     const double f = c.shear_stiffness * (c.shear - c.shear_plastic);
-    if (c.shear_stiffness > 0 && !bolt.segments[static_cast<size_t>(c.segment)].ruptured)
+    if (c.shear_stiffness > 0 && !bolt.segments[c.segment].ruptured)
       sum += 0.5 * f * (c.shear - c.shear_plastic);
   }
   return sum;

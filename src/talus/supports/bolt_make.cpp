@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/index.h"
 #include "talus/supports/bar.h"
 #include "talus/supports/bolt_path.h"
 #include "talus/supports/bolts.h"
@@ -35,13 +36,13 @@ constexpr double kRowMargin = 1.25;
 class BoltMaker {
  public:
   BoltMaker(const Model& model, const BlockSet& blocks, const State& state, int input)
-      : type_(model.bolt_types[static_cast<size_t>(model.bolts[static_cast<size_t>(input)].type)]),
+      : type_(model.bolt_types[model.bolts[input].type]),
         blocks_(blocks),
         state_(state),
         index_(input),
-        from_(model.bolts[static_cast<size_t>(input)].from),
+        from_(model.bolts[input].from),
         share_(model.thickness / type_.spacing) {
-    const Vec2 line = model.bolts[static_cast<size_t>(input)].to - from_;
+    const Vec2 line = model.bolts[input].to - from_;
     length_ = norm(line), along_ = line / length_;
   }
 
@@ -75,7 +76,7 @@ class BoltMaker {
 
  private:
   double least() const { return std::max(kLeastPiece * type_.diameter, 1e-9 * length_); }
-  std::string name(int block) const { return blocks_.name[static_cast<size_t>(block)]; }
+  std::string name(int block) const { return blocks_.name[block]; }
   double axial() const { return type_.axial_stiffness() * share_; }
   double closed() const { return kClosed * type_.diameter; }
 
@@ -87,11 +88,10 @@ class BoltMaker {
 
   // The node at a distance along the line, held over a length of grout.
   BoltNode node(int block, double at, double grouted) const {
-    const auto k = static_cast<size_t>(block);
-    const Vec2 place = ((from_ - blocks_.centroid[k]) + at * along_) - state_.displacement[k];
+    const Vec2 place = ((from_ - blocks_.centroid[block]) + at * along_) - state_.displacement[block];
     BoltNode n;
     n.block = block;
-    n.arm = inverse(kIdentity + state_.strain_part[k]) * place;
+    n.arm = inverse(kIdentity + state_.strain_part[block]) * place;
     n.stiffness = type_.grout_stiffness * grouted * share_;
     n.limit = type_.bond_strength * grouted * share_;
     return n;
@@ -112,7 +112,7 @@ class BoltMaker {
   void add_inside(Bolt& bolt) const {
     const BoltNode &a = bolt.nodes[bolt.nodes.size() - 2], &b = bolt.nodes.back();
     const Vec2 reference = b.arm - a.arm;
-    const double length = norm(reference + state_.strain_part[static_cast<size_t>(a.block)] * reference);
+    const double length = norm(reference + state_.strain_part[a.block] * reference);
     bolt.segments.push_back(segment(length, length));
   }
 
@@ -120,9 +120,9 @@ class BoltMaker {
   void add_crossing(double gap, double gauge, Bolt& bolt) const {
     const BoltNode &a = bolt.nodes[bolt.nodes.size() - 2], &b = bolt.nodes.back();
     BoltSegment s = segment(gap, gauge);
-    s.crossing = static_cast<int>(bolt.crossings.size());
+    s.crossing = count_of(bolt.crossings);
     BoltCrossing c;
-    c.segment = static_cast<int>(bolt.segments.size());
+    c.segment = count_of(bolt.segments);
     c.direction[0] = reference_direction(a.block), c.direction[1] = reference_direction(b.block);
     c.apart = gap * along_ - (displacement(b) - displacement(a));
     c.row = {-type_.pretension * share_, 0};
@@ -135,12 +135,10 @@ class BoltMaker {
     bolt.crossings.push_back(c);
   }
 
-  Vec2 displacement(const BoltNode& n) const {
-    return displacement_at(state_, static_cast<size_t>(n.block), n.arm);
-  }
+  Vec2 displacement(const BoltNode& n) const { return displacement_at(state_, n.block, n.arm); }
 
   Vec2 reference_direction(int block) const {
-    const Vec2 d = inverse(kIdentity + state_.strain_part[static_cast<size_t>(block)]) * along_;
+    const Vec2 d = inverse(kIdentity + state_.strain_part[block]) * along_;
     return d / norm(d);
   }
 
@@ -195,8 +193,7 @@ class BoltMaker {
     std::vector<int> segments;
     for (BoltCrossing& c : bolt.crossings) {
       double before = 0, after = 0;
-      for (size_t i = 0; i < bolt.nodes.size(); ++i)
-        (static_cast<int>(i) <= c.segment ? before : after) += bolt.nodes[i].limit;
+      for (int i = 0; i < count_of(bolt.nodes); ++i) (i <= c.segment ? before : after) += bolt.nodes[i].limit;
       c.most = std::min({c.most, before, after});
       segments.push_back(c.segment);
     }

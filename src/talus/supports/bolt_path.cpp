@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {
@@ -58,12 +60,12 @@ BoltPath path_through(const BlockSet& blocks, const State& state, Vec2 from, Vec
   BoltPath path;
   const double length = norm(to - from);
   const Vec2 t = (to - from) / length;
-  for (size_t k = 0; k < blocks.name.size(); ++k) {
-    if (blocks.removed(static_cast<int>(k))) continue;
+  for (int k = 0; k < count_of(blocks.name); ++k) {
+    if (blocks.removed(k)) continue;
     const Vec2 centre = blocks.centroid[k] + state.displacement[k] - from;
     const double along = std::clamp(dot(t, centre), 0.0, length);
     if (norm(centre - along * t) > 2 * blocks.radius[k]) continue;  // strains of 1 are never met
-    add_pieces(corners_now(blocks, state, k, from), static_cast<int>(k), t, length, least, path.pieces);
+    add_pieces(corners_now(blocks, state, k, from), k, t, length, least, path.pieces);
   }
   if (path.pieces.empty()) path.trouble = "meets no block";
   std::sort(path.pieces.begin(), path.pieces.end(),
@@ -73,9 +75,8 @@ BoltPath path_through(const BlockSet& blocks, const State& state, Vec2 from, Vec
     const double over = a.to - b.from;
     if (over <= 0) continue;
     if (over > kMostOverlap * std::min(a.to - a.from, b.to - b.from)) {
-      path.trouble =
-          fmt::format("runs along the joint between \"{}\" and \"{}\"",
-                      blocks.name[static_cast<size_t>(a.block)], blocks.name[static_cast<size_t>(b.block)]);
+      path.trouble = fmt::format("runs along the joint between \"{}\" and \"{}\"", blocks.name[a.block],
+                                 blocks.name[b.block]);
       break;
     }
     a.to = b.from = 0.5 * (a.to + b.from);

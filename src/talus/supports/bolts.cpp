@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/supports/bar.h"
 
 namespace talus {
@@ -18,13 +19,11 @@ constexpr double kMostStiffening = 0.05;
 
 // Direction of a material line of a block as it lies now, unit.
 Vec2 direction_now(const State& state, int block, Vec2 d) {
-  const Vec2 now = d + state.strain_part[static_cast<size_t>(block)] * d;
+  const Vec2 now = d + state.strain_part[block] * d;
   return now / norm(now);
 }
 
-Vec2 displacement_of(const State& state, const BoltNode& n) {
-  return displacement_at(state, static_cast<size_t>(n.block), n.arm);
-}
+Vec2 displacement_of(const State& state, const BoltNode& n) { return displacement_at(state, n.block, n.arm); }
 
 // Where a crossing is now.
 struct CrossingNow {
@@ -33,7 +32,7 @@ struct CrossingNow {
 };
 
 CrossingNow crossing_now(const State& state, const Bolt& bolt, const BoltCrossing& c) {
-  const auto j = static_cast<size_t>(c.segment);
+  const int j = c.segment;
   const BoltNode &a = bolt.nodes[j], &b = bolt.nodes[j + 1];
   const Vec2 apart = c.apart + (displacement_of(state, b) - displacement_of(state, a));
   if (bolt.anchored) return {apart / norm(apart), norm(apart) - bolt.segments[j].length, 0};
@@ -49,11 +48,11 @@ std::vector<double> rock_elongation(const State& state, const Bolt& bolt) {
   for (size_t j = 0; j < rock.size(); ++j) {
     const BoltSegment& s = bolt.segments[j];
     if (s.crossing >= 0) {
-      rock[j] = crossing_now(state, bolt, bolt.crossings[static_cast<size_t>(s.crossing)]).axial;
+      rock[j] = crossing_now(state, bolt, bolt.crossings[s.crossing]).axial;
       continue;
     }
     const Vec2 reference = bolt.nodes[j + 1].arm - bolt.nodes[j].arm;
-    const Mat2& H = state.strain_part[static_cast<size_t>(bolt.nodes[j].block)];
+    const Mat2& H = state.strain_part[bolt.nodes[j].block];
     rock[j] = norm(reference + H * reference) - s.length;
   }
   return rock;
@@ -66,7 +65,7 @@ void balance(const State& state, Bolt& bolt) {
     const double x = c.shear - c.shear_plastic;
     if (c.shear_stiffness * std::abs(x) > c.shear_yield) {
       c.shear_plastic += x - std::copysign(c.shear_yield / c.shear_stiffness, x);
-      bolt.segments[static_cast<size_t>(c.segment)].yielded = true;
+      bolt.segments[c.segment].yielded = true;
     }
   }
   balance_bar(rock_elongation(state, bolt), bolt);
@@ -74,10 +73,10 @@ void balance(const State& state, Bolt& bolt) {
 
 // The stage at whose start each block is excavated; past the last one where none does.
 std::vector<int> stage_without(const Model& model, const Layout& layout) {
-  std::vector<int> out(layout.blocks.size(), static_cast<int>(model.stages.size()));
-  for (size_t s = 0; s < model.stages.size(); ++s)
+  std::vector<int> out(layout.blocks.size(), count_of(model.stages));
+  for (int s = 0; s < count_of(model.stages); ++s)
     for (const std::string& name : model.stages[s].excavate)
-      for (const int k : layout.blocks_called(name)) out[static_cast<size_t>(k)] = static_cast<int>(s);
+      for (const int k : layout.blocks_called(name)) out[k] = s;
   return out;
 }
 
@@ -85,9 +84,9 @@ std::vector<int> stage_without(const Model& model, const Layout& layout) {
 void check_excavation(const Model& model, const BlockSet& blocks, const BoltInput& input, const Bolt& bolt,
                       const std::vector<int>& gone, Findings& findings) {
   for (const BoltNode& n : bolt.nodes) {
-    const auto k = static_cast<size_t>(n.block);
-    const auto stage = static_cast<size_t>(gone[k]);
-    if (stage >= model.stages.size()) continue;
+    const int k = n.block;
+    const int stage = gone[k];
+    if (stage >= count_of(model.stages)) continue;
     findings.error(input.where, "bolt." + input.name,
                    fmt::format("is tied to block \"{}\", which stage \"{}\" excavates", blocks.name[k],
                                model.stages[stage].name),
@@ -103,20 +102,20 @@ void check_bolts(const Model& model, const Layout& layout, const BlockSet& block
   if (model.bolts.empty()) return;
   const State start = initial_state(blocks, layout);
   const std::vector<int> gone = stage_without(model, layout);
-  BlockSet there = blocks;                                               // when the bolt is installed
-  std::vector<double> stiffening(static_cast<size_t>(blocks.count), 0);  // [Pa m3]
-  for (size_t i = 0; i < model.bolts.size(); ++i) {
+  BlockSet there = blocks;                          // when the bolt is installed
+  std::vector<double> stiffening(blocks.count, 0);  // [Pa m3]
+  for (int i = 0; i < count_of(model.bolts); ++i) {
     const BoltInput& input = model.bolts[i];
     std::string trouble;
     for (size_t k = 0; k < gone.size(); ++k)
       there.kind[k] = gone[k] <= input.stage ? BlockKind::kRemoved : blocks.kind[k];
-    const std::vector<Bolt> bolts = make_bolt(model, there, start, static_cast<int>(i), trouble);
+    const std::vector<Bolt> bolts = make_bolt(model, there, start, i, trouble);
     if (!trouble.empty()) {
       findings.error(input.where, "bolt." + input.name, trouble,
                      "bolts begin and end in blocks, where they lie at the start of their stage");
       continue;
     }
-    const BoltKind kind = model.bolt_types[static_cast<size_t>(input.type)].kind;
+    const BoltKind kind = model.bolt_types[input.type].kind;
     if (kind != BoltKind::kSuperposed) check_excavation(model, blocks, input, bolts[0], gone, findings);
     if (kind == BoltKind::kGrouted && bolts[0].crossings.empty())
       findings.warning(input.where, "bolt." + input.name, "crosses no joint: it only stiffens one block",
@@ -124,8 +123,7 @@ void check_bolts(const Model& model, const Layout& layout, const BlockSet& block
     for (const Bolt& bolt : bolts)
       for (size_t j = 0; j < bolt.segments.size(); ++j) {
         const BoltSegment& s = bolt.segments[j];
-        if (s.crossing < 0)
-          stiffening[static_cast<size_t>(bolt.nodes[j].block)] += s.stiffness * s.length * s.length;
+        if (s.crossing < 0) stiffening[bolt.nodes[j].block] += s.stiffness * s.length * s.length;
       }
   }
   for (size_t k = 0; k < stiffening.size(); ++k) {
@@ -140,14 +138,14 @@ void check_bolts(const Model& model, const Layout& layout, const BlockSet& block
 }
 
 void install_bolts(const Model& model, const BlockSet& blocks, int stage, State& state) {
-  for (size_t i = 0; i < model.bolts.size(); ++i) {
+  for (int i = 0; i < count_of(model.bolts); ++i) {
     if (model.bolts[i].stage != stage) continue;
     std::string trouble;
-    std::vector<Bolt> bolts = make_bolt(model, blocks, state, static_cast<int>(i), trouble);
+    std::vector<Bolt> bolts = make_bolt(model, blocks, state, i, trouble);
     if (!trouble.empty())
       throw NumericalError(fmt::format(
           "bolt \"{}\" cannot be installed at the start of stage \"{}\": where the blocks lie by then, it {}",
-          model.bolts[i].name, model.stages[static_cast<size_t>(stage)].name, trouble));
+          model.bolts[i].name, model.stages[stage].name, trouble));
     for (Bolt& bolt : bolts) state.bolts.push_back(std::move(bolt));
   }
 }
@@ -158,12 +156,12 @@ void balance_bolts(State& state) {
 
 // Theory 4.21.
 void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<BlockForce>& force) {
-  TALUS_ASSERT(force.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(force) == blocks.count);
   for (const Bolt& bolt : state.bolts) {
     if (bolt.anchored) continue;
     for (size_t j = 0; j < bolt.segments.size(); ++j) {
       const BoltSegment& s = bolt.segments[j];
-      const auto k = static_cast<size_t>(bolt.nodes[j].block);
+      const int k = bolt.nodes[j].block;
       if (s.crossing >= 0 || s.force == 0 || blocks.kind[k] != BlockKind::kDeformable) continue;
       const Vec2 reference = bolt.nodes[j + 1].arm - bolt.nodes[j].arm;
       const Vec2 along = direction_now(state, bolt.nodes[j].block, reference);
@@ -175,17 +173,17 @@ void add_bolt_forces(const BlockSet& blocks, const State& state, std::vector<Blo
 // Eq. 4.10.
 void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector<BlockRate>& before,
                    const StepClock& clock, RowSet& rows) {
-  for (size_t i = 0; i < state.bolts.size(); ++i) {
+  for (int i = 0; i < count_of(state.bolts); ++i) {
     const Bolt& bolt = state.bolts[i];
     for (const BoltCrossing& c : bolt.crossings) {
-      const auto j = static_cast<size_t>(c.segment);
+      const int j = c.segment;
       const BoltSegment& s = bolt.segments[j];
       const BoltNode &a = bolt.nodes[j], &b = bolt.nodes[j + 1];
       const CrossingNow now = crossing_now(state, bolt, c);
       PointRows p;
       p.block_a = a.block, p.block_b = b.block;
-      p.arm_a = acting_arm(blocks, state, static_cast<size_t>(a.block), a.arm);
-      p.arm_b = acting_arm(blocks, state, static_cast<size_t>(b.block), b.arm);
+      p.arm_a = acting_arm(blocks, state, a.block, a.arm);
+      p.arm_b = acting_arm(blocks, state, b.block, b.arm);
       p.normal = -now.along;  // the tangent is then the left turn of `along`
       p.lower = p.upper = p.cohesion = 0;
       const auto u = relative_velocity(p, before);
@@ -209,7 +207,7 @@ void add_bolt_rows(const BlockSet& blocks, const State& state, const std::vector
       }
       Impulse guess{c.row[0] * clock.dt_kick, c.row[1] * clock.dt_kick};
       if (s.ruptured) guess = {0, 0};
-      rows.add(p, guess, {Family::kBolt, static_cast<int>(i)});
+      rows.add(p, guess, {Family::kBolt, i});
     }
   }
 }
@@ -230,17 +228,17 @@ std::vector<BoltPart> bolt_parts(const BlockSet& blocks, const State& state) {
   for (const Bolt& bolt : state.bolts) {
     const int first = parts.empty() || parts.back().input != bolt.input ? 0 : parts.back().piece + 1;
     const auto place = [&](const BoltNode& n) {
-      const auto k = static_cast<size_t>(n.block);
+      const int k = n.block;
       return blocks.centroid[k] + offset_now(state, k, n.arm);
     };
-    for (size_t j = 0; j < bolt.segments.size(); ++j) {
+    for (int j = 0; j < count_of(bolt.segments); ++j) {
       const BoltSegment& s = bolt.segments[j];
       BoltPart part;
-      part.input = bolt.input, part.piece = first + static_cast<int>(j), part.crossing = s.crossing >= 0;
+      part.input = bolt.input, part.piece = first + j, part.crossing = s.crossing >= 0;
       part.from = place(bolt.nodes[j]), part.to = place(bolt.nodes[j + 1]);
       part.axial = s.force / bolt.share;
       if (part.crossing) {
-        const BoltCrossing& c = bolt.crossings[static_cast<size_t>(s.crossing)];
+        const BoltCrossing& c = bolt.crossings[s.crossing];
         part.axial = 0.0 - c.row[0] / bolt.share, part.shear = 0.0 + c.row[1] / bolt.share;
       }
       part.elongation = s.stretch;

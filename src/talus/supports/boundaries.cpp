@@ -8,6 +8,7 @@
 #include <set>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/supports/medium.h"
 
 namespace talus {
@@ -20,14 +21,14 @@ class BoundaryMaker {
       : model_(model), layout_(layout), blocks_(blocks), findings_(findings) {}
 
   BoundarySet make() {
-    for (size_t i = 0; i < model_.boundaries.size(); ++i) {
+    for (int i = 0; i < count_of(model_.boundaries); ++i) {
       const BoundaryInput& input = model_.boundaries[i];
       const std::vector<SelectedEdge> edges = outer_edges(layout_, input).edges;
       if (edges.empty() || !claim(input, edges)) continue;
       if (entry(input.kind).two_sided)
-        add_ties(static_cast<int>(i), edges);
+        add_ties(i, edges);
       else
-        add_edges(static_cast<int>(i), edges);
+        add_edges(i, edges);
     }
     warn_held();
     return std::move(set_);
@@ -52,10 +53,10 @@ class BoundaryMaker {
     return true;
   }
 
-  std::string name(int block) const { return layout_.blocks[static_cast<size_t>(block)].name; }
+  std::string name(int block) const { return layout_.blocks[block].name; }
 
   void add_ties(int boundary, const std::vector<SelectedEdge>& edges) {
-    const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    const BoundaryInput& input = model_.boundaries[boundary];
     const std::vector<SelectedEdge> opposite = outer_edges(layout_, input.opposite).edges;
     if (opposite.empty() || !claim(input, opposite)) return;
     const auto more = tie_sides(model_, layout_, blocks_, boundary, edges, opposite, findings_);
@@ -67,7 +68,7 @@ class BoundaryMaker {
     for (const SelectedEdge& e : edges) {
       const int material = material_behind(input, layout_, e.block);
       if (material < 0) return false;  // told by the reader
-      const Material& m = model_.materials[static_cast<size_t>(material)];
+      const Material& m = model_.materials[material];
       if (!std::isnan(m.young) && !std::isnan(m.poisson)) continue;
       error(input, input.material >= 0 ? input.where_material : input.where,
             fmt::format("has material \"{}\" behind it, which has no {}", m.name,
@@ -79,7 +80,7 @@ class BoundaryMaker {
   }
 
   void add_edges(int boundary, std::vector<SelectedEdge> edges) {
-    const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    const BoundaryInput& input = model_.boundaries[boundary];
     std::erase_if(edges, [this](const SelectedEdge& e) { return !blocks_.moves_freely(e.block); });
     if (edges.empty()) {
       error(input, input.where, "lies on fixed or driven blocks only: it does nothing",
@@ -101,20 +102,20 @@ class BoundaryMaker {
   }
 
   void add_point(int boundary, int column, const SelectedEdge& e, Vec2 end, Vec2 other) {
-    const BoundaryInput& input = model_.boundaries[static_cast<size_t>(boundary)];
+    const BoundaryInput& input = model_.boundaries[boundary];
     const Impedance z = impedance(model_, material_behind(input, layout_, e.block));
     // as printed there is no area: 1 m2 for each edge of a block (theory 5.9)
     const double area =
         model_.formulation == Formulation::kAsPrinted ? 0.5 : 0.5 * e.length() * model_.thickness;
     BoundaryPoint p;
     p.boundary = boundary, p.block = e.block, p.column = column;
-    p.arm = end - blocks_.centroid[static_cast<size_t>(e.block)];
+    p.arm = end - blocks_.centroid[e.block];
     p.normal = e.normal();
     p.dashpot[0] = z.pressure * area, p.dashpot[1] = z.shear * area;
     p.height = end.y;
     if (column >= 0) {
       const FreeField& field = set_.free_field;
-      p.beside = shares_of_segment(field, field.columns[static_cast<size_t>(column)], end, other);
+      p.beside = shares_of_segment(field, field.columns[column], end, other);
       for (auto& [element, length] : p.beside) length *= model_.thickness;
     }
     set_.points.push_back(std::move(p));
@@ -156,8 +157,7 @@ Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const Colu
   const FreeField& field = set.free_field;
   Vec2 force;
   for (const auto& [element, area] : p.beside) {
-    const auto s =
-        column_stress(field, field.columns[static_cast<size_t>(p.column)], element, columns.displacement);
+    const auto s = column_stress(field, field.columns[p.column], element, columns.displacement);
     force += area * Vec2{s[0] * p.normal.x + s[2] * p.normal.y, s[2] * p.normal.x + s[1] * p.normal.y};
   }
   return force;
@@ -167,11 +167,10 @@ Vec2 free_field_force(const BoundarySet& set, const BoundaryPoint& p, const Colu
 Vec2 medium_velocity(const Model& model, const BoundarySet& set, const BoundaryPoint& p,
                      const StepClock& clock, const ColumnMotion& columns) {
   if (p.column >= 0)
-    return at_height(set.free_field, set.free_field.columns[static_cast<size_t>(p.column)], p.height,
-                     columns.velocity);
-  const BoundaryInput& b = model.boundaries[static_cast<size_t>(p.boundary)];
+    return at_height(set.free_field, set.free_field.columns[p.column], p.height, columns.velocity);
+  const BoundaryInput& b = model.boundaries[p.boundary];
   const auto value = [&](int history) {
-    return history < 0 ? 0.0 : model.histories[static_cast<size_t>(history)].value_at(clock.history_time);
+    return history < 0 ? 0.0 : model.histories[history].value_at(clock.history_time);
   };
   // the bare half-space moves at twice the upgoing wave
   return (b.outcrop ? 1.0 : 2.0) * Vec2{value(b.history_x), value(b.history_y)};
@@ -190,7 +189,7 @@ void enter_stage(const BoundarySet& set, bool was_static, bool is_static, State&
   for (size_t i = 0; i < set.points.size(); ++i) {
     const BoundaryPoint& p = set.points[i];
     if (is_static) {
-      state.boundaries[i].hold = displacement_at(state, static_cast<size_t>(p.block), p.arm);
+      state.boundaries[i].hold = displacement_at(state, p.block, p.arm);
       state.boundaries[i].kept = {0, 0};
     } else if (was_static) {
       state.boundaries[i].kept = state.boundaries[i].force;  // none of a boundary that begins to act
@@ -208,17 +207,17 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
                        const ColumnMotion& columns, RowSet& rows) {
   TALUS_ASSERT(state.boundaries.size() == set.points.size() &&
                columns.velocity.size() == state.column_rate.size());
-  for (size_t i = 0; i < set.points.size(); ++i) {
+  for (int i = 0; i < count_of(set.points); ++i) {
     const BoundaryPoint& point = set.points[i];
     if (!point.active) continue;
-    const auto block = static_cast<size_t>(point.block);
+    const int block = point.block;
     PointRows p;
     p.block_a = point.block;
     p.arm_a = acting_arm(blocks, state, block, point.arm);
     p.normal = point.normal;
     const Vec2 axis[2] = {point.normal, turn_right(point.normal)};
     if (!clock.dynamic) {
-      const StaticHold hold = model.boundaries[static_cast<size_t>(point.boundary)].hold;
+      const StaticHold hold = model.boundaries[point.boundary].hold;
       const Vec2 off = displacement_at(state, block, point.arm) - state.boundaries[i].hold;
       for (size_t k = 0; k < 2; ++k) {
         p.row[k].bias = dot(axis[k], off) / clock.dt;
@@ -242,7 +241,7 @@ void add_boundary_rows(const BlockSet& blocks, const Model& model, const Boundar
       }
     }
     rows.add(p, {state.boundaries[i].force[0] * clock.dt_kick, state.boundaries[i].force[1] * clock.dt_kick},
-             {Family::kBoundary, static_cast<int>(i)});
+             {Family::kBoundary, i});
   }
 }
 

@@ -21,7 +21,7 @@ class ColumnMaker {
               Findings& findings)
       : model_(model),
         layout_(layout),
-        input_(model.boundaries[static_cast<size_t>(boundary)]),
+        input_(model.boundaries[boundary]),
         boundary_(boundary),
         edges_(edges),
         findings_(findings) {}
@@ -97,7 +97,7 @@ class ColumnMaker {
     return kept;
   }
 
-  const BlockShape& shape_of(int block) const { return layout_.blocks[static_cast<size_t>(block)]; }
+  const BlockShape& shape_of(int block) const { return layout_.blocks[block]; }
 
   bool same_rock(int a, int b) const {
     if (a < 0 || b < 0) return true;  // told already
@@ -167,7 +167,7 @@ class ColumnMaker {
       return base;
     }
     for (const int i : blocks_at(layout_, foot, corner_tolerance())) {
-      const BlockShape& b = layout_.blocks[static_cast<size_t>(i)];
+      const BlockShape& b = layout_.blocks[i];
       if (b.kind == BlockKind::kDriven) base.motion[0] = b.motion_x, base.motion[1] = b.motion_y;
       if (b.kind == BlockKind::kDriven || b.kind == BlockKind::kFixed) return base;
     }

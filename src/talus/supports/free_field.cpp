@@ -15,10 +15,10 @@ struct ColumnMass {
 };
 
 ColumnMass mass_of(const FreeField& field, const GroundColumn& c, bool lumped) {
-  const auto n = static_cast<size_t>(c.elements);
+  const int n = c.elements;
   ColumnMass m{std::vector<double>(n + 1), std::vector<double>(n)};
-  for (size_t e = 0; e < n; ++e) {
-    const ColumnElement& element = field.elements[static_cast<size_t>(c.first_element) + e];
+  for (int e = 0; e < n; ++e) {
+    const ColumnElement& element = field.elements[c.first_element + e];
     const double all = element.density * element.height;
     const double own = lumped ? all / 2 : all / 3;
     m.diagonal[e] += own, m.diagonal[e + 1] += own;
@@ -86,7 +86,7 @@ class ColumnKick {
       e.right[i] = (1 - damping_) * momentum + t_.dt_kick * force[i];
     }
     for (size_t k = 0; k + 1 < n; ++k) {
-      const ColumnElement& element = field_.elements[static_cast<size_t>(c_.first_element) + k];
+      const ColumnElement& element = field_.elements[c_.first_element + k];
       const Mat2 stiff = stiff_time2_ / element.height * modulus(element.stiffness);
       const Vec2 kept = old_ * (stiff * (v[k + 1] - v[k]));
       e.above[k] = e.below[k] = (1 + damping_) * mass_.beside[k] * kIdentity - stiff;
@@ -109,9 +109,7 @@ class ColumnKick {
     if (base.viscous) {
       const double half = 0.5 * base.impedance[axis] * t_.dt_kick;
       const int history = base.history[axis];
-      const double bare =
-          history < 0 ? 0
-                      : base.incoming * histories_[static_cast<size_t>(history)].value_at(t_.history_time);
+      const double bare = history < 0 ? 0 : base.incoming * histories_[history].value_at(t_.history_time);
       on_axis(e.diagonal[0], axis) += half;
       right += half * (2 * bare - on_axis(before, axis));
     } else if (base.motion[axis].kind != Motion::kFree) {
@@ -138,7 +136,7 @@ class ColumnKick {
 size_t element_at(const FreeField& field, const GroundColumn& c, double height) {
   const auto begin = field.height.begin() + c.first_node, last = begin + c.elements;
   const auto above = std::upper_bound(begin, last, height) - begin;
-  return static_cast<size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, c.elements - 1));
+  return std::clamp<std::ptrdiff_t>(above - 1, 0, c.elements - 1);
 }
 
 }  // namespace
@@ -148,7 +146,7 @@ ColumnStep stable_step(const FreeField& field, bool lumped) {
   ColumnStep least;
   for (const GroundColumn& column : field.columns) {
     for (int k = 0; k < column.elements; ++k) {
-      const ColumnElement& e = field.elements[static_cast<size_t>(column.first_element + k)];
+      const ColumnElement& e = field.elements[column.first_element + k];
       // fastest motion of a free element: w^2 = 12 q / (rho h^2), lumped 4 q / (rho h^2), q the larger
       // modulus
       const Stiffness& c = e.stiffness;
@@ -168,20 +166,20 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
   TALUS_ASSERT(state.column_rate.size() == field.height.size());
   const std::vector<Vec2> before = state.column_rate;
   for (const GroundColumn& c : field.columns) {
-    const auto n = static_cast<size_t>(c.elements) + 1;
+    const int n = c.elements + 1;
     std::vector<Vec2> force(n);
-    for (size_t e = 0; e + 1 < n; ++e) {
-      const int index = c.first_element + static_cast<int>(e);
-      const ColumnElement& element = field.elements[static_cast<size_t>(index)];
+    for (int e = 0; e + 1 < n; ++e) {
+      const int index = c.first_element + e;
+      const ColumnElement& element = field.elements[index];
       const auto stress = column_stress(field, c, index, state.column_displacement);
       const Vec2 pull{stress[2], stress[1]};
       const double half = 0.5 * element.density * element.height;
-      const Vec2 body = half * acceleration[static_cast<size_t>(element.block)];
+      const Vec2 body = half * acceleration[element.block];
       force[e] += body + pull, force[e + 1] += body - pull;
     }
     const auto node = before.begin() + c.first_node;
     const ColumnKick kick(field, c, histories, clock, damping_mass, lumped, elastic);
-    const std::vector<Vec2> after = kick.rates_after({node, node + static_cast<std::ptrdiff_t>(n)}, force);
+    const std::vector<Vec2> after = kick.rates_after({node, node + n}, force);
     std::copy(after.begin(), after.end(), state.column_rate.begin() + c.first_node);
   }
   motion.velocity = state.column_rate;
@@ -199,8 +197,8 @@ void kick_columns(const FreeField& field, const std::vector<History>& histories,
 // Theory 4.12.
 std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& column, int element,
                                     const std::vector<Vec2>& displacement) {
-  const ColumnElement& e = field.elements[static_cast<size_t>(element)];
-  const auto node = static_cast<size_t>(column.first_node + element - column.first_element);
+  const ColumnElement& e = field.elements[element];
+  const int node = column.first_node + element - column.first_element;
   const Vec2 strain = (displacement[node + 1] - displacement[node]) / e.height;
   std::array<double, 3> stress;
   for (size_t k = 0; k < 3; ++k) stress[k] = e.stiffness[k][1] * strain.y + e.stiffness[k][2] * strain.x;
@@ -209,7 +207,7 @@ std::array<double, 3> column_stress(const FreeField& field, const GroundColumn& 
 
 Vec2 at_height(const FreeField& field, const GroundColumn& column, double height,
                const std::vector<Vec2>& node) {
-  const size_t i = static_cast<size_t>(column.first_node) + element_at(field, column, height);
+  const size_t i = column.first_node + element_at(field, column, height);
   const double s = std::clamp((height - field.height[i]) / (field.height[i + 1] - field.height[i]), 0.0, 1.0);
   return (1 - s) * node[i] + s * node[i + 1];
 }
@@ -227,7 +225,7 @@ std::vector<std::pair<int, double>> shares_of_segment(const FreeField& field, co
   std::vector<double> cuts{0};
   if (rise != 0)
     for (int k = 1; k < column.elements; ++k) {
-      const double s = (field.height[static_cast<size_t>(column.first_node + k)] - from.y) / rise;
+      const double s = (field.height[column.first_node + k] - from.y) / rise;
       if (s > 0 && s < 1) cuts.push_back(s);
     }
   cuts.push_back(1);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "talus/base/index.h"
 #include "talus/cut/joint_set.h"
 #include "talus/model/joint_law.h"
 
@@ -27,7 +28,7 @@ class JointFinder {
   }
 
   void add_region(int region) {
-    const RegionInput& r = model_.regions[static_cast<size_t>(region)];
+    const RegionInput& r = model_.regions[region];
     const int own = r.joint >= 0 ? r.joint : model_.default_joint;
     const auto soft = [&](int joint) { return law_of(joint >= 0 ? joint : own).is_soft(); };
     const auto here = [region](int of) { return of < 0 || of == region; };
@@ -49,9 +50,7 @@ class JointFinder {
   std::vector<JointsOfRock> sets;
 
  private:
-  JointLaw law_of(int joint) const {
-    return joint < 0 ? JointLaw() : JointLaw(model_.joints[static_cast<size_t>(joint)]);
-  }
+  JointLaw law_of(int joint) const { return joint < 0 ? JointLaw() : JointLaw(model_.joints[joint]); }
 
   void add_set(int joint, Vec2 normal, double frequency) {
     const JointLaw law = law_of(joint);
@@ -93,21 +92,21 @@ Stiffness jointed_stiffness(const PlaneModuli& rock, const std::vector<JointsOfR
 std::vector<JointsOfRock> joints_around(const Model& model, const Layout& layout, const BlockShape& block,
                                         std::string& trouble) {
   // groups are the blocks, the grids, the meshes, then what was cut, the regions first
-  const auto group = static_cast<size_t>(block.group);
-  const size_t first_cut = static_cast<size_t>(layout.first_cut_group), blocks = model.blocks.size();
+  const int group = block.group;
+  const int first_cut = layout.first_cut_group, blocks = count_of(model.blocks);
   JointFinder finder(model, trouble);
-  if (group >= blocks && group - blocks < model.grids.size())
+  if (group >= blocks && group - blocks < count_of(model.grids))
     finder.add_grid(model.grids[group - blocks]);
   else if (group >= blocks && group < first_cut)
     finder.add_meshes();
-  else if (group >= first_cut && group - first_cut < model.regions.size())
-    finder.add_region(static_cast<int>(group - first_cut));
+  else if (group >= first_cut && group - first_cut < count_of(model.regions))
+    finder.add_region(group - first_cut);
   return finder.sets;
 }
 
 Ground ground_at(const Model& model, const Layout& layout, const BlockShape& block, int material,
                  std::string& trouble) {
-  const Material& m = model.materials[static_cast<size_t>(material)];
+  const Material& m = model.materials[material];
   return {m.density, jointed_stiffness(plane_moduli(m.young, m.poisson, model.plane),
                                        joints_around(model, layout, block, trouble))};
 }

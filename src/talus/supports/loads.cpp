@@ -1,6 +1,7 @@
 #include "talus/supports/loads.h"
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/cut/selection.h"
 
 namespace talus {
@@ -15,13 +16,13 @@ std::vector<int> loaded_blocks(const LoadInput& load, const Layout& layout) {
   if (load.kind != LoadKind::kAcceleration) return {};
   if (!load.block.empty()) return layout.blocks_called(load.block);
   std::vector<int> all;
-  for (size_t i = 0; i < layout.blocks.size(); ++i) all.push_back(static_cast<int>(i));
+  for (int i = 0; i < count_of(layout.blocks); ++i) all.push_back(i);
   return all;
 }
 
 void add_points(const LoadInput& load, int index, const Layout& layout, const BlockSet& blocks,
                 std::vector<LoadedPoint>& points) {
-  const auto arm = [&blocks](int block, Vec2 p) { return p - blocks.centroid[static_cast<size_t>(block)]; };
+  const auto arm = [&blocks](int block, Vec2 p) { return p - blocks.centroid[block]; };
   if (load.kind == LoadKind::kSurface) {
     // a traction that is the same along an edge has its resultant in the middle
     for (const SelectedEdge& e : outer_edges(layout, load).edges)
@@ -40,23 +41,23 @@ void add_points(const LoadInput& load, int index, const Layout& layout, const Bl
 }  // namespace
 
 LoadSet build_loads(const Model& model, const Layout& layout, const BlockSet& blocks) {
-  TALUS_ASSERT(layout.blocks.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(layout.blocks) == blocks.count);
   LoadSet set;
-  for (size_t i = 0; i < model.loads.size(); ++i) {
+  for (int i = 0; i < count_of(model.loads); ++i) {
     set.blocks.push_back(loaded_blocks(model.loads[i], layout));
-    if (model.loads[i].has_place) add_points(model.loads[i], static_cast<int>(i), layout, blocks, set.points);
+    if (model.loads[i].has_place) add_points(model.loads[i], i, layout, blocks, set.points);
   }
   return set;
 }
 
 std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, int block_count, double time) {
-  std::vector<Vec2> acceleration(static_cast<size_t>(block_count));
+  std::vector<Vec2> acceleration(block_count);
   for (size_t i = 0; i < model.loads.size(); ++i) {
     if (!loads.active.empty() && !loads.active[i]) continue;
     const LoadInput& l = model.loads[i];
     if (l.kind != LoadKind::kAcceleration) continue;
     const Vec2 a = value_of(l, model, time);
-    for (const int b : loads.blocks[i]) acceleration[static_cast<size_t>(b)] += a;
+    for (const int b : loads.blocks[i]) acceleration[b] += a;
   }
   return acceleration;
 }
@@ -64,11 +65,11 @@ std::vector<Vec2> load_acceleration(const Model& model, const LoadSet& loads, in
 // Theory 4.16.
 void add_edge_and_point_loads(const BlockSet& blocks, const Model& model, const LoadSet& loads,
                               const State& state, double time, std::vector<BlockForce>& force) {
-  TALUS_ASSERT(force.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(force) == blocks.count);
   for (const LoadedPoint& p : loads.points) {
     if (!p.active) continue;
-    const LoadInput& l = model.loads[static_cast<size_t>(p.load)];
-    const auto block = static_cast<size_t>(p.block);
+    const LoadInput& l = model.loads[p.load];
+    const int block = p.block;
     Vec2 f = value_of(l, model, time);
     if (l.pressure.is_given()) {
       const Vec2 turn = elastic_state(blocks.moduli[block], state.strain_part[block]).rotation;

@@ -14,14 +14,14 @@ struct Impedance {
 
 /// @pre  the material has elastic constants
 inline Impedance impedance(const Model& model, int material) {
-  const Material& m = model.materials[static_cast<size_t>(material)];
+  const Material& m = model.materials[material];
   const PlaneModuli c = plane_moduli(m.young, m.poisson, model.plane);
   return {std::sqrt(m.density * c.c11), std::sqrt(m.density * c.c33)};
 }
 
 /// The material behind a boundary at an edge of this block.
 inline int material_behind(const BoundaryInput& boundary, const Layout& layout, int block) {
-  return boundary.material >= 0 ? boundary.material : layout.blocks[static_cast<size_t>(block)].material;
+  return boundary.material >= 0 ? boundary.material : layout.blocks[block].material;
 }
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "talus/supports/supports.h"
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 #include "talus/cut/selection.h"
 
 namespace talus {
@@ -8,11 +9,10 @@ namespace talus {
 std::vector<SupportedPoint> supported_points(const Model& model, const Layout& layout,
                                              const BlockSet& blocks) {
   std::vector<SupportedPoint> points;
-  for (size_t s = 0; s < model.supports.size(); ++s) {
+  for (int s = 0; s < count_of(model.supports); ++s) {
     for (const SelectedCorner& c : selected_corners(layout, model.supports[s])) {
       if (!blocks.moves_freely(c.block)) continue;
-      points.push_back(
-          {static_cast<int>(s), c.block, c.point - blocks.centroid[static_cast<size_t>(c.block)], true});
+      points.push_back({s, c.block, c.point - blocks.centroid[c.block], true});
     }
   }
   return points;
@@ -22,10 +22,10 @@ std::vector<SupportedPoint> supported_points(const Model& model, const Layout& l
 void add_support_rows(const BlockSet& blocks, const Model& model, const std::vector<SupportedPoint>& points,
                       const State& state, const StepClock& clock, RowSet& rows) {
   TALUS_ASSERT(state.supports.size() == points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
+  for (int i = 0; i < count_of(points); ++i) {
     if (!points[i].active) continue;
-    const SupportInput& support = model.supports[static_cast<size_t>(points[i].support)];
-    const auto block = static_cast<size_t>(points[i].block);
+    const SupportInput& support = model.supports[points[i].support];
+    const int block = points[i].block;
     PointRows p;
     p.block_a = points[i].block;
     p.arm_a = acting_arm(blocks, state, block, points[i].arm);
@@ -40,14 +40,14 @@ void add_support_rows(const BlockSet& blocks, const Model& model, const std::vec
     if (support.x.kind == Motion::kFree) p.lower = p.upper = 0;
     if (support.y.kind == Motion::kFree) p.cohesion = 0;
     rows.add(p, {state.supports[i].force[0] * clock.dt_kick, -state.supports[i].force[1] * clock.dt_kick},
-             {Family::kSupport, static_cast<int>(i)});
+             {Family::kSupport, i});
   }
 }
 
 // Theory 4.2.
 void drive_blocks(const BlockSet& blocks, const Model& model, const Layout& layout, const State& state,
                   const StepClock& clock, std::vector<BlockRate>& rate) {
-  TALUS_ASSERT(rate.size() == static_cast<size_t>(blocks.count));
+  TALUS_ASSERT(count_of(rate) == blocks.count);
   for (size_t i = 0; i < rate.size(); ++i) {
     if (blocks.kind[i] == BlockKind::kFixed) rate[i] = {};
     if (blocks.kind[i] != BlockKind::kDriven) continue;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "talus/base/error.h"
+#include "talus/base/index.h"
 
 namespace talus {
 
@@ -17,7 +18,7 @@ class SideTier {
   SideTier(const Model& model, const Layout& layout, const BlockSet& blocks, int boundary, Findings& findings)
       : layout_(layout),
         blocks_(blocks),
-        input_(model.boundaries[static_cast<size_t>(boundary)]),
+        input_(model.boundaries[boundary]),
         boundary_(boundary),
         findings_(findings) {}
 
@@ -78,12 +79,12 @@ class SideTier {
   void add(int block_a, Vec2 a, int block_b, Vec2 b, bool swapped) {
     if (swapped) std::swap(block_a, block_b), std::swap(a, b);
     if (block_a == block_b) {
-      error(fmt::format("would tie \"{}\" to itself", layout_.blocks[static_cast<size_t>(block_a)].name),
+      error(fmt::format("would tie \"{}\" to itself", layout_.blocks[block_a].name),
             "cut the ground between tied sides into at least two columns of blocks");
       return;
     }
     if (!blocks_.moves_freely(block_a) && !blocks_.moves_freely(block_b)) return;
-    const auto arm = [this](int block, Vec2 p) { return p - blocks_.centroid[static_cast<size_t>(block)]; };
+    const auto arm = [this](int block, Vec2 p) { return p - blocks_.centroid[block]; };
     const TiePoint t{boundary_, block_a, block_b, arm(block_a, a), arm(block_b, b)};
     for (const TiePoint& other : ties_)
       if (other.block_a == block_a && other.block_b == block_b &&
@@ -115,10 +116,10 @@ std::vector<TiePoint> tie_sides(const Model& model, const Layout& layout, const 
 void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, const State& state,
                   const StepClock& clock, RowSet& rows) {
   TALUS_ASSERT(state.ties.size() == ties.size());
-  for (size_t i = 0; i < ties.size(); ++i) {
+  for (int i = 0; i < count_of(ties); ++i) {
     const TiePoint& t = ties[i];
     if (!t.active) continue;
-    const auto a = static_cast<size_t>(t.block_a), b = static_cast<size_t>(t.block_b);
+    const int a = t.block_a, b = t.block_b;
     PointRows p;
     p.block_a = t.block_a, p.block_b = t.block_b;
     p.arm_a = acting_arm(blocks, state, a, t.arm_a), p.arm_b = acting_arm(blocks, state, b, t.arm_b);
@@ -126,7 +127,7 @@ void add_tie_rows(const BlockSet& blocks, const std::vector<TiePoint>& ties, con
     const Vec2 apart = displacement_at(state, a, t.arm_a) - displacement_at(state, b, t.arm_b);
     p.row[0].bias = apart.x / clock.dt, p.row[1].bias = -apart.y / clock.dt;
     rows.add(p, {state.ties[i].force[0] * clock.dt_kick, state.ties[i].force[1] * clock.dt_kick},
-             {Family::kTie, static_cast<int>(i)});
+             {Family::kTie, i});
   }
 }
 

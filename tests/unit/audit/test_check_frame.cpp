@@ -1,4 +1,5 @@
 #include "talus/audit/check_frame.h"
+#include "talus/base/index.h"
 
 #include <doctest/doctest.h>
 
@@ -42,9 +43,9 @@ struct Case {
     return frame.points.back();
   }
   void pair_last_two() {
-    const int n = static_cast<int>(frame.points.size());
-    frame.points[static_cast<size_t>(n - 1)].partner = n - 2;
-    frame.points[static_cast<size_t>(n - 2)].partner = n - 1;
+    const int n = count_of(frame.points);
+    frame.points[n - 1].partner = n - 2;
+    frame.points[n - 2].partner = n - 1;
   }
   FrameResult look() const { return check_frame(rules, frame); }
 };

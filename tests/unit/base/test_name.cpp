@@ -1,3 +1,4 @@
+#include "talus/base/index.h"
 #include "talus/base/name.h"
 
 #include <doctest/doctest.h>
@@ -55,7 +56,7 @@ TEST_CASE("file names made of any text stay in their folder and apart") {
     CHECK(name.front() != '.');
     made.insert(name), ++texts;
   }
-  CHECK(made.size() == static_cast<size_t>(texts));
+  CHECK(count_of(made) == texts);
 }
 
 }  // namespace test_name

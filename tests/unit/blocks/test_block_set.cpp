@@ -189,8 +189,7 @@ TEST_CASE("the moment clamp raises what is needed and nothing else") {
     double largest = 1;
     for (int i = 0; i < before.count; ++i) {
       CAPTURE(i);
-      const auto k = static_cast<size_t>(i);
-      const Mat2 s = after.inertia[k], s0 = before.inertia[k];
+      const Mat2 s = after.inertia[i], s0 = before.inertia[i];
       const auto e = eigenvalues(s), e0 = eigenvalues(s0);
       // eigenvalues of slivers carry round-off 1e-16 times their ratio, here up to 1e6
       CHECK(e[0] >= e0[0] * (1 - 1e-9));
@@ -200,7 +199,7 @@ TEST_CASE("the moment clamp raises what is needed and nothing else") {
       CHECK(raised.yy >= -1e-12 * e0[1]);
       CHECK(det(raised) >= -1e-12 * e[1] * e0[1]);
       largest = std::max(largest, e[0] / e0[0]);
-      CHECK(after.polar_inertia[k] == relative(trace(s), 1e-14));
+      CHECK(after.polar_inertia[i] == relative(trace(s), 1e-14));
       if (i == 0 || i == 5) {
         CHECK((s.xx == s0.xx && s.xy == s0.xy && s.yx == s0.yx && s.yy == s0.yy));
         continue;
@@ -212,7 +211,7 @@ TEST_CASE("the moment clamp raises what is needed and nothing else") {
       // the principal directions stay: old and new commute
       const Mat2 left = s * s0 - s0 * s;
       CHECK(std::abs(left.xy) <= 1e-12 * e[1] * e0[1]);
-      const Mat2 one = after.inertia_inverse[k] * s - kIdentity;
+      const Mat2 one = after.inertia_inverse[i] * s - kIdentity;
       CHECK(std::sqrt(contract(one, one)) <= 1e-9);
     }
     CHECK(after.largest_clamp == relative(largest, 1e-8));

@@ -187,7 +187,7 @@ TEST_CASE("ground laid with its stress is at rest, with the gradient of gravity"
     double sum_dd = 0, sum_ds = 0, sum_x = 0, sum_y = 0;
     for (int b = 0; b < i.scene.blocks.count; ++b) {
       const Mat2 s = cauchy_stress(i.scene.blocks, i.state, b);
-      const double depth = 20 - i.scene.blocks.centroid[static_cast<size_t>(b)].y;
+      const double depth = 20 - i.scene.blocks.centroid[b].y;
       sum_dd += depth * depth, sum_ds += depth * (-s.yy - 2e6), sum_x += s.xx, sum_y += s.yy;
     }
     slope = sum_ds / sum_dd, ratio = sum_x / sum_y;

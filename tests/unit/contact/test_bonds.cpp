@@ -78,7 +78,7 @@ TEST_CASE("faces of a grid: one per shared side, its ends on both blocks") {
   const Scene s = grid_scene(kBonded);
   REQUIRE(s.bonds.faces.size() == 2 * 2 + 3);
   for (const BondFace& f : s.bonds.faces) {
-    const auto a = static_cast<size_t>(f.block_a), b = static_cast<size_t>(f.block_b);
+    const int a = f.block_a, b = f.block_b;
     CHECK(f.block_a < f.block_b);
     CHECK(f.unbreakable);
     CHECK(f.joint == kBonded);
@@ -256,8 +256,8 @@ TEST_CASE("rows of an intact face hold its ends together within its strength") {
                   Workers(1), rows);
     REQUIRE(rows.size() == 2);
     for (const int end : {0, 1}) {
-      CHECK(rows.owner[static_cast<size_t>(end)].family == Family::kFace);
-      CHECK(rows.owner[static_cast<size_t>(end)].index == end);
+      CHECK(rows.owner[end].family == Family::kFace);
+      CHECK(rows.owner[end].index == end);
     }
     REQUIRE(rows.points.size() == 2);
     for (const PointRows& p : rows.points) {
@@ -304,9 +304,8 @@ TEST_CASE(
       const PointRows& p = rows.points[r];
       const auto u = relative_velocity(p, state.rate);
       const auto left_over = [&](int k) {
-        const auto i = static_cast<size_t>(k);
-        return u[i] + p.row[k].bias + p.row[k].compliance * rows.impulse[r][i] +
-               p.cross(k) * rows.impulse[1 - r][i];
+        return u[k] + p.row[k].bias + p.row[k].compliance * rows.impulse[r][k] +
+               p.cross(k) * rows.impulse[1 - r][k];
       };
       CHECK(std::abs(left_over(0)) < 1e-12 * std::abs(p.row[0].bias));
       if (push < 1)

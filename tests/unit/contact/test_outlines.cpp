@@ -10,6 +10,7 @@
 
 #include "support/block_scene.h"
 #include "support/relative.h"
+#include "talus/base/index.h"
 #include "talus/base/random.h"
 #include "talus/contact/outlines.h"
 #include "talus/geometry/polygon.h"
@@ -23,9 +24,9 @@ namespace {
 
 ConvexPart outline_of(const Polygon& polygon) {
   ConvexPart out;
-  for (size_t k = 0; k < polygon.size(); ++k) {
+  for (int k = 0; k < count_of(polygon); ++k) {
     out.corner.push_back(polygon[k]);
-    out.side.push_back({static_cast<int>(k), -1});
+    out.side.push_back({k, -1});
   }
   return out;
 }
@@ -123,7 +124,7 @@ void check_parts(const Polygon& polygon, const std::vector<ConvexPart>& parts) {
       // what outlines.cpp calls a notch
       CHECK(cross(side, next) >= -1e-9 * norm(side) * norm(next));
       if (part.side[k].edge < 0) continue;
-      const auto e = static_cast<size_t>(part.side[k].edge);
+      const int e = part.side[k].edge;
       REQUIRE(e < polygon.size());
       const Vec2 begin = polygon[e], edge = polygon[(e + 1) % polygon.size()] - begin;
       CHECK(std::abs(cross(edge, from - begin)) <= kSamePlace * norm(edge));
@@ -155,8 +156,7 @@ TEST_CASE("parts of an outline with notches are convex, make it up, and have its
     CAPTURE(i);
     const Polygon polygon = random_star(random);
     const std::vector<ConvexPart> parts = parts_of(polygon);
-    CHECK(static_cast<int>(parts.size()) ==
-          notches_of(polygon) + 1);  // each cut is from a notch, and ends it
+    CHECK(count_of(parts) == notches_of(polygon) + 1);  // each cut is from a notch, and ends it
     check_parts(polygon, parts);
     if (parts.size() > 1) CHECK(length_of_cuts(parts) > 0);
   }
@@ -270,20 +270,16 @@ struct SideSeen {
 std::vector<SideSeen> sides_of(const Scene& scene, int block, int edge) {
   std::vector<SideSeen> out;
   const Outlines& o = scene.outlines;
-  for (int p = o.part_begin[static_cast<size_t>(block)]; p < o.part_begin[static_cast<size_t>(block) + 1];
-       ++p) {
-    const auto begin = static_cast<size_t>(o.corner_begin[static_cast<size_t>(p)]),
-               n = static_cast<size_t>(o.corners_of(p));
-    for (size_t k = 0; k < n; ++k)
+  for (int p = o.part_begin[block]; p < o.part_begin[block + 1]; ++p) {
+    const int begin = o.corner_begin[p], n = o.corners_of(p);
+    for (int k = 0; k < n; ++k)
       if (o.side[begin + k].edge == edge)
         out.push_back({o.corner[begin + k], o.corner[begin + (k + 1) % n], o.side[begin + k]});
   }
   return out;
 }
 
-Vec2 placed(const Scene& scene, int block, Vec2 arm) {
-  return scene.blocks.centroid[static_cast<size_t>(block)] + arm;
-}
+Vec2 placed(const Scene& scene, int block, Vec2 arm) { return scene.blocks.centroid[block] + arm; }
 
 }  // namespace
 
@@ -381,7 +377,7 @@ TEST_CASE(
     const double d = meets ? 0.14 : 0.07;
     const Polygon bent{{0, 0}, {4, 0}, {4, 1 - 2 * d / std::sqrt(1 - d * d)}, {2, 1}, {0, 1}};
     const Scene scene = block_scene(pressed_rock(), {{bent}, {box_polygon(0, 1, 2, 2)}});
-    const auto end = static_cast<size_t>(scene.outlines.part_begin[1]);
+    const int end = scene.outlines.part_begin[1];
     CHECK((scene.outlines.corner_begin[end] == 5) == meets);
   }
 }
@@ -414,8 +410,7 @@ TEST_CASE("faces beside each other on one side leave no step in it, however thei
                                                      {{a, b, at(2, 2), at(1, 2)}},
                                                      {{b, at(3, 1), at(3, 2), at(2, 2)}}});
     for (int block = 0; block < 4; ++block) {
-      const auto k = static_cast<size_t>(block);
-      CHECK(scene.outlines.part_begin[k + 1] - scene.outlines.part_begin[k] == 1);
+      CHECK(scene.outlines.part_begin[block + 1] - scene.outlines.part_begin[block] == 1);
     }
   }
 }

@@ -99,7 +99,7 @@ Pull by_cells(const Body& a, const Body& b, const PartsMet& met) {
   Pull out;
   const auto add = [&](const Body& own, const std::vector<SideCell>& cells, double sign) {
     for (const SideCell& c : cells) {
-      const auto k = static_cast<size_t>(c.side);
+      const int k = c.side;
       const Vec2 side = own.at(k + 1) - own.at(k), push = 0.5 * sign * turn_right(side) / norm(side);
       out.force += c.area * push, out.moment += cross(c.first, push);
     }
@@ -341,8 +341,7 @@ Body mirrored(const Body& body) {
 }
 
 Body begun_later(Body body, size_t by) {
-  std::rotate(body.corner.begin(), body.corner.begin() + static_cast<std::ptrdiff_t>(by % body.corner.size()),
-              body.corner.end());
+  std::rotate(body.corner.begin(), body.corner.begin() + (by % body.corner.size()), body.corner.end());
   return body;
 }
 
@@ -563,10 +562,10 @@ TEST_CASE("overlap: cuts and sides tied to third blocks are no ways out") {
     own.role.assign(own.corner.size(), SideRole::kOut);
     // one of the sides that have a cell, which need not be that of most of it
     const std::vector<SideCell>& cells = i % 2 == 0 ? free.cells_a : free.cells_b;
-    own.role[static_cast<size_t>(cells[static_cast<size_t>(i) / 6 % cells.size()].side)] = role;
+    own.role[cells[static_cast<size_t>(i) / 6 % cells.size()].side] = role;
     const std::vector<PartsMet> pieces = pieces_of(two.a, two.b);
     if (pieces.empty()) continue;
-    ++met_with[static_cast<size_t>(role)];
+    ++met_with[place_of(role)];
     Summed all;
     for (const PartsMet& met : pieces) all.area += met.area, all.energy += met.energy;
     constexpr int kLines = 400;
@@ -582,7 +581,7 @@ TEST_CASE("overlap: cuts and sides tied to third blocks are no ways out") {
     worst = std::max({worst, area, energy});
     for (const PartsMet& met : pieces) {
       for (const SideCell& c : i % 2 == 0 ? met.cells_a : met.cells_b)
-        CHECK(own.role[static_cast<size_t>(c.side)] == SideRole::kOut);
+        CHECK(own.role[c.side] == SideRole::kOut);
       const Pull by_cell = by_cells(two.a, two.b, met), by_chord = by_closures(met);
       CHECK(norm(by_cell.force - by_chord.force) < 1e-13 * met.area);  // sums of areas, as without ties
     }

@@ -130,18 +130,16 @@ class PutBlocks {
     for (size_t r = 0; r < rows_.size(); r += 2) solve(0, r), solve(1, r);
   }
   void solve(int k, size_t first) {
-    const auto row = static_cast<size_t>(k);
-    rows_.impulse[first][row] = rows_.impulse[first + 1][row] = 0;
+    rows_.impulse[first][k] = rows_.impulse[first + 1][k] = 0;
     constexpr int kSweeps = 60;  // each leaves a quarter of the error
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (const size_t r : {first, first + 1}) {
         const PointRows& p = rows_.points[r];
         if (!(p.row[k].compliance > 0)) continue;
-        const double u = relative_velocity(p, state_.rate)[row];
-        const double by_partner =
-            p.partner < 0 ? 0 : p.cross(k) * rows_.impulse[static_cast<size_t>(p.partner)][row];
+        const double u = relative_velocity(p, state_.rate)[k];
+        const double by_partner = p.partner < 0 ? 0 : p.cross(k) * rows_.impulse[p.partner][k];
         const Bounds bounds = bounds_of(p, k, rows_.impulse[r][0]);
-        rows_.impulse[r][row] =
+        rows_.impulse[r][k] =
             std::clamp(-(p.row[k].bias + u + by_partner) / p.row[k].compliance, bounds.lower, bounds.upper);
       }
   }

@@ -131,7 +131,7 @@ TEST_CASE("a block that slides along the side that it covers is no reason to see
   const auto pair = [&](int a, int b) {
     const auto at = std::find_if(state.pairs.begin(), state.pairs.end(),
                                  [&](const ContactPair& p) { return p.a == a && p.b == b; });
-    return state.followed[static_cast<size_t>(at - state.pairs.begin())];
+    return state.followed[at - state.pairs.begin()];
   };
   // lower left and upper right: the others cover both sides
   REQUIRE(pair(0, 3).covers == 2);
@@ -156,7 +156,7 @@ TEST_CASE("an end of an interface keeps its memory when another corner comes to 
   std::array<double, 2> off{1e-4, 3e-4};  // from where each end sticks
   for (Contact& c : state.contacts) {
     CHECK(c.face.side_lo >= 0);
-    const auto end = static_cast<size_t>(c.face.end);
+    const int end = c.face.end;
     const CornerEdge over = corner_over_edge(scene.blocks, state, c.key.corner(), c.key.on());
     c.memory = Contact::kWhole, c.force = {1e3 + static_cast<double>(end), 10}, c.stretch = off[end];
     c.anchor = -over.along - off[end];  // edges of 1 m
@@ -173,7 +173,7 @@ TEST_CASE("an end of an interface keeps its memory when another corner comes to 
     const CornerEdge over = corner_over_edge(scene.blocks, state, c.key.corner(), c.key.on());
     // it moved by 2 mm to the left; along the tangent of the upper block's corners that is less, of the lower
     // one's more
-    const double now = -over.along - c.anchor, moved = std::abs(now - off[static_cast<size_t>(c.face.end)]);
+    const double now = -over.along - c.anchor, moved = std::abs(now - off[c.face.end]);
     CHECK(moved == approx(2e-3).epsilon(1e-9));
   }
 }

@@ -1,3 +1,4 @@
+#include "talus/base/index.h"
 #include "talus/corners/find.h"
 
 #include <doctest/doctest.h>
@@ -50,18 +51,15 @@ std::vector<ContactPoint> touch(const std::vector<Polygon>& polygons) {
   return touch(s, start_state(s));
 }
 
-Vec2 place_of(const Scene& s, const ContactPoint& c) {
-  return s.blocks.centroid[static_cast<size_t>(c.key.block_a)] + c.arm_a;
-}
+Vec2 place_of(const Scene& s, const ContactPoint& c) { return s.blocks.centroid[c.key.block_a] + c.arm_a; }
 
 // Pairs whose bounding boxes, as they lie now, are closer than the margin.
 std::vector<std::pair<int, int>> close_now(const BlockSet& blocks, const State& state, double margin) {
   std::vector<Box> boxes;
   for (int i = 0; i < blocks.count; ++i) {
-    const auto k = static_cast<size_t>(i);
     std::vector<Vec2> corners;
     for (int v = 0; v < blocks.vertex_count(i); ++v)
-      corners.push_back(blocks.centroid[k] + offset_now(state, k, blocks.corner({i, v})));
+      corners.push_back(blocks.centroid[i] + offset_now(state, i, blocks.corner({i, v})));
     boxes.push_back(bounding_box(corners));
   }
   return close_pairs(boxes, margin);
@@ -151,18 +149,18 @@ TEST_CASE("corners that come over an edge within the step take nothing of the fa
   std::vector<ContactPoint> points;
   touch_blocks(s.blocks, state, 0, 1, kMargin, points, 1e-3);
   const auto at = [&](const ContactKey& key) {
-    for (size_t i = 0; i < points.size(); ++i)
-      if (points[i].key == key) return static_cast<int>(i);
+    for (int i = 0; i < count_of(points); ++i)
+      if (points[i].key == key) return i;
     return -1;
   };
   const int ends[] = {at({0, 2, 1, 0}), at({1, 0, 0, 2})}, coming[] = {at({0, 3, 1, 0}), at({1, 1, 0, 2})};
   REQUIRE(std::min({ends[0], ends[1], coming[0], coming[1]}) >= 0);
   for (const int k : {0, 1}) {
-    const ContactPoint& end = points[static_cast<size_t>(ends[k])];
+    const ContactPoint& end = points[ends[k]];
     CHECK(end.partner == ends[1 - k]);
     CHECK(end.length == approx(0.5 * 0.9995).epsilon(1e-9));
-    CHECK(points[static_cast<size_t>(coming[k])].partner == -1);
-    CHECK(points[static_cast<size_t>(coming[k])].length == 0);
+    CHECK(points[coming[k]].partner == -1);
+    CHECK(points[coming[k]].length == 0);
   }
 }
 
@@ -385,13 +383,13 @@ TEST_CASE(
   for (int a = 0; a < s.blocks.count; ++a) {
     for (int b = a + 1; b < s.blocks.count; ++b) {
       const auto points = touch(s, state, a, b);
-      for (size_t i = 0; i < points.size(); ++i) {
+      for (int i = 0; i < count_of(points); ++i) {
         const ContactPoint& p = points[i];
         beside += p.partner < 0 && p.length > 0;
         if (p.partner < 0) continue;
         ++faces;
-        const ContactPoint& q = points[static_cast<size_t>(p.partner)];
-        CHECK(q.partner == static_cast<int>(i));
+        const ContactPoint& q = points[p.partner];
+        CHECK(q.partner == i);
         CHECK(q.length == p.length);
         CHECK(q.face_edge_a >= 0);
       }

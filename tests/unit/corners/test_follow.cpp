@@ -1,5 +1,6 @@
 // Pairs kept from step to step: contacts that are followed against contacts that are sought anew.
 
+#include "talus/base/index.h"
 #include "talus/corners/follow.h"
 
 #include <doctest/doctest.h>
@@ -108,9 +109,8 @@ std::vector<ContactKey> near(const Scene& scene, const State& state, const std::
 
 std::vector<Vec2> corners_now(const Scene& scene, const State& state, int i) {
   std::vector<Vec2> corners;
-  const auto k = static_cast<size_t>(i);
   for (int v = 0; v < scene.blocks.vertex_count(i); ++v)
-    corners.push_back(scene.blocks.centroid[k] + offset_now(state, k, scene.blocks.corner({i, v})));
+    corners.push_back(scene.blocks.centroid[i] + offset_now(state, i, scene.blocks.corner({i, v})));
   return corners;
 }
 
@@ -142,13 +142,13 @@ void check_order(const State& state) {
     CHECK(p.a < p.b);
     if (i > 0) CHECK(std::pair(state.pairs[i - 1].a, state.pairs[i - 1].b) < std::pair(p.a, p.b));
     for (int k = 0; k < p.count; ++k) {
-      const ContactKey& key = state.contacts[static_cast<size_t>(p.begin + k)].key;
+      const ContactKey& key = state.contacts[p.begin + k].key;
       CHECK(std::min(key.block_a, key.block_b) == p.a);
       CHECK(std::max(key.block_a, key.block_b) == p.b);
     }
     next += p.count;
   }
-  CHECK(next == static_cast<int>(state.contacts.size()));
+  CHECK(next == count_of(state.contacts));
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ TEST_CASE("random small motions: the contacts that are followed are those that w
         REQUIRE(kept != nullptr);
         const ContactPair* old = pair_of(before, p.a, p.b);
         const auto arm = [](const State& of, const ContactPair* one) {
-          return of.followed[static_cast<size_t>(one - of.pairs.data())].arm;
+          return of.followed[one - of.pairs.data()].arm;
         };
         const bool sought = !old || norm(arm(before, old) - arm(state, kept)) != 0;
         const auto now = contacts_of(state, p.a, p.b);
@@ -207,7 +207,7 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   const Scene scene = small_wall(5, 4);
   State state = start_state(scene);
   const int all = update(scene, state);
-  CHECK(all == static_cast<int>(state.pairs.size()));
+  CHECK(all == count_of(state.pairs));
   const auto first = keys_of(state.contacts);
   CHECK(update(scene, state) == 0);
   CHECK_FALSE(renew_pairs(scene.blocks, scene.bonds, scene.layout, joint_laws(scene.model.joints),
@@ -217,7 +217,7 @@ TEST_CASE("nothing is sought where nothing moves, or all moves together") {
   CHECK(keys_of(state.contacts) == first);
   // one brick of the top course moves: the pairs it belongs to, no others
   const int moved = scene.blocks.count - 2;
-  state.displacement[static_cast<size_t>(moved)] += Vec2{0, 2e-3};
+  state.displacement[moved] += Vec2{0, 2e-3};
   int its_own = 0;
   for (const ContactPair& p : state.pairs) its_own += p.a == moved || p.b == moved;
   CHECK(update(scene, state) == its_own);
@@ -252,8 +252,7 @@ TEST_CASE("how far a pair looks ahead is a matter of its two blocks") {
   int others = 0;
   for (const ContactPair& p : state.pairs) {
     const bool its_own = static_cast<size_t>(p.a) == bullet || static_cast<size_t>(p.b) == bullet;
-    const double rest = 0.02 * std::min(scene.blocks.size[static_cast<size_t>(p.a)],
-                                        scene.blocks.size[static_cast<size_t>(p.b)]);
+    const double rest = 0.02 * std::min(scene.blocks.size[p.a], scene.blocks.size[p.b]);
     CHECK((its_own ? p.margin > 10 * rest : p.margin == rest));
     others += !its_own;
   }

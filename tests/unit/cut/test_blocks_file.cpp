@@ -110,8 +110,7 @@ TEST_CASE("blocks file: read back it gives the same blocks to the last bit") {
       CHECK(a[i].edge_joint == b[i].edge_joint);
       REQUIRE(a[i].edge_origin.size() == b[i].edge_origin.size());
       for (size_t k = 0; k < a[i].edge_origin.size(); ++k)
-        CHECK(cut.origins[static_cast<size_t>(a[i].edge_origin[k])].name ==
-              back.origins[static_cast<size_t>(b[i].edge_origin[k])].name);
+        CHECK(cut.origins[a[i].edge_origin[k]].name == back.origins[b[i].edge_origin[k]].name);
     }
     // edges are shared by the same pairs
     CellCut::Uses uses;

@@ -1,3 +1,4 @@
+#include "talus/base/index.h"
 #include "talus/cut/cut.h"
 
 #include <doctest/doctest.h>
@@ -47,9 +48,8 @@ int edges_of_kind(const Cut& cut, OriginKind kind) {
   std::set<int> edges;
   for (const CutBlock& b : cut.whole)
     for (const int e : b.edge)
-      if (cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].kind == kind)
-        edges.insert(e);
-  return static_cast<int>(edges.size());
+      if (cut.origins[cut.edge_origin[e]].kind == kind) edges.insert(e);
+  return count_of(edges);
 }
 
 Model two_sets(double angle_a, double offset_a, double angle_b, double offset_b) {
@@ -78,8 +78,7 @@ TEST_CASE("a region without joints is one block, whichever way it runs and where
         const Polygon p = cut.polygon(b);
         for (size_t e = 0; e < 4; ++e)
           if (distance_to_segment(middle, p[e], p[(e + 1) % 4]) < 1e-6)
-            CHECK(cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(b.edge[e])])].name ==
-                  fmt::format("rock-{}", k + 1));
+            CHECK(cut.origins[cut.edge_origin[b.edge[e]]].name == fmt::format("rock-{}", k + 1));
       }
     }
   }
@@ -99,7 +98,7 @@ TEST_CASE("of coincident traces the more important names the edge: opening, side
       const Polygon polygon = cut.polygon(b);
       for (size_t k = 0; k < polygon.size(); ++k)
         if (distance_to_segment(p, polygon[k], polygon[(k + 1) % polygon.size()]) < 1e-6)
-          return cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(b.edge[k])])].name;
+          return cut.origins[cut.edge_origin[b.edge[k]]].name;
     }
     return std::string("none");
   };
@@ -146,9 +145,7 @@ TEST_CASE("a dead end that a cut meets stays dead") {
   CHECK(cut.whole.size() == 3);
   CHECK(cut.dead_end_length == approx(6));
   for (const CutBlock& b : cut.whole)
-    for (const int e : b.edge)
-      CHECK(cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].kind !=
-            OriginKind::kFault);
+    for (const int e : b.edge) CHECK(cut.origins[cut.edge_origin[e]].kind != OriginKind::kFault);
 }
 
 TEST_CASE("two circles, side by side and one above the other") {
@@ -168,9 +165,8 @@ TEST_CASE("two circles, side by side and one above the other") {
     CHECK(circles == 2);
     double cuts = 0;
     for (size_t e = 0; e < cut.edge.size(); ++e)
-      if (cut.origins[static_cast<size_t>(cut.edge_origin[e])].kind == OriginKind::kConstruction)
-        cuts += norm(cut.point[static_cast<size_t>(cut.edge[e][1])] -
-                     cut.point[static_cast<size_t>(cut.edge[e][0])]);
+      if (cut.origins[cut.edge_origin[e]].kind == OriginKind::kConstruction)
+        cuts += norm(cut.point[cut.edge[e][1]] - cut.point[cut.edge[e][0]]);
     CHECK(cuts == approx(4 * (5 - radius * std::cos(kPi / 16))).epsilon(1e-5));
   }
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "support/random_network.h"
+#include "talus/base/index.h"
 #include "talus/cut/layout.h"
 #include "talus/cut/slivers.h"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr double kMoved = 1.5, kDoubt = 2;
 
 bool is_removed(const Model& model, const CutBlock& b) {
-  return b.opening >= 0 && !model.openings[static_cast<size_t>(b.opening)].kept;
+  return b.opening >= 0 && !model.openings[b.opening].kept;
 }
 
 std::vector<CutBlock> not_removed(const Model& model, const std::vector<CutBlock>& blocks) {
@@ -38,8 +39,8 @@ double distance_to(const Polyline& line, Vec2 p) {
 }
 
 Polyline edge_of(const Cut& cut, int e) {
-  const auto& [a, b] = cut.edge[static_cast<size_t>(e)];
-  return {cut.point[static_cast<size_t>(a)], cut.point[static_cast<size_t>(b)]};
+  const auto& [a, b] = cut.edge[e];
+  return {cut.point[a], cut.point[b]};
 }
 
 // Area of the outlines, and what of it may be lost where their corners go to the grid and lines bend: a strip
@@ -63,8 +64,8 @@ std::string point_defect(const Model& model, const Cut& cut, Random& random) {
   const Box box = RegionMap(model).box();
   const auto last_of = [](const auto& list, Vec2 p) {
     int found = -1;
-    for (size_t i = 0; i < list.size(); ++i)
-      if (contains(list[i].polygon, p)) found = static_cast<int>(i);
+    for (int i = 0; i < count_of(list); ++i)
+      if (contains(list[i].polygon, p)) found = i;
     return found;
   };
   for (int i = 0; i < 40; ++i) {
@@ -84,7 +85,7 @@ std::string point_defect(const Model& model, const Cut& cut, Random& random) {
     const std::string at = fmt::format(" at ({:.9g}, {:.9g})", p.x, p.y);
     if (holders != (region >= 0 ? 1 : 0)) return fmt::format("{} blocks", holders) + at;
     if (holder < 0) continue;
-    const CutBlock& b = cut.whole[static_cast<size_t>(holder)];
+    const CutBlock& b = cut.whole[holder];
     if (b.region != region) return "wrong region" + at;
     if (b.opening != last_of(model.openings, p)) return "wrong opening" + at;
   }
@@ -99,13 +100,13 @@ std::string trace_defect(const Model& model, const Cut& cut) {
   std::set<int> in_use;
   for (const CutBlock& b : cut.whole) in_use.insert(b.edge.begin(), b.edge.end());
   for (const int e : in_use) {
-    const int origin = cut.edge_origin[static_cast<size_t>(e)];
+    const int origin = cut.edge_origin[e];
     const Polyline ends = edge_of(cut, e);
     const bool along = std::any_of(traces.traces.begin(), traces.traces.end(), [&](const Trace& t) {
       return t.origin == origin && distance_to(t.line, ends[0]) <= near &&
              distance_to(t.line, ends[1]) <= near;
     });
-    const Origin& o = cut.origins[static_cast<size_t>(origin)];
+    const Origin& o = cut.origins[origin];
     if (!along && o.kind != OriginKind::kConstruction) return "an edge lies off its origin " + o.name;
   }
   for (const Trace& t : traces.traces) {
@@ -114,7 +115,7 @@ std::string trace_defect(const Model& model, const Cut& cut) {
       bool found = false;
       for (const int e : in_use) found = found || distance_to(edge_of(cut, e), p) <= near;
       for (const Polyline& line : cut.dead_ends) found = found || distance_to(line, p) <= near;
-      if (!found) return "part of a trace is lost: " + cut.origins[static_cast<size_t>(t.origin)].name;
+      if (!found) return "part of a trace is lost: " + cut.origins[t.origin].name;
     }
   }
   return "";
@@ -140,28 +141,27 @@ std::vector<bool> free_points(const Cut& cut) {
     for (const int e : b.edge) beside[e].push_back(&b);
   std::vector<bool> out(cut.point.size(), false);
   for (const auto& [e, blocks] : beside) {
-    const OriginKind kind = cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].kind;
+    const OriginKind kind = cut.origins[cut.edge_origin[e]].kind;
     if (blocks.size() == 1 || kind == OriginKind::kOpening || blocks[0]->opening != blocks[1]->opening)
-      for (const int p : cut.edge[static_cast<size_t>(e)]) out[static_cast<size_t>(p)] = true;
+      for (const int p : cut.edge[e]) out[p] = true;
   }
   return out;
 }
 
 bool is_of_set(const Cut& cut, int e) {
-  return cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].kind ==
-         OriginKind::kJointSet;
+  return cut.origins[cut.edge_origin[e]].kind == OriginKind::kJointSet;
 }
 
 // Merged is along joint sets away from free faces only; and no block inside is left below the limits, or
 // thinner than 1e-5 of its length, that a neighbour beyond such edges could take.
 std::string sliver_defect(const Model& model, const Cut& cut) {
   const std::vector<bool> is_free = free_points(cut);
-  const auto touches = [&is_free](int p) { return is_free[static_cast<size_t>(p)]; };
+  const auto touches = [&is_free](int p) { return is_free[p]; };
   const auto is_inside = [&](const CutBlock& b) {
     return std::none_of(b.point.begin(), b.point.end(), touches);
   };
   for (const int e : cut.slivers.opened) {
-    const auto& [p, q] = cut.edge[static_cast<size_t>(e)];
+    const auto& [p, q] = cut.edge[e];
     if (!is_of_set(cut, e)) return "merged across something else than a joint set";
     if (touches(p) || touches(q)) return "merged across an edge that ends at a free face";
   }
@@ -169,7 +169,7 @@ std::string sliver_defect(const Model& model, const Cut& cut) {
   for (const CutBlock& b : cut.blocks) {
     const PolygonMoments m = polygon_moments(cut.polygon(b));
     const double width = polygon_width(m), length = m.area / width;
-    const SliverLimits& limits = cut.slivers.limits[static_cast<size_t>(b.region)];
+    const SliverLimits& limits = cut.slivers.limits[b.region];
     if (m.area >= limits.area && width >= limits.width && width >= std::max(1e-5 * length, 4 * cut.grid))
       continue;
     ++kept;
@@ -263,8 +263,8 @@ std::string partition(const Model& model, const Cut& cut, Random& random, Seen& 
   std::string defect = partition_defect(cut);
   if (defect.empty()) defect = outline_area_defect(model, cut);
   if (defect.empty()) defect = point_defect(model, cut, random);
-  for (size_t i = 0; i < cut.whole.size(); ++i)
-    if (cut.whole[i].id != static_cast<int>(i)) defect = "blocks are not numbered in their order";
+  for (int i = 0; i < count_of(cut.whole); ++i)
+    if (cut.whole[i].id != i) defect = "blocks are not numbered in their order";
   return defect;
 }
 
@@ -299,8 +299,7 @@ std::string sound_shapes(const Model& model, const Cut& cut, Random& random, See
   for (const CutBlock& b : cut.blocks) boxes.push_back(bounding_box(cut.polygon(b)));
   for (const auto& [i, j] : close_pairs(boxes, 0)) {
     if (random.uniform() > 0.05) continue;
-    const Polygon a = cut.polygon(cut.blocks[static_cast<size_t>(i)]),
-                  b = cut.polygon(cut.blocks[static_cast<size_t>(j)]);
+    const Polygon a = cut.polygon(cut.blocks[i]), b = cut.polygon(cut.blocks[j]);
     ++seen.pairs;
     if (polygon_overlap(a, b).area > 0) defect = "blocks overlap";
   }

@@ -60,7 +60,7 @@ TEST_CASE("cut along surveyed traces: lines with their bends, dead ends taken ba
   CHECK(cut.dead_end_length == approx(3).epsilon(1e-6));
   double below = 0;
   for (const CutBlock& b : cut.blocks)
-    if (cut.point[static_cast<size_t>(b.point[0])].y == 0) below += signed_area(cut.polygon(b));
+    if (cut.point[b.point[0]].y == 0) below += signed_area(cut.polygon(b));
   CHECK(below == approx(12 + 6 * 2 + 0.5 * 6 * 6.0 / 7 - 0.0 * 8).epsilon(1e-6));
   const auto weak = std::find_if(cut.origins.begin(), cut.origins.end(),
                                  [](const Origin& o) { return o.name == "survey"; });

@@ -290,7 +290,7 @@ TEST_CASE("what one set draws depends on its name and the seed, not on the other
     const TraceSet traces = make_traces(model, RegionMap(model), findings);
     std::vector<std::vector<Vec2>> out;
     for (const Trace& t : traces.traces)
-      if (traces.origins[static_cast<size_t>(t.origin)].name == name) out.push_back(t.line);
+      if (traces.origins[t.origin].name == name) out.push_back(t.line);
     return out;
   };
   model.joint_sets = {a};

@@ -7,6 +7,7 @@
 
 #include "support/cut_case.h"
 #include "support/layout_case.h"
+#include "talus/base/index.h"
 #include "talus/cut/check_places.h"
 #include "talus/cut/selection.h"
 #include "talus/geometry/shapes.h"
@@ -26,7 +27,7 @@ int block_holding(const Layout& layout, Vec2 p) {
 
 // The edge of the block around `inside` that passes through `on`.
 size_t edge_through(const Layout& layout, Vec2 inside, Vec2 on) {
-  const Polygon& p = layout.blocks[static_cast<size_t>(block_holding(layout, inside))].polygon;
+  const Polygon& p = layout.blocks[block_holding(layout, inside)].polygon;
   for (size_t k = 0; k < p.size(); ++k)
     if (distance_to_segment(on, p[k], p[(k + 1) % p.size()]) < 1e-6) return k;
   FAIL("no such edge");
@@ -34,12 +35,11 @@ size_t edge_through(const Layout& layout, Vec2 inside, Vec2 on) {
 }
 int joint_at(const Layout& layout, Vec2 inside, Vec2 on) {
   const size_t k = edge_through(layout, inside, on);
-  return layout.blocks[static_cast<size_t>(block_holding(layout, inside))].edge_joint[k];
+  return layout.blocks[block_holding(layout, inside)].edge_joint[k];
 }
 std::string origin_at(const Layout& layout, Vec2 inside, Vec2 on) {
   const size_t k = edge_through(layout, inside, on);
-  return layout.origins[static_cast<size_t>(
-      layout.blocks[static_cast<size_t>(block_holding(layout, inside))].edge_origin[k])];
+  return layout.origins[layout.blocks[block_holding(layout, inside)].edge_origin[k]];
 }
 
 SupportInput along(const std::string& name) {
@@ -54,7 +54,7 @@ SupportInput along(const std::string& name) {
 std::set<std::pair<double, double>> places(const Layout& layout, const SupportInput& support) {
   std::set<std::pair<double, double>> out;
   for (const SelectedCorner& c : selected_corners(layout, support)) {
-    CHECK(layout.blocks[static_cast<size_t>(c.block)].polygon[static_cast<size_t>(c.vertex)] == c.point);
+    CHECK(layout.blocks[c.block].polygon[c.vertex] == c.point);
     out.insert({c.point.x, c.point.y});
   }
   return out;
@@ -66,12 +66,12 @@ Cut one_block(const std::vector<Cell>& corners, const std::vector<int>& origins)
   cut.grid = 0x1p-20;
   cut.regions.push_back({"rock", {}, {}, 0, -1, BlockKind::kDeformable});
   CutBlock b;
-  const int n = static_cast<int>(corners.size());
+  const int n = count_of(corners);
   for (int i = 0; i < n; ++i) {
-    const Cell c = corners[static_cast<size_t>(i)];
+    const Cell c = corners[i];
     cut.point.push_back({static_cast<double>(c.x) * cut.grid, static_cast<double>(c.y) * cut.grid});
     cut.edge.push_back({std::min(i, (i + 1) % n), std::max(i, (i + 1) % n)});
-    cut.edge_origin.push_back(origins[static_cast<size_t>(i)]);
+    cut.edge_origin.push_back(origins[i]);
     b.point.push_back(i);
     b.edge.push_back(i);
   }
@@ -134,7 +134,7 @@ TEST_CASE("layout of a cut: groups are regions and openings, names are theirs an
   CHECK(layout.groups == std::vector<std::string>{"slab", "rock", "ore", "opening0"});
   CHECK(layout.blocks_called("ore") == std::vector<int>{block_holding(layout, {1, 6})});
   CHECK(layout.blocks_called("opening0") == std::vector<int>{block_holding(layout, {7, 2})});
-  const BlockShape& rock = layout.blocks[static_cast<size_t>(block_holding(layout, {1, 1}))];
+  const BlockShape& rock = layout.blocks[block_holding(layout, {1, 1})];
   CHECK(layout.blocks_called(rock.name).size() == 1);
   CHECK(rock.name == fmt::format("rock[{}]", rock.id - 1));  // ids go on after the slab
 }
@@ -151,7 +151,7 @@ TEST_CASE("layout of a cut: a support along a side holds exactly the corners on 
   CHECK(selected_corners(layout, along("base")).size() == 10);  // two of each block
   CHECK(places(layout, along("set")).size() == 8);
   SupportInput one = along("base");
-  one.block = layout.blocks[static_cast<size_t>(block_holding(layout, {0.5, 2}))].name;
+  one.block = layout.blocks[block_holding(layout, {0.5, 2})].name;
   CHECK(places(layout, one) == Places{{0, 0}, {1, 0}});
   // a side of two edges, and one that nothing is left of
   model.regions[0].sides = {"base", "walls", "top", "walls"};

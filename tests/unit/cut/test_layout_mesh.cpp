@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/layout_case.h"
+#include "talus/base/index.h"
 #include "talus/cut/check_places.h"
 #include "talus/cut/selection.h"
 #include "talus/model/read_model.h"
@@ -106,22 +107,20 @@ TEST_CASE("mesh: elements are blocks, surfaces give materials and groups, curves
   REQUIRE(c.layout.blocks.size() == 4);
   CHECK(c.layout.blocks[0].name == "m[0]");
   CHECK(c.layout.blocks[0].polygon[1] == Vec2{1e-3, 0});  // in mm
-  CHECK(c.model.materials[static_cast<size_t>(c.layout.blocks[1].material)].name == "rock");
-  CHECK(c.model.materials[static_cast<size_t>(c.layout.blocks[3].material)].name ==
-        "soil");  // "clay" is no material
+  CHECK(c.model.materials[c.layout.blocks[1].material].name == "rock");
+  CHECK(c.model.materials[c.layout.blocks[3].material].name == "soil");  // "clay" is no material
   CHECK(c.layout.blocks_called("m").size() == 4);
   CHECK(c.layout.blocks_called("m-rock").size() == 3);
   CHECK(c.layout.blocks_called("m-clay").size() == 1);
   // between the second triangle and the clay lies the curve "weak"; all else is glued
   const auto joint = [&c](int a, int b) {
-    for (size_t ea = 0; ea < c.layout.blocks[static_cast<size_t>(a)].polygon.size(); ++ea) {
-      const BlockShape& x = c.layout.blocks[static_cast<size_t>(a)];
-      for (size_t eb = 0; eb < c.layout.blocks[static_cast<size_t>(b)].polygon.size(); ++eb) {
-        const BlockShape& y = c.layout.blocks[static_cast<size_t>(b)];
+    for (int ea = 0; ea < count_of(c.layout.blocks[a].polygon); ++ea) {
+      const BlockShape& x = c.layout.blocks[a];
+      for (int eb = 0; eb < count_of(c.layout.blocks[b].polygon); ++eb) {
+        const BlockShape& y = c.layout.blocks[b];
         if (x.polygon[ea] == y.polygon[(eb + 1) % y.polygon.size()] &&
             x.polygon[(ea + 1) % x.polygon.size()] == y.polygon[eb])
-          return c.model.joints[static_cast<size_t>(
-              c.layout.joint_at({a, static_cast<int>(ea)}, {b, static_cast<int>(eb)}))];
+          return c.model.joints[c.layout.joint_at({a, ea}, {b, eb})];
       }
     }
     return JointProperty{};
@@ -138,7 +137,7 @@ TEST_CASE("mesh: a joint for the whole, and contact pairs of its groups") {
                "[[contact_pair]]\nbetween = [\"m-rock\", \"m-clay\"]\njoint = \"glue\"\n");
   INFO(c.findings.render());
   CHECK(c.findings.error_count() == 0);
-  const auto name = [&c](int joint) { return c.model.joints[static_cast<size_t>(joint)].name; };
+  const auto name = [&c](int joint) { return c.model.joints[joint].name; };
   CHECK(name(c.layout.joint_of_pair(c.layout.blocks[1].group, c.layout.blocks[3].group)) == "glue");
   CHECK(name(c.layout.blocks[0].edge_joint[1]) == "weak");
 }
@@ -149,7 +148,7 @@ TEST_CASE("mesh: its outside meets other blocks by the joint of [contact], its i
                "polygon = [[0, 1e-3], [1e-3, 1e-3], [1e-3, 2e-3], [0, 2e-3]]\n");
   INFO(c.findings.render());
   CHECK(c.findings.error_count() == 0);
-  const auto name = [&c](int joint) { return c.model.joints[static_cast<size_t>(joint)].name; };
+  const auto name = [&c](int joint) { return c.model.joints[joint].name; };
   REQUIRE(c.layout.blocks[0].name == "b");
   CHECK(name(c.layout.joint_at({0, 0}, {1, 2})) == "weak");  // floor of b on the top of the square
   CHECK(name(c.layout.blocks[1].edge_joint[1]) == "(glued)");

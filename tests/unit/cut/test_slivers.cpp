@@ -44,7 +44,7 @@ Model lattice() {
 Model inner_lattice() {
   Model model = lattice();
   for (const int i : {1, 2}) {
-    JointSetInput& set = model.joint_sets[static_cast<size_t>(i)];
+    JointSetInput& set = model.joint_sets[i];
     set.trace_length.mean = 10, set.gap.mean = 100, set.start.mean = 5;
   }
   return model;
@@ -58,7 +58,7 @@ Model merging(Model model, const std::vector<std::string>& along = {}) {
 
 double area_at(const Cut& cut, Vec2 p) {
   const int i = block_at(cut, cut.blocks, p);
-  return i < 0 ? 0 : signed_area(cut.polygon(cut.blocks[static_cast<size_t>(i)]));
+  return i < 0 ? 0 : signed_area(cut.polygon(cut.blocks[i]));
 }
 
 void add_support(Model& model, Vec2 from, Vec2 to) {
@@ -131,8 +131,7 @@ TEST_CASE("slivers: merging stays away from the outline and from lines that reac
   CHECK(std::abs(area_at(cut, {9.5, 2}) - 5) < kNear);
   REQUIRE(cut.slivers.opened.size() == 2);
   for (const int e : cut.slivers.opened)
-    for (const int p : cut.edge[static_cast<size_t>(e)])
-      CHECK(std::abs(cut.point[static_cast<size_t>(p)].x - 9) < kNear);
+    for (const int p : cut.edge[e]) CHECK(std::abs(cut.point[p].x - 9) < kNear);
   const Sliver& first = cut.slivers.rows.at(0);
   CHECK((first.action == SliverAction::kMerged && first.into >= 0));
   CHECK(std::abs(first.area - 5) < kNear);
@@ -248,9 +247,7 @@ TEST_CASE("needles: hairs between two joints that the grid hardly resolves are o
   cut = cut_of(model);
   REQUIRE(cut.blocks.size() == 2);
   for (const CutBlock& b : cut.blocks)
-    for (const int e : b.edge)
-      CHECK(cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].kind !=
-            OriginKind::kJointSet);
+    for (const int e : b.edge) CHECK(cut.origins[cut.edge_origin[e]].kind != OriginKind::kJointSet);
 }
 
 TEST_CASE("needles: what lies between the facets of two circles goes back to its region") {

@@ -131,8 +131,7 @@ TEST_CASE("an arch is a ring of equal voussoirs with named sides") {
     CHECK(std::abs(signed_area(cut.polygon(b)) - 0.5 * (3.5 * 3.5 - 9) * std::sin(degrees(20))) < kNear);
   std::map<std::string, int> edges;
   for (const CutBlock& b : cut.blocks)
-    for (const int e : b.edge)
-      ++edges[cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(e)])].name];
+    for (const int e : b.edge) ++edges[cut.origins[cut.edge_origin[e]].name];
   CHECK(edges["arch-intrados"] == 7);
   CHECK(edges["arch-extrados"] == 7);
   CHECK(edges["arch-start"] == 1);
@@ -157,8 +156,7 @@ TEST_CASE("tessellation: as many Voronoi cells as squares of their size, convex,
     }
     for (const BlockShape& s : shapes_of(model, cut, cut.blocks))
       for (size_t k = 0; k < s.polygon.size(); ++k)
-        if (cut.origins[static_cast<size_t>(s.edge_origin[k])].name == "cells")
-          CHECK(s.edge_joint[k] == model.bonded_joint);
+        if (cut.origins[s.edge_origin[k]].name == "cells") CHECK(s.edge_joint[k] == model.bonded_joint);
   }
 }
 
@@ -182,7 +180,7 @@ TEST_CASE("tessellation: all blocks of a rectangle in triangles are triangles, e
       const Polygon p = cut.polygon(b);
       for (size_t k = 0; k < 3; ++k) {
         sum += norm(p[(k + 1) % 3] - p[k]), ++edges;
-        const Origin& o = cut.origins[static_cast<size_t>(cut.edge_origin[static_cast<size_t>(b.edge[k])])];
+        const Origin& o = cut.origins[cut.edge_origin[b.edge[k]]];
         inner += o.name == "cells";
         if (o.name == "cells") CHECK(o.joint == model.bonded_joint);
       }

@@ -1,3 +1,4 @@
+#include "talus/base/index.h"
 #include "talus/geometry/arrangement.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +20,7 @@ const Polyline kSquare{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}};
 
 Polygon corners(const Arrangement& a, size_t face) {
   Polygon out;
-  for (const int p : a.face[face].point) out.push_back(a.point[static_cast<size_t>(p)]);
+  for (const int p : a.face[face].point) out.push_back(a.point[p]);
   return out;
 }
 
@@ -28,16 +29,16 @@ void check_topology(const Arrangement& a) {
   REQUIRE(a.edge_face.size() == a.edge.size());
   REQUIRE(a.edge_source.size() == a.edge.size());
   std::vector<int> uses(a.edge.size(), 0);
-  for (size_t f = 0; f < a.face.size(); ++f) {
+  for (int f = 0; f < count_of(a.face); ++f) {
     const auto& face = a.face[f];
     REQUIRE(face.edge.size() == face.point.size());
     CHECK(signed_area(corners(a, f)) > 0);
     for (size_t k = 0; k < face.edge.size(); ++k) {
-      const auto e = static_cast<size_t>(face.edge[k]);
+      const int e = face.edge[k];
       const int p = face.point[k], q = face.point[(k + 1) % face.point.size()];
       CHECK(a.edge[e][0] == std::min(p, q));
       CHECK(a.edge[e][1] == std::max(p, q));
-      CHECK(a.edge_face[e][p < q ? 0 : 1] == static_cast<int>(f));
+      CHECK(a.edge_face[e][p < q ? 0 : 1] == f);
       ++uses[e];
     }
   }
@@ -103,8 +104,7 @@ TEST_CASE("arrange: of coincident lines the first in the list is the source") {
   check_topology(a);
   const auto source_at = [](const Arrangement& net, Vec2 middle) {
     for (size_t e = 0; e < net.edge.size(); ++e) {
-      const Vec2 p = net.point[static_cast<size_t>(net.edge[e][0])],
-                 q = net.point[static_cast<size_t>(net.edge[e][1])];
+      const Vec2 p = net.point[net.edge[e][0]], q = net.point[net.edge[e][1]];
       if (distance_to_segment(middle, p, q) == 0) return net.edge_source[e];
     }
     return -1;

@@ -1,3 +1,4 @@
+#include "talus/base/index.h"
 #include "talus/geometry/open_holes.h"
 
 #include <doctest/doctest.h>
@@ -63,7 +64,7 @@ std::vector<Polygon> faces(const std::vector<Polyline>& rings, const std::vector
   std::vector<Polygon> out;
   for (const auto& f : net.face) {
     out.emplace_back();
-    for (const int p : f.point) out.back().push_back(net.point[static_cast<size_t>(p)]);
+    for (const int p : f.point) out.back().push_back(net.point[p]);
   }
   return out;
 }
@@ -166,7 +167,7 @@ TEST_CASE("cuts that open holes of any face are short and leave simple polygons 
     for (size_t k = 1; k < rings.size(); ++k) smallest = std::min(smallest, std::abs(signed_area(rings[k])));
     const auto cuts = opening_cuts(rings, 0.25 * smallest, 1e-9);
     CHECK(cuts.size() == 2 * (rings.size() - 1));
-    islands += static_cast<int>(rings.size()) - 1;
+    islands += count_of(rings) - 1;
     const auto pieces = faces(rings, cuts);
     CHECK(pieces.size() == 2 * (rings.size() - 1) + 1);  // Euler: islands, and one piece more for every cut
     for (const Polygon& piece : pieces) {

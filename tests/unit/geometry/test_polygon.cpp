@@ -1,3 +1,4 @@
+#include "talus/base/index.h"
 #include "talus/geometry/polygon.h"
 
 #include <doctest/doctest.h>
@@ -49,12 +50,12 @@ void check_moments(const Polygon& polygon, const PolygonMoments& exact, double t
 
 std::vector<std::pair<int, int>> all_close_pairs(const std::vector<Box>& boxes, double margin) {
   std::vector<std::pair<int, int>> pairs;
-  for (size_t i = 0; i < boxes.size(); ++i) {
+  for (int i = 0; i < count_of(boxes); ++i) {
     for (size_t j = i + 1; j < boxes.size(); ++j) {
       const Box &a = boxes[i], &b = boxes[j];
       if (std::max(a.min.x - b.max.x, b.min.x - a.max.x) <= margin &&
           std::max(a.min.y - b.max.y, b.min.y - a.max.y) <= margin)
-        pairs.emplace_back(static_cast<int>(i), static_cast<int>(j));
+        pairs.emplace_back(i, static_cast<int>(j));
     }
   }
   return pairs;

@@ -1,4 +1,5 @@
 #include "support/relative.h"
+#include "talus/base/index.h"
 #include "talus/geometry/shapes.h"
 
 #include <doctest/doctest.h>
@@ -26,7 +27,7 @@ TEST_CASE("a circle of any number of segments has the area of the circle, regula
     for (const Vec2 center : {Vec2{0, 0}, Vec2{-3, 7}}) {
       CAPTURE(n);
       const Polygon p = circle_polygon(center, 9.8, n);
-      REQUIRE(p.size() == static_cast<size_t>(n));
+      REQUIRE(count_of(p) == n);
       CHECK(polygon_defect(p) == "");
       const double area = kPi * 4.9 * 4.9;
       CHECK(std::abs(signed_area(p) - area) < kRound * area);  // > 0: counter-clockwise
@@ -55,7 +56,7 @@ TEST_CASE("a horseshoe has the area of the half circle on its walls") {
       CHECK(polygon_defect(p) == "");
       const double area = width * (height - r) + kPi * r * r / 2;
       CHECK(std::abs(signed_area(p) - area) < kRound * area);
-      REQUIRE(p.size() == static_cast<size_t>(n) + 3);
+      REQUIRE(count_of(p) == n + 3);
       CHECK(p[0] == Vec2{8, -4 - (height - r)});
       CHECK(p[1] == Vec2{12, -4 - (height - r)});
       CHECK(p[2] == Vec2{12, -4});

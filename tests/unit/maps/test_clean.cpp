@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/relative.h"
+#include "talus/base/index.h"
 #include "talus/base/random.h"
 #include "talus/maps/clean.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 std::vector<MapLine> lines_of(const std::vector<Polyline>& list) {
   std::vector<MapLine> out;
-  for (const Polyline& l : list) out.push_back({l, static_cast<int>(out.size()), 0, false});
+  for (const Polyline& l : list) out.push_back({l, count_of(out), 0, false});
   return out;
 }
 

@@ -202,7 +202,7 @@ TEST_CASE("maps in a model text: lines keep their numbers, wrong keys are told")
   CHECK(made.has_maps);
   CHECK(made.text.find("# [[map]]\n# name = \"rock\"\n") != std::string::npos);
   const auto line_of = [](const std::string& all, const std::string& part) {
-    return std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.find(part)), '\n');
+    return std::count(all.begin(), all.begin() + all.find(part), '\n');
   };
   CHECK(line_of(made.text, "[material.stone]") == line_of(text, "[material.stone]"));
   CHECK(made.text.find("[[region]]") != std::string::npos);

@@ -118,12 +118,10 @@ TEST_CASE("msh: formats 2.2 and 4.1 give the same mesh") {
     CHECK(m.elements[2].group == 1);
     CHECK(m.elements[2].corners == 4);
     REQUIRE(m.edges.size() == 1);
-    CHECK(m.node[static_cast<size_t>(m.edges[0].to)] == Vec2{2, 0});
+    CHECK(m.node[m.edges[0].to] == Vec2{2, 0});
     for (const MeshElement& e : m.elements) {  // the second triangle stood clockwise in the file
       double twice_area = 0;
-      const auto at = [&](int k) {
-        return m.node[static_cast<size_t>(e.node[static_cast<size_t>(k % e.corners)])];
-      };
+      const auto at = [&](int k) { return m.node[e.node[k % e.corners]]; };
       for (int k = 0; k < e.corners; ++k) twice_area += cross(at(k), at(k + 1));
       CHECK(twice_area == (e.corners == 3 ? 4 : 8));
     }

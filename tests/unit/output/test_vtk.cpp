@@ -128,10 +128,9 @@ TEST_CASE("a frame of blocks holds place, displacement, velocity and stress") {
 
   // block b spins about its centroid: each corner moves at right angles to its arm as it lies now
   const Vec2 middle = s.blocks.centroid[1] + Vec2{0, 1};
-  for (size_t v = 0; v < 3; ++v) {
+  for (int v = 0; v < 3; ++v) {
     const size_t i = 12 + 3 * v;
-    const Vec2 arm = Vec2{points[i], points[i + 1]} - middle,
-               first = s.blocks.corner({1, static_cast<int>(v)});
+    const Vec2 arm = Vec2{points[i], points[i + 1]} - middle, first = s.blocks.corner({1, v});
     // roundings of numbers of order 1
     CHECK(norm(arm) == relative(norm(first), 1e-14));
     CHECK(cross(first, arm) == relative(dot(first, first) * std::sin(1.0), 1e-13));

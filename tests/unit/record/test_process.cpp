@@ -94,7 +94,7 @@ TEST_CASE("filter: a harmonic comes out with the gain and in phase") {
   // in the middle, 25 s from where the harmonic begins at once: the slowest pole of order 4 decays as
   // exp(-2 pi f1 sin(pi / 8) t), f1 = 0.5 Hz, to 1e-13
   const double dt = 0.01, T = 50;
-  const auto n = static_cast<size_t>(T / dt) + 1;
+  const int n = (T / dt) + 1;
   for (const double f : {0.5, 1.0, 4.0, 10.0, 14.0}) {
     for (const Corner corner : {Corner::k3dB, Corner::k6dB}) {
       const Band band{0.5, 10, 4, corner};
@@ -138,7 +138,7 @@ TEST_CASE("process: a polynomial drift is found and taken off") {
   std::vector<double> a;
   for (int i = 0; i <= 1000; ++i) {
     double v = 0;
-    for (int k = 2; k <= 6; ++k) v += q[static_cast<size_t>(k) - 2] * k * (k - 1) * std::pow(dt * i, k - 2);
+    for (int k = 2; k <= 6; ++k) v += q[k - 2] * k * (k - 1) * std::pow(dt * i, k - 2);
     a.push_back(v);
   }
   const double scale = largest(a);

@@ -146,7 +146,7 @@ TEST_CASE("measures: the highest frequency that matters is where the shares say"
   CHECK(highest_frequency(m, 0.995) == approx(8));
   CHECK(highest_frequency(m) == approx(8));
   // a mean of v counts once, what swings for +f and -f: 1 and 0.02
-  for (int i = 0; i < 2000; ++i) m.velocity[static_cast<size_t>(i)] = 1 + 0.2 * std::cos(16 * kPi * dt * i);
+  for (int i = 0; i < 2000; ++i) m.velocity[i] = 1 + 0.2 * std::cos(16 * kPi * dt * i);
   CHECK(highest_frequency(m, 0.975) == 0);
   CHECK(highest_frequency(m, 0.985) == approx(8));
 }

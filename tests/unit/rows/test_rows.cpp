@@ -181,14 +181,14 @@ TEST_CASE("bounds_of follows the cone and never crosses") {
 
 TEST_CASE("row set: whose rows they are, also of families without any") {
   RowSet rows;
-  const auto fill = [&rows](size_t bonds, size_t contacts, size_t ties) {
+  const auto fill = [&rows](int bonds, int contacts, int ties) {
     rows.restart();
-    const auto add = [&rows](Family family, size_t count) {
+    const auto add = [&rows](Family family, int count) {
       const size_t first = rows.add_more(family, count);
-      for (size_t i = 0; i < count; ++i) rows.owner[first + i] = {family, static_cast<int>(i)};
+      for (int i = 0; i < count; ++i) rows.owner[first + i] = {family, i};
     };
     add(Family::kFace, bonds), add(Family::kContact, contacts), add(Family::kSupport, 0);
-    for (size_t i = 0; i < ties; ++i) rows.add({}, {}, {Family::kTie, static_cast<int>(i)});
+    for (int i = 0; i < ties; ++i) rows.add({}, {}, {Family::kTie, i});
     rows.finish();
   };
   const auto holds = [&rows](Family family, size_t begin, size_t end) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "support/run_case.h"
+#include "talus/base/index.h"
 #include "talus/record/measures.h"
 #include "talus/record/read_record.h"
 #include "talus/run/resolution.h"
@@ -112,8 +113,8 @@ TEST_CASE("highest frequency of a record as history is the one that talus record
   const record::Motion motion = record::integrate(record::acceleration_of(file), file.dt);
   const double told = record::highest_frequency(motion);
   const auto as_history = [&](const std::vector<double>& values) {
-    return history(motion.duration(), static_cast<int>(motion.size()) - 1,
-                   [&](double t) { return values[static_cast<size_t>(std::lround(t / motion.dt))]; });
+    return history(motion.duration(), count_of(motion) - 1,
+                   [&](double t) { return values[std::lround(t / motion.dt)]; });
   };
   CHECK(std::abs(highest_frequency(as_history(motion.velocity), InputKind::kVelocity) - told) < 1e-9);
   CHECK(std::abs(highest_frequency(as_history(motion.acceleration), InputKind::kAcceleration) - told) < 1e-9);

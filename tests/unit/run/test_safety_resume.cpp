@@ -97,8 +97,7 @@ TEST_CASE("safety resumed: the answer and every trial have the bits of a search 
     REQUIRE(whole.told.size() > 3);
     const std::string csv = safety_csv(all);
     for (size_t n : {whole.told.size() / 2, whole.told.size() - 1}) {
-      Kept cut{{whole.told.begin(), whole.told.begin() + static_cast<std::ptrdiff_t>(n)}, whole.states},
-          again;
+      Kept cut{{whole.told.begin(), whole.told.begin() + n}, whole.states}, again;
       int64_t stood = 0;
       // run again their steps would be counted anew
       for (SafetyTrial& t : cut.told) t.steps = -1, stood += t.stands;

@@ -1,4 +1,5 @@
 #include "support/relative.h"
+#include "talus/base/index.h"
 #include "talus/solve/block_factor.h"
 
 #include <doctest/doctest.h>
@@ -27,14 +28,14 @@ Matrix sheet(int n, int m, int far, int alone, unsigned seed) {
   std::uniform_real_distribution<double> number(-1, 1);
   Matrix a;
   const int count = n * m + alone;
-  std::vector<int> name(static_cast<size_t>(count));
-  for (int i = 0; i < count; ++i) name[static_cast<size_t>(i)] = i;
+  std::vector<int> name(count);
+  for (int i = 0; i < count; ++i) name[i] = i;
   std::shuffle(name.begin(), name.end(), random);
-  a.place.resize(static_cast<size_t>(count));
+  a.place.resize(count);
   std::map<std::array<int, 2>, Tile> tiles;
   const auto join = [&](int i, int j) {
     if (i == j) return;
-    i = name[static_cast<size_t>(i)], j = name[static_cast<size_t>(j)];
+    i = name[i], j = name[j];
     Tile t;
     for (double& x : t) x = number(random);
     tiles.emplace(std::array{std::min(i, j), std::max(i, j)}, t);
@@ -42,7 +43,7 @@ Matrix sheet(int n, int m, int far, int alone, unsigned seed) {
   for (int y = 0; y < m; ++y)
     for (int x = 0; x < n; ++x) {
       const int i = y * n + x;
-      a.place[static_cast<size_t>(name[static_cast<size_t>(i)])] = {x + 0.3 * number(random), 2.0 * y};
+      a.place[name[i]] = {x + 0.3 * number(random), 2.0 * y};
       if (x + 1 < n) join(i, i + 1);
       if (y + 1 < m) join(i, i + n);
       if (x + 1 < n && y + 1 < m && number(random) > 0) join(i, i + n + 1);
@@ -50,7 +51,7 @@ Matrix sheet(int n, int m, int far, int alone, unsigned seed) {
   for (int k = 0; k < far; ++k)
     join(static_cast<int>(random() % static_cast<unsigned>(n * m)),
          static_cast<int>(random() % static_cast<unsigned>(n * m)));
-  a.diagonal.assign(static_cast<size_t>(count), Tile{});
+  a.diagonal.assign(count, Tile{});
   for (const auto& [pair, tile] : tiles) a.pairs.push_back(pair), a.beside.push_back(tile);
   for (Tile& t : a.diagonal)
     for (size_t r = 0; r < 6; ++r)
@@ -64,11 +65,9 @@ Eigen::SparseMatrix<double> sparse(const Matrix& a) {
   const auto put = [&](int i, int j, const Tile& t, bool turned) {
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < 6; ++c)
-        all.emplace_back(6 * i + (turned ? c : r), 6 * j + (turned ? r : c),
-                         t[static_cast<size_t>(6 * r + c)]);
+        all.emplace_back(6 * i + (turned ? c : r), 6 * j + (turned ? r : c), t[6 * r + c]);
   };
-  for (size_t i = 0; i < a.diagonal.size(); ++i)
-    put(static_cast<int>(i), static_cast<int>(i), a.diagonal[i], false);
+  for (int i = 0; i < count_of(a.diagonal); ++i) put(i, i, a.diagonal[i], false);
   for (size_t k = 0; k < a.pairs.size(); ++k) {
     put(a.pairs[k][0], a.pairs[k][1], a.beside[k], false);
     put(a.pairs[k][1], a.pairs[k][0], a.beside[k], true);
@@ -169,12 +168,11 @@ TEST_CASE("block factor: fill grows hardly more than the sheet") {
 TEST_CASE("block factor: the ratio of its pivots") {
   // of a diagonal matrix these are its numbers; an odd count of blocks leaves half a strip of padding
   for (const int count : {1, 4, 7}) {
-    std::vector<Tile> diagonal(static_cast<size_t>(count));
+    std::vector<Tile> diagonal(count);
     for (int i = 0; i < count; ++i)
-      for (size_t k = 0; k < 6; ++k)
-        diagonal[static_cast<size_t>(i)][7 * k] = 20 + i + 0.1 * static_cast<double>(k);
+      for (size_t k = 0; k < 6; ++k) diagonal[i][7 * k] = 20 + i + 0.1 * static_cast<double>(k);
     BlockFactor factor;
-    factor.analyse({}, std::vector<Vec2>(static_cast<size_t>(count)));
+    factor.analyse({}, std::vector<Vec2>(count));
     REQUIRE(factor.factorize(diagonal, {}, Workers()));
     CHECK(factor.pivot_ratio() == test::approx((19.5 + count) / 20).epsilon(1e-12));
   }

@@ -1,5 +1,6 @@
 // Projected Gauss-Seidel: kernels, colours, bounds, layout, second phase; against Newton and plain sweeps.
 
+#include "talus/base/index.h"
 #include "talus/solve/gauss_seidel.h"
 
 #include <doctest/doctest.h>
@@ -78,7 +79,7 @@ std::vector<Mobility> mixed_mobilities(Dice& dice, const BlockSet& blocks) {
 }
 
 std::vector<BlockRate> random_rates(Dice& dice, const BlockSet& blocks) {
-  std::vector<BlockRate> rate(static_cast<size_t>(blocks.count));
+  std::vector<BlockRate> rate(blocks.count);
   for (size_t i = 0; i < rate.size(); ++i) {
     if (blocks.kind[i] == BlockKind::kFixed) continue;
     const Mat2 g{dice.number(), dice.number(), dice.number(), dice.number()};
@@ -90,9 +91,9 @@ std::vector<BlockRate> random_rates(Dice& dice, const BlockSet& blocks) {
 enum Sort { kContact, kFace, kTie, kCohesive, kLimited, kSorts };
 
 PointRows random_point(Dice& dice, const std::vector<Mobility>& mobility, Sort sort) {
-  const auto n = static_cast<int>(mobility.size());
+  const auto n = count_of(mobility);
   PointRows p;
-  const auto moves = [&](int i) { return i >= 0 && mobility[static_cast<size_t>(i)].moves(); };
+  const auto moves = [&](int i) { return i >= 0 && mobility[i].moves(); };
   do {
     p.block_a = dice.below(n);
     p.block_b = dice.below(5) == 0 ? -1 : dice.below(n);
@@ -115,13 +116,13 @@ RowSet random_rows(Dice& dice, const std::vector<Mobility>& mobility, int count,
   const auto add = [&](const PointRows& p) {
     set.add(p, with_guess ? Impulse{dice.number(300), dice.number(300)} : Impulse{});
   };
-  while (static_cast<int>(set.size()) < count) {
+  while (count_of(set) < count) {
     const auto sort = static_cast<Sort>(dice.below(kSorts));
     PointRows p = random_point(dice, mobility, sort), q = p;
     q.arm_a = dice.vector(0.5);
     if (p.block_b >= 0) q.arm_b = dice.vector(0.5);
     if (sort == kFace) {
-      const auto at = static_cast<int>(set.size());
+      const auto at = count_of(set);
       p.partner = at + 1, q.partner = at;
       add(p), add(q);
       continue;
@@ -183,9 +184,8 @@ std::vector<BlockRate> after(const std::vector<Mobility>& mobility, const RowSet
     for (const auto& [block, sign] :
          {std::pair(set.points[r].block_a, 1.0), std::pair(set.points[r].block_b, -1.0)}) {
       if (block < 0) continue;
-      const auto k = static_cast<size_t>(block);
-      const BlockRate change = accelerate(mobility[k], impulse_on(set.points[r], set.impulse[r], sign));
-      rate[k].a += change.a, rate[k].G += change.G;
+      const BlockRate change = accelerate(mobility[block], impulse_on(set.points[r], set.impulse[r], sign));
+      rate[block].a += change.a, rate[block].G += change.G;
     }
   return rate;
 }
@@ -207,7 +207,7 @@ int out_of_bounds(const RowSet& set) {
     for (int k = 0; k < 2; ++k) {
       const Impulse& p = set.impulse[i];
       const Bounds b = bounds_of(set.points[i], k, p[0]);
-      const double here = p[static_cast<size_t>(k)], round = 1e-14 * (std::abs(p[0]) + 100);
+      const double here = p[k], round = 1e-14 * (std::abs(p[0]) + 100);
       count += !(here >= b.lower - round && here <= b.upper + round);
     }
   return count;
@@ -221,24 +221,22 @@ int plain_sweeps(const std::vector<Mobility>& mobility, RowSet set, const std::v
     for (size_t i = 0; i < set.size(); ++i) {
       const PointRows& p = set.points[i];
       Mat2 w;
-      if (p.block_a >= 0) w += influence(mobility[static_cast<size_t>(p.block_a)], p.arm_a, p.arm_a);
-      if (p.block_b >= 0) w += influence(mobility[static_cast<size_t>(p.block_b)], p.arm_b, p.arm_b);
+      if (p.block_a >= 0) w += influence(mobility[p.block_a], p.arm_a, p.arm_a);
+      if (p.block_b >= 0) w += influence(mobility[p.block_b], p.arm_b, p.arm_b);
       for (int k = 0; k < 2; ++k) {
-        const auto row = static_cast<size_t>(k);
         const Vec2 along = k == 0 ? p.normal : turn_right(p.normal);
-        double& impulse = set.impulse[i][row];
-        const double e = relative_velocity(p, rate)[row] + p.row[row].bias + p.row[row].compliance * impulse;
+        double& impulse = set.impulse[i][k];
+        const double e = relative_velocity(p, rate)[k] + p.row[k].bias + p.row[k].compliance * impulse;
         const Bounds b = bounds_of(p, k, set.impulse[i][0]);
         const double next =
-            std::clamp(impulse - e / (dot(along, w * along) + p.row[row].compliance), b.lower, b.upper);
+            std::clamp(impulse - e / (dot(along, w * along) + p.row[k].compliance), b.lower, b.upper);
         Impulse change{};
-        change[row] = next - impulse;
+        change[k] = next - impulse;
         impulse = next;
         for (const auto& [block, sign] : {std::pair(p.block_a, 1.0), std::pair(p.block_b, -1.0)}) {
           if (block < 0) continue;
-          const auto m = static_cast<size_t>(block);
-          const BlockRate more = accelerate(mobility[m], impulse_on(p, change, sign));
-          rate[m].a += more.a, rate[m].G += more.G;
+          const BlockRate more = accelerate(mobility[block], impulse_on(p, change, sign));
+          rate[block].a += more.a, rate[block].G += more.G;
         }
       }
     }
@@ -263,13 +261,13 @@ struct Problem {
 // A tower of rigid squares on a floor, hit by gravity; the uppermost has `ratio` times the height of the
 // others.
 Problem tower(int count, double ratio) {
-  std::vector<Brick> bricks(static_cast<size_t>(count), Brick{{1, 1}, BlockKind::kRigid});
+  std::vector<Brick> bricks(count, Brick{{1, 1}, BlockKind::kRigid});
   bricks.back().size.y = ratio;
   const BlockSet blocks = make_blocks(bricks);
   Problem problem{mobilities(blocks, 1), {}, std::vector<BlockRate>(bricks.size(), {{0, -0.01}, {}})};
   for (int i = 0; i < count; ++i)
     for (const double x : {-0.5, 0.5}) {
-      const double half = 0.5 * bricks[static_cast<size_t>(i)].size.y;
+      const double half = 0.5 * bricks[i].size.y;
       problem.set.add(contact(i, i - 1, {x, -half}, i > 0 ? Vec2{x, 0.5} : Vec2{}, {0, 1}), {});
     }
   return problem;
@@ -277,8 +275,7 @@ Problem tower(int count, double ratio) {
 
 // Rigid squares in a ring, each tied to the next at four points of a side, the first tied to the ground.
 Problem ring(Dice& dice, int count) {
-  const BlockSet blocks =
-      make_blocks(std::vector<Brick>(static_cast<size_t>(count), Brick{{1, 1}, BlockKind::kRigid}));
+  const BlockSet blocks = make_blocks(std::vector<Brick>(count, Brick{{1, 1}, BlockKind::kRigid}));
   Problem problem{mobilities(blocks, 1), {}, random_rates(dice, blocks)};
   for (int i = -1; i < count; ++i) {
     PointRows p;
@@ -331,7 +328,7 @@ TEST_CASE("the error that sweeps tell is the one measured apart from them") {
     const auto mobility = mixed_mobilities(dice, blocks);
     RowSet set = random_rows(dice, mobility, 40 + trial, trial % 2 == 0);
     const bool none = trial % 6 == 5;
-    if (none) set.points[static_cast<size_t>(trial)].row[trial % 4 == 1].bias = std::nan("");
+    if (none) set.points[trial].row[trial % 4 == 1].bias = std::nan("");
     const Solution s = solve(mobility, set, random_rates(dice, blocks), 1 + trial % 7);
     const ContactError apart = contact_error(mobility, s.set, s.rate, 1);
     REQUIRE(s.report.judged);
@@ -437,7 +434,7 @@ TEST_CASE("a hundred blocks on one: more couples than colours") {
   for (const double x : {-10, 10}) set.add(contact(0, -1, {x, -0.5}, {}, {0, 1}), {});
   for (int i = 1; i <= kSmall; ++i) {
     const double x = 0.19 * (i - 50.5);
-    rate[static_cast<size_t>(i)].a.x = i % 3 == 0 ? 0.02 : 0;  // some slide
+    rate[i].a.x = i % 3 == 0 ? 0.02 : 0;  // some slide
     for (const double end : {-0.05, 0.05}) set.add(contact(i, 0, {end, -0.05}, {x + end, 0.5}, {0, 1}), {});
   }
   GaussSeidel solver;
@@ -614,7 +611,7 @@ TEST_CASE("a tower at rest carries its weight") {
   CHECK(s.report.converged);
   const double square = 0.01 * 2000;
   for (int i = 0; i < kCount; ++i) {
-    const auto k = static_cast<size_t>(2 * i);
+    const int k = 2 * i;
     const double sum = s.set.impulse[k][0] + s.set.impulse[k + 1][0];
     // errors of the speeds add up from course to course: ten times 1e-7 of 0.01
     CHECK(sum == test::approx(square * (kCount - 1 - i + 5)).epsilon(kCount * kTolerance / 0.01));

@@ -79,10 +79,10 @@ Problem every_kind(std::mt19937& random) {
         p.lower = -200, p.upper = 150, p.cohesion = 80;
         break;
       default:  // the other end of the face of case 3: of the same two blocks
-        p = problem.rows.points[static_cast<size_t>(i - 2)];
+        p = problem.rows.points[i - 2];
         p.arm_a += Vec2{0.3, 0.1}, p.arm_b += Vec2{0.3, 0.1};
         p.partner = i - 2;
-        problem.rows.points[static_cast<size_t>(i - 2)].partner = i;
+        problem.rows.points[i - 2].partner = i;
     }
     problem.rows.add(p, {0, 0});
   }

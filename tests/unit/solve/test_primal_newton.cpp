@@ -14,7 +14,7 @@ using namespace talus::test;
 
 namespace {
 
-constexpr size_t kPrimal = static_cast<size_t>(SolverKind::kPrimalNewton);
+constexpr size_t kPrimal = place_of(SolverKind::kPrimalNewton);
 
 // Ground of `columns` x `rows` blocks of 1 m on a fixed floor, its joints with stiffness; `kind` of block.
 std::string ground(int columns, int rows, const std::string& kind, double strength = 0) {

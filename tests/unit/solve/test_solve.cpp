@@ -6,6 +6,7 @@
 
 #include "support/random_rows.h"
 #include "support/relative.h"
+#include "talus/base/index.h"
 #include "talus/solve/contact_error.h"
 #include "talus/solve/contact_problem.h"
 #include "talus/solve/newton.h"
@@ -55,7 +56,7 @@ TEST_CASE("the analytic Jacobian equals difference quotients at random states") 
   for (int trial = 0; trial < 40; ++trial) {
     const RowSet set = random_rows(random, blocks.count, 24);
     std::vector<int> points(set.points.size());
-    for (size_t i = 0; i < points.size(); ++i) points[i] = static_cast<int>(i);
+    for (int i = 0; i < count_of(points); ++i) points[i] = i;
     const ContactProblem problem =
         build_problem(mobilities(blocks, 0.9), set, points, random_rates(random, blocks));
     Eigen::VectorXd p(problem.size());

@@ -163,8 +163,8 @@ TEST_CASE("shares of a segment: its two ends sum to its length in every element"
   std::array<double, 3> length{}, moment{};
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
     for (const auto& [element, weight] : shares_of_segment(f, f.columns[0], from, to)) {
-      length[static_cast<size_t>(element)] += weight;
-      moment[static_cast<size_t>(element)] += weight * from.y;
+      length[element] += weight;
+      moment[element] += weight * from.y;
     }
   const double per_height = norm(b - a) / 3.5;
   const double pieces[3][2] = {{1, 2}, {2, 4}, {4, 4.5}};
@@ -234,9 +234,8 @@ TEST_CASE("the kick of a column solves (M + s K) v+ = (M + r^2 s K) v- + dt F wi
     for (int i = 0; i < 2; ++i) F(2 * (e + i)) += m / 2 * gravity.x, F(2 * (e + i) + 1) += m / 2 * gravity.y;
   }
   for (int i = 0; i < 3; ++i) {
-    const auto n = static_cast<size_t>(i);
-    before(2 * i) = s.column_rate[n].x, before(2 * i + 1) = s.column_rate[n].y;
-    u(2 * i) = s.column_displacement[n].x, u(2 * i + 1) = s.column_displacement[n].y;
+    before(2 * i) = s.column_rate[i].x, before(2 * i + 1) = s.column_rate[i].y;
+    u(2 * i) = s.column_displacement[i].x, u(2 * i + 1) = s.column_displacement[i].y;
   }
   const double k = 4 / (1.2 * 1.2), r2 = std::pow(0.8 / 1.2, 2), stiff = 2e-3 * 2e-3 / k;
   Eigen::Matrix<double, 6, 6> A = M + stiff * K;
@@ -247,20 +246,19 @@ TEST_CASE("the kick of a column solves (M + s K) v+ = (M + r^2 s K) v- + dt F wi
   ColumnMotion motion;
   kick_columns(field, {}, clock, 0, false, clock.elastic_weights(0), {gravity}, s, motion);
   for (int i = 0; i < 3; ++i) {
-    const auto n = static_cast<size_t>(i);
-    CHECK(s.column_rate[n].x == approx(after(2 * i)).epsilon(1e-10).scale(1));
-    CHECK(s.column_rate[n].y == approx(after(2 * i + 1)).epsilon(1e-10));
-    CHECK(motion.velocity[n].y == approx(0.5 * (before(2 * i + 1) + after(2 * i + 1))).epsilon(1e-10));
+    CHECK(s.column_rate[i].x == approx(after(2 * i)).epsilon(1e-10).scale(1));
+    CHECK(s.column_rate[i].y == approx(after(2 * i + 1)).epsilon(1e-10));
+    CHECK(motion.velocity[i].y == approx(0.5 * (before(2 * i + 1) + after(2 * i + 1))).epsilon(1e-10));
     // the stress that acted is that of u + dt/k (v+ - r^2 v-)
-    CHECK(motion.displacement[n].y ==
+    CHECK(motion.displacement[i].y ==
           approx(u(2 * i + 1) + 2e-3 / k * (after(2 * i + 1) - r2 * before(2 * i + 1))).epsilon(1e-10));
   }
 }
 
 TEST_CASE("the side at which the joint with the largest slip ends is named") {
   const Scene scene = scene_of(kGround + grid("g", 0, 6, 3, "soil") + kFixed);
-  std::vector<char> at_side(static_cast<size_t>(scene.blocks.count), 0);
-  for (const BoundaryPoint& p : scene.boundaries.points) at_side[static_cast<size_t>(p.block)] = 1;
+  std::vector<char> at_side(scene.blocks.count, 0);
+  for (const BoundaryPoint& p : scene.boundaries.points) at_side[p.block] = 1;
   const auto first = [&at_side](char value) {
     return static_cast<int>(std::find(at_side.begin(), at_side.end(), value) - at_side.begin());
   };

@@ -38,7 +38,7 @@ std::vector<BlockForce> forces(const std::string& sections,
   const PreparedRun run = prepare_run("case.toml", kPlate + sections, {}, findings);
   State state = start_state(run.scene);
   if (prepare) prepare(state);
-  std::vector<BlockForce> force(static_cast<size_t>(run.scene.blocks.count));
+  std::vector<BlockForce> force(run.scene.blocks.count);
   add_edge_and_point_loads(run.scene.blocks, run.scene.model, run.scene.loads, state, 0, force);
   return force;
 }

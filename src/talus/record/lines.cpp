@@ -55,6 +55,8 @@ void fail(const Lines& lines, size_t number, const std::string& text, const std:
 
 void check_header_line(const Lines& lines, size_t number) {
   constexpr size_t kMost = 1000;  // [bytes]
+  if (number > lines.count())
+    fail(lines, lines.count(), "the header ends too early", "the file is cut short: fetch it again");
   const size_t size = lines.line[number - 1].size();
   if (size > kMost)
     fail(lines, number, fmt::format("a line of the header has {} bytes, more than {}", size, kMost),

@@ -35,8 +35,8 @@ std::vector<double> header_numbers(const Lines& lines, size_t n, size_t& next) {
                                 std::regex::icase);
   check_header_line(lines, n);
   std::smatch match;
-  if (n > lines.count() || !std::regex_search(lines.line[n - 1], match, kTold))
-    fail(lines, std::min(n, lines.count()), "the numbers of the header are not found",
+  if (!std::regex_search(lines.line[n - 1], match, kTold))
+    fail(lines, n, "the numbers of the header are not found",
          "it is written as \"100 Real-header values follow on 20 lines, Format= (5F15.6)\"");
   const auto count = count_at(lines, n, match[1].str(), "the number of values");
   const auto width = count_at(lines, n, match[2].str(), "the width of a field");

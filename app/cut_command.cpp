@@ -3,9 +3,9 @@
 #include "browser.h"
 #include "report_command.h"
 #include "talus/base/text_file.h"
-#include "talus/model/toml_source.h"
 #include "talus/report/section_page.h"
 #include "talus/results/cut_model.h"
+#include "talus/schema/toml_source.h"
 #include "tell.h"
 
 namespace talus::app {

@@ -8,10 +8,10 @@
 #include "talus/base/error.h"
 #include "talus/maps/import.h"
 #include "talus/maps/vector_module.h"
-#include "talus/model/units.h"
 #include "talus/output/files.h"
 #include "talus/output/result_folder.h"
 #include "talus/plot/map_picture.h"
+#include "talus/schema/units.h"
 #include "tell.h"
 
 namespace talus::app {

@@ -34,7 +34,7 @@
 #include "study_command.h"
 #include "talus/base/memory_reserve.h"
 #include "talus/base/text.h"
-#include "talus/model/schema.h"
+#include "talus/model/model_schema.h"
 #include "talus/study/study.h"
 #include "talus/talus.h"
 #include "tell.h"
@@ -251,8 +251,8 @@ int verb_of_line(int argc, char** argv) {
     return talus::kExitOk;
   }
   fmt::print("{}", of_studies ? talus::study::study_markdown()
-                   : json     ? talus::schema_json()
-                              : talus::schema_markdown());
+                   : json     ? talus::model_json()
+                              : talus::model_markdown());
   return talus::kExitOk;
 }
 

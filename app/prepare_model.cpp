@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "talus/base/text_file.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 #include "tell.h"
 
 namespace talus::app {

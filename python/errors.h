@@ -6,7 +6,7 @@
 #include <string>
 
 #include "talus/base/error.h"
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
 
 namespace talus::python {
 

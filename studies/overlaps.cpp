@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "support/overlap.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace {
 

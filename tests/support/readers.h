@@ -19,7 +19,6 @@
 #include "talus/mesh/read_msh.h"
 #include "talus/model/read_maps.h"
 #include "talus/model/read_model.h"
-#include "talus/model/toml_source.h"
 #include "talus/output/csv.h"
 #include "talus/output/read_vtk.h"
 #include "talus/output/text_table.h"
@@ -29,6 +28,7 @@
 #include "talus/report/packed_frames.h"
 #include "talus/report/page.h"
 #include "talus/results/problem_file.h"
+#include "talus/schema/toml_source.h"
 #include "talus/talus.h"
 #ifdef TALUS_WITH_MAPS
 #include "talus/maps/import.h"

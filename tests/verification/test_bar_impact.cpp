@@ -8,7 +8,7 @@
 #include "support/run_case.h"
 #include "support/source_file.h"
 #include "support/tolerance.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace test_bar_impact {
 

@@ -11,8 +11,8 @@
 #include "support/tolerance.h"
 #include "talus/cut/check_places.h"
 #include "talus/model/read_model.h"
-#include "talus/model/toml_source.h"
 #include "talus/output/cut_report.h"
+#include "talus/schema/toml_source.h"
 
 namespace test_cut_examples {
 

@@ -3,8 +3,8 @@
 #include "support/run_case.h"
 #include "support/source_file.h"
 #include "support/tolerance.h"
-#include "talus/model/toml_source.h"
 #include "talus/record/read_record.h"
+#include "talus/schema/toml_source.h"
 
 namespace test_examples {
 

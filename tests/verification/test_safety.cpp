@@ -6,7 +6,7 @@
 #include "support/source_file.h"
 #include "support/tolerance.h"
 #include "talus/model/joint_law.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 #include "talus/talus.h"
 
 namespace test_safety {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "talus/model/findings.h"
 #include "talus/model/model.h"
+#include "talus/schema/findings.h"
 
 namespace talus {
 

@@ -1,7 +1,8 @@
 #include "talus/maps/expand.h"
 
+#include "talus/model/model_schema.h"
 #include "talus/model/read_maps.h"
-#include "talus/model/variables.h"
+#include "talus/schema/variables.h"
 
 namespace talus::maps {
 
@@ -15,7 +16,7 @@ ExpandedModel expand_model(const std::string& file, const std::string& text,
     if (is_map || item.rfind("folder=", 0) == 0 || item.rfind("variables.", 0) == 0) of_maps.push_back(item);
     if (!is_map) out.overrides.push_back(item);
   }
-  const TomlSource source = read_toml(text, of_maps, findings);
+  const TomlSource source = read_toml(text, of_maps, findings, model_schema());
   if (findings.has_errors()) return out;
   out.has_maps = has_maps(source);
   out.text = text;

@@ -9,8 +9,8 @@
 
 #include "talus/maps/clean.h"
 #include "talus/maps/drawing.h"
-#include "talus/model/findings.h"
 #include "talus/model/map_input.h"
+#include "talus/schema/findings.h"
 
 namespace talus::maps {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "talus/base/vec2.h"
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
 
 namespace talus {
 

@@ -8,23 +8,12 @@
 #include <vector>
 
 #include "talus/geometry/polygon.h"
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/scattered.h"
 
 namespace talus {
 
 enum class BlockKind { kDeformable, kRigid, kFixed, kDriven, kRemoved };  // kRemoved: excavated
-
-/// A quantity drawn anew for each joint: its mean and how it scatters.
-struct Scattered {
-  enum Kind {
-    kConstant,
-    kNormal,       // spread: standard deviation
-    kUniform,      // spread: half width
-    kExponential,  // the mean alone
-  };
-  Kind kind = kConstant;
-  double mean = 0, spread = 0;
-};
 
 /// A piece of the section that is cut into blocks.
 struct RegionInput {

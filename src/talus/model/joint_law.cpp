@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/model/units.h"
+#include "talus/schema/units.h"
 
 namespace talus {
 

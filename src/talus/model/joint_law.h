@@ -11,7 +11,7 @@
 
 #include "talus/base/vec2.h"
 #include "talus/model/model.h"
-#include "talus/model/schema.h"
+#include "talus/schema/schema.h"
 
 namespace talus {
 

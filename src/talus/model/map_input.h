@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "talus/base/vec2.h"
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
 
 namespace talus {
 

@@ -7,7 +7,7 @@
 #include "talus/geometry/polygon.h"
 #include "talus/mesh/read_msh.h"
 #include "talus/model/cut_input.h"
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
 
 namespace talus {
 

@@ -12,11 +12,11 @@
 #include "talus/model/bolt_input.h"
 #include "talus/model/boundary_kind.h"
 #include "talus/model/cut_input.h"
-#include "talus/model/findings.h"
 #include "talus/model/mesh_input.h"
 #include "talus/model/placement.h"
 #include "talus/model/solver_kind.h"
-#include "talus/model/strength_scatter.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/strength_scatter.h"
 
 namespace talus {
 

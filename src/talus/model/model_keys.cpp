@@ -5,7 +5,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "talus/model/variables.h"
+#include "talus/model/model_schema.h"
+#include "talus/schema/variables.h"
 
 namespace talus {
 
@@ -63,7 +64,7 @@ ModelKeys keys_as_written(const std::string& text) {
 ModelKeys keys_in_force(const std::string& text) {
   ModelKeys all;
   Findings findings("", text);
-  toml::table root = std::move(read_toml(text, overrides_in(text), findings).root);
+  toml::table root = std::move(read_toml(text, overrides_in(text), findings, model_schema()).root);
   root.erase("variables");  // they act by the keys that name them
   flatten(root, "", all);
   return all;

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "talus/model/read_section.h"
+#include "talus/schema/read_section.h"
 
 namespace talus {
 

@@ -1,9 +1,9 @@
 #pragma once
 // Sections that nothing in the file names: almost surely a name mistyped elsewhere.
 
-#include "talus/model/findings.h"
 #include "talus/model/model.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

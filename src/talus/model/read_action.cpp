@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/model/section_reader.h"
+#include "talus/model/model_sections.h"
 
 namespace talus {
 
@@ -12,10 +12,9 @@ namespace {
 // Velocity at the end of a record, as share of its largest, that is no round-off.
 constexpr double kStillMoving = 1e-2;
 
-class ActionReader : private SectionReader {
+class ActionReader : private ModelSections {
  public:
-  ActionReader(const TomlSource& source, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model) {}
+  using ModelSections::ModelSections;
 
   void read() {
     for_list("support", [this](const Fields& f) { read_support(f); });
@@ -24,17 +23,13 @@ class ActionReader : private SectionReader {
   }
 
  private:
-  void error(const Fields& f, std::string_view key, const std::string& text, const std::string& hint) {
-    findings_.error(f.where(key), f.path_of(key), text, hint);
-  }
-
   // A segment given as two points.
   void read_segment(const Fields& f, std::string_view key, Selection& s) {
     if (!f.has(key)) return;
     const auto points = f.get<std::vector<Vec2>>(key);
     s.is_edge = true;
     if (points.size() != 2 || points[0] == points[1])
-      findings_.error(f.where(key), f.path_of(key), "must be a segment: two different points");
+      error(f, key, "must be a segment: two different points");
     else
       s.from = points[0], s.to = points[1];
   }
@@ -150,10 +145,10 @@ class ActionReader : private SectionReader {
     double largest = 0;
     for (const double v : h.value) largest = std::max(largest, std::abs(v));
     if (std::abs(h.value.back()) > kStillMoving * largest)
-      findings_.warning(f.where(key), f.path_of(key),
-                        fmt::format("history \"{}\" ends at {:.3g} m/s: the ground goes on at that for ever",
-                                    h.name, h.value.back()),
-                        "let a velocity end at 0");
+      warning(f, key,
+              fmt::format("history \"{}\" ends at {:.3g} m/s: the ground goes on at that for ever", h.name,
+                          h.value.back()),
+              "let a velocity end at 0");
   }
 
   void read_opposite(const Fields& f, BoundaryInput& b) {
@@ -241,7 +236,6 @@ class ActionReader : private SectionReader {
                       "give point = [x, y], or a traction per area");
   }
 
-  Model& model_;
   std::set<std::string> supports_, boundaries_, loads_;
 };
 

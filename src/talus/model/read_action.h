@@ -2,7 +2,7 @@
 // The sections that hold, bound and push blocks: [[support]], [[boundary]], [[load]].
 
 #include "talus/model/model.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "talus/base/index.h"
-#include "talus/model/section_reader.h"
+#include "talus/model/model_sections.h"
 
 namespace talus {
 
@@ -32,10 +32,9 @@ Vec2 on_outline(const Polygon& polygon, Vec2 centre, Vec2 ray) {
   return centre + far * ray;
 }
 
-class BoltReader : private SectionReader {
+class BoltReader : private ModelSections {
  public:
-  BoltReader(const TomlSource& source, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model) {}
+  using ModelSections::ModelSections;
 
   void read() {
     for_named("bolt_type", [this](const std::string& name, const Fields& f) { read_type(name, f); });
@@ -52,10 +51,6 @@ class BoltReader : private SectionReader {
   }
 
  private:
-  void error(const Fields& f, std::string_view key, const std::string& text, const std::string& hint) {
-    findings_.error(f.where(key), f.path_of(key), text, hint);
-  }
-
   // --- types ---
 
   void read_type(const std::string& name, const Fields& f) {
@@ -230,7 +225,6 @@ class BoltReader : private SectionReader {
     return lines;
   }
 
-  Model& model_;
   std::set<std::string> names_;
 };
 

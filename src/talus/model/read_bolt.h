@@ -2,7 +2,7 @@
 // The sections of rock bolts: [bolt_type.NAME], [[bolt]], [[bolt_pattern]].
 
 #include "talus/model/model.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

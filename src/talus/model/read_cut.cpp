@@ -9,7 +9,7 @@
 #include "talus/geometry/polygon_check.h"
 #include "talus/geometry/shapes.h"
 #include "talus/model/joint_law.h"
-#include "talus/model/section_reader.h"
+#include "talus/model/model_sections.h"
 
 namespace talus {
 
@@ -20,10 +20,10 @@ constexpr double kTurn = 2 * std::numbers::pi;
 // Most blocks that one region may be divided into on purpose.
 constexpr double kMostCells = 1e7;
 
-class CutReader : private SectionReader {
+class CutReader : private ModelSections {
  public:
   CutReader(const TomlSource& source, std::set<std::string>& block_names, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model), block_names_(block_names) {}
+      : ModelSections(source, model, findings), block_names_(block_names) {}
 
   void read() {
     claim_mesh_names();
@@ -64,9 +64,8 @@ class CutReader : private SectionReader {
     claim_name(f, block_names_, what);
     const std::string name = f.get<std::string>("name");
     if (findings_.error_count() > before || trace_names_.insert(name).second) return;
-    findings_.error(f.where("name"), f.path_of("name"),
-                    fmt::format("a second source of joints is called \"{}\"", name),
-                    "supports follow these names: they must differ");
+    error(f, "name", fmt::format("a second source of joints is called \"{}\"", name),
+          "supports follow these names: they must differ");
   }
 
   int region(const Fields& f) { return refer(f, "region", model_.regions, "region"); }
@@ -79,7 +78,7 @@ class CutReader : private SectionReader {
   bool check_polygon(const Fields& f, std::string_view key, const Polygon& polygon) {
     const std::string defect = polygon_defect(polygon);
     if (defect.empty()) return true;
-    findings_.error(f.where(key), f.path_of(key), defect, "give the corners in order, once around");
+    error(f, key, defect, "give the corners in order, once around");
     incomplete();
     return false;
   }
@@ -112,8 +111,7 @@ class CutReader : private SectionReader {
     c.blocks_file = f.get<std::string>("blocks");
     c.where_file = f.where("blocks");
     if (f.given("blocks") && c.blocks_file.empty())
-      findings_.error(f.where("blocks"), f.path_of("blocks"), "is empty",
-                      "name a file that talus cut has written");
+      error(f, "blocks", "is empty", "name a file that talus cut has written");
   }
 
   void read_regions() {
@@ -127,9 +125,8 @@ class CutReader : private SectionReader {
       if (!sound) incomplete();
       r.sides = f.get<std::vector<std::string>>("sides");
       if (sound && f.has("sides") && r.sides.size() != r.polygon.size()) {
-        findings_.error(f.where("sides"), f.path_of("sides"),
-                        fmt::format("has {} names for {} edges", r.sides.size(), r.polygon.size()),
-                        "give one name per edge, the first for the edge from the first to the second corner");
+        error(f, "sides", fmt::format("has {} names for {} edges", r.sides.size(), r.polygon.size()),
+              "give one name per edge, the first for the edge from the first to the second corner");
       }
       for (size_t i = r.sides.size(); i < r.polygon.size(); ++i)
         r.sides.push_back(fmt::format("{}-{}", r.name, i + 1));
@@ -163,13 +160,11 @@ class CutReader : private SectionReader {
       for (const char* key : {"name", "center", "radius", "thickness", "voussoirs"})
         if (!f.has(key)) incomplete();
       if (!(a.to > a.from) || a.to - a.from > kTurn * (1 - 1e-9)) {
-        findings_.error(
-            f.where("to"), f.path_of("to"), "must be larger than from, by less than a full turn",
-            "angles are counter-clockwise from +x: a half circle runs from \"0 deg\" to \"180 deg\"");
+        error(f, "to", "must be larger than from, by less than a full turn",
+              "angles are counter-clockwise from +x: a half circle runs from \"0 deg\" to \"180 deg\"");
         incomplete();
       } else if ((a.to - a.from) / a.voussoirs > 0.5 * kTurn * (1 - 1e-9)) {
-        findings_.error(f.where("voussoirs"), f.path_of("voussoirs"), "each must span less than 180 deg",
-                        "give more of them");
+        error(f, "voussoirs", "each must span less than 180 deg", "give more of them");
         incomplete();
       }
       a.material = material(f);
@@ -202,8 +197,7 @@ class CutReader : private SectionReader {
           o.polygon = circle_polygon(f.get<Vec2>("center"), f.get("diameter", 1.0), segments);
           o.sagitta = sagitta(0.5 * f.get("diameter", 1.0), 2 * std::numbers::pi / segments);
         } else if (f.get("height", 1.0) < 0.5 * f.get("width", 1.0)) {
-          findings_.error(f.where("height"), f.path_of("height"), "is less than half the width",
-                          "the half circle alone is half the width high");
+          error(f, "height", "is less than half the width", "the half circle alone is half the width high");
           incomplete();
         } else {
           o.polygon =
@@ -214,8 +208,7 @@ class CutReader : private SectionReader {
       o.kept = f.get<std::string>("rock") == "kept";
       o.joint = joint(f);
       if (!o.kept && f.has("rock") && f.given("joint"))
-        findings_.warning(f.where("joint"), f.path_of("joint"), "has no effect: removed rock has no joint",
-                          "it counts with rock = \"kept\"");
+        warning(f, "joint", "has no effect: removed rock has no joint", "it counts with rock = \"kept\"");
       if (o.polygon.empty()) incomplete();
       model_.openings.push_back(std::move(o));
     });
@@ -232,8 +225,8 @@ class CutReader : private SectionReader {
       const bool belongs = std::find(needed.begin(), needed.end(), key) != needed.end() ||
                            (key == "segments" && shape != "polygon");
       if (!belongs && f.given(key)) {
-        findings_.error(f.where(key), f.path_of(key), fmt::format("does not belong to shape = \"{}\"", shape),
-                        fmt::format("give {}", join_or(needed)));
+        error(f, key, fmt::format("does not belong to shape = \"{}\"", shape),
+              fmt::format("give {}", join_or(needed)));
         sound = false;
       }
     }
@@ -254,8 +247,7 @@ class CutReader : private SectionReader {
       fault.where = f.where();
       fault.points = f.get<std::vector<Vec2>>("points");
       if (f.has("points") && fault.points.size() < 2)
-        findings_.error(f.where("points"), f.path_of("points"), "needs two points or more",
-                        "give [[x0, y0], [x1, y1], ...] from end to end");
+        error(f, "points", "needs two points or more", "give [[x0, y0], [x1, y1], ...] from end to end");
       fault.joint = joint(f);
       if (!f.has("points") || fault.points.size() < 2) incomplete();
       model_.faults.push_back(std::move(fault));
@@ -270,8 +262,7 @@ class CutReader : private SectionReader {
       t.where = f.where();
       t.lines = f.get<std::vector<Polyline>>("lines");
       if (f.has("lines") && t.lines.empty())
-        findings_.error(f.where("lines"), f.path_of("lines"), "is empty",
-                        "give lines [[[x, y], [x, y], ...], ...], or leave the section out");
+        error(f, "lines", "is empty", "give lines [[[x, y], [x, y], ...], ...], or leave the section out");
       t.joint = joint(f);
       if (t.lines.empty()) incomplete();
       model_.traces.push_back(std::move(t));
@@ -324,11 +315,10 @@ class CutReader : private SectionReader {
     const double across = norm(box.max - box.min);
     if (t.size <= across) return;
     incomplete();
-    findings_.error(
-        f.where("size"), f.path_of("size"),
-        fmt::format("{:g} m is more than the region is across ({:.3g} m): nothing would be divided", t.size,
-                    across),
-        "give the side of a cell");
+    error(f, "size",
+          fmt::format("{:g} m is more than the region is across ({:.3g} m): nothing would be divided", t.size,
+                      across),
+          "give the side of a cell");
   }
 
   // A region of known size must not be divided into more cells than any machine takes.
@@ -340,9 +330,8 @@ class CutReader : private SectionReader {
     const Box box = bounding_box(polygon);
     const double cells = ((box.max.x - box.min.x) / length + 1) * ((box.max.y - box.min.y) / height + 1);
     if (cells <= kMostCells) return;
-    findings_.error(f.where(key), f.path_of(key),
-                    fmt::format("makes about {:.2g} cells, more than {:g}", cells, kMostCells),
-                    "is a unit missing?");
+    error(f, key, fmt::format("makes about {:.2g} cells, more than {:g}", cells, kMostCells),
+          "is a unit missing?");
     incomplete();
   }
 
@@ -366,18 +355,16 @@ class CutReader : private SectionReader {
         findings_.error(f.where(), f.path(), f.given("dip") ? "has no dip_direction" : "has no dip",
                         "an orientation in space needs both");
       if (s.in_space && !azimuth_given_)
-        findings_.error(f.where("dip"), f.path_of("dip"), "needs the direction of the section",
-                        "give section_azimuth in [cut]");
+        error(f, "dip", "needs the direction of the section", "give section_azimuth in [cut]");
       if (!s.in_space && f.given("fisher"))
-        findings_.error(f.where("fisher"), f.path_of("fisher"), "belongs to dip and dip_direction",
-                        "an angle scatters by itself: angle = { mean = ..., normal = ... }");
+        error(f, "fisher", "belongs to dip and dip_direction",
+              "an angle scatters by itself: angle = { mean = ..., normal = ... }");
       s.spacing = f.get<Scattered>("spacing", {Scattered::kConstant, 1, 0});
       s.trace_length = f.get<Scattered>("trace_length");
       s.gap = f.get<Scattered>("gap");
       for (const char* key : {"gap", "start"})
         if (f.given(key) && !f.given("trace_length"))
-          findings_.error(f.where(key), f.path_of(key), "has no meaning for a through-going set",
-                          "give trace_length");
+          error(f, key, "has no meaning for a through-going set", "give trace_length");
       s.origin = f.get<Vec2>("origin");
       s.offset = f.get<Scattered>("offset");
       s.start = f.get<Scattered>("start");
@@ -424,7 +411,6 @@ class CutReader : private SectionReader {
     model_.joints.push_back(glue);
   }
 
-  Model& model_;
   bool azimuth_given_ = false;
   Where where_merge_along_;
   std::set<std::string>& block_names_;

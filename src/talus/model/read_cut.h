@@ -6,7 +6,7 @@
 #include <string>
 
 #include "talus/model/model.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

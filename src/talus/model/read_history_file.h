@@ -4,7 +4,7 @@
 #include <string>
 
 #include "talus/model/model.h"
-#include "talus/model/read_section.h"
+#include "talus/schema/read_section.h"
 
 namespace talus {
 

@@ -5,7 +5,8 @@
 #include <map>
 
 #include "talus/base/index.h"
-#include "talus/model/section_reader.h"
+#include "talus/model/model_schema.h"
+#include "talus/schema/section_reader.h"
 
 namespace talus {
 
@@ -47,8 +48,7 @@ class MapsReader : private SectionReader {
     m.rock_kept = f.get<std::string>("rock") == "kept";
     m.where = f.where(), m.where_file = f.where("file"), m.where_layer = f.where("layer");
     m.where_attribute = f.where("attribute"), m.where_unit = f.where("unit");
-    if (f.given("file") && m.file.empty())
-      findings_.error(f.where("file"), f.path_of("file"), "is empty", "name a drawing");
+    if (f.given("file") && m.file.empty()) error(f, "file", "is empty", "name a drawing");
     if (f.given("attribute") != f.given("values"))
       findings_.error(f.where(), f.path_of(f.given("values") ? "attribute" : "values"),
                       "is missing: attribute and values belong together");
@@ -67,9 +67,7 @@ class MapsReader : private SectionReader {
     for (const auto& [key, uses] : belongs) {
       const bool has = std::find(uses.begin(), uses.end(), use) != uses.end();
       const std::string& word = map_use_names()[place_of(use)];
-      if (f.given(key) && !has)
-        findings_.error(f.where(key), f.path_of(key), fmt::format("has no meaning for \"{}\"", word),
-                        "leave it out");
+      if (f.given(key) && !has) error(f, key, fmt::format("has no meaning for \"{}\"", word), "leave it out");
       if (!f.given(key) && has && (key == "material" || key == "type"))
         findings_.error(f.where(), f.path_of(key), fmt::format("is missing for becomes = \"{}\"", word));
     }
@@ -113,7 +111,7 @@ bool has_maps(const TomlSource& source) {
 }
 
 MapsInput read_maps(const TomlSource& source, Findings& findings) {
-  return MapsReader(source, findings).read();
+  return MapsReader(source, model_schema(), findings).read();
 }
 
 }  // namespace talus

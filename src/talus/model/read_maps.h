@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "talus/model/findings.h"
 #include "talus/model/map_input.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

@@ -7,16 +7,16 @@
 #include "talus/base/text_file.h"
 #include "talus/geometry/polygon_check.h"
 #include "talus/model/map_input.h"
-#include "talus/model/section_reader.h"
+#include "talus/model/model_sections.h"
 
 namespace talus {
 
 namespace {
 
-class MeshReader : private SectionReader {
+class MeshReader : private ModelSections {
  public:
   MeshReader(const TomlSource& source, std::set<std::string>& block_names, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model), block_names_(block_names) {}
+      : ModelSections(source, model, findings), block_names_(block_names) {}
 
   std::string read() {
     for_list("mesh", [this](const Fields& f) { read_mesh(f); });
@@ -57,10 +57,9 @@ class MeshReader : private SectionReader {
     } catch (const FileError& e) {
       if (std::error_code ec; std::filesystem::is_regular_file(path, ec))
         throw;  // there, and not to be read now
-      findings_.error(f.where("file"), f.path_of("file"), e.what(),
-                      "the path counts from the folder of the model file");
+      error(f, "file", e.what(), "the path counts from the folder of the model file");
     } catch (const InputError& e) {
-      findings_.error(f.where("file"), f.path_of("file"), std::string("cannot be read\n") + e.what());
+      error(f, "file", std::string("cannot be read\n") + e.what());
     }
     return false;
   }
@@ -70,8 +69,7 @@ class MeshReader : private SectionReader {
     for (const MeshElement& e : m.mesh.elements) {
       const std::string defect = polygon_defect(m.polygon(e));
       if (defect.empty()) continue;
-      findings_.error(f.where("file"), f.path_of("file"), fmt::format("element {}: {}", e.tag, defect),
-                      "mesh it again");
+      error(f, "file", fmt::format("element {}: {}", e.tag, defect), "mesh it again");
       model_.shapes_readable = false;
       return;
     }
@@ -82,8 +80,7 @@ class MeshReader : private SectionReader {
     const auto sound = [&](const std::string& name) {
       const std::string defect = name_defect(name);
       if (defect.empty()) return true;
-      findings_.error(f.where("file"), f.path_of("file"),
-                      fmt::format("\"{}\" is no name of a physical group: {}", shown_name(name), defect));
+      error(f, "file", fmt::format("\"{}\" is no name of a physical group: {}", shown_name(name), defect));
       return false;
     };
     bool needs_default = false;
@@ -91,8 +88,7 @@ class MeshReader : private SectionReader {
     for (const std::string& group : m.mesh.surface_groups) {
       if (!sound(group)) continue;
       if (!block_names_.insert(m.name + "-" + group).second)
-        findings_.error(f.where("name"), f.path_of("name"),
-                        fmt::format("its group \"{}-{}\" has the name of other blocks", m.name, group));
+        error(f, "name", fmt::format("its group \"{}-{}\" has the name of other blocks", m.name, group));
       const int named = index_of(model_.materials, group);
       m.group_material.push_back(named >= 0 ? named : m.material);
       if (named < 0 && m.material < 0 && !f.given("material"))
@@ -110,7 +106,6 @@ class MeshReader : private SectionReader {
     }
   }
 
-  Model& model_;
   std::set<std::string>& block_names_;
   std::string files_;
 };

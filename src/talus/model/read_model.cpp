@@ -10,8 +10,8 @@
 
 #include "talus/base/text.h"
 #include "talus/base/version.h"
-#include "talus/model/expression.h"
 #include "talus/model/joint_law.h"
+#include "talus/model/model_sections.h"
 #include "talus/model/names_used.h"
 #include "talus/model/read_action.h"
 #include "talus/model/read_bolt.h"
@@ -20,8 +20,8 @@
 #include "talus/model/read_mesh.h"
 #include "talus/model/read_penalty.h"
 #include "talus/model/read_stages.h"
-#include "talus/model/section_reader.h"
-#include "talus/model/variables.h"
+#include "talus/schema/expression.h"
+#include "talus/schema/variables.h"
 
 namespace talus {
 
@@ -29,10 +29,9 @@ namespace {
 
 constexpr double kMostGravity = 600;  // [m/s2], of a centrifuge
 
-class ModelReader : private SectionReader {
+class ModelReader : private ModelSections {
  public:
-  ModelReader(const TomlSource& source, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model) {}
+  using ModelSections::ModelSections;
 
   void read() {
     model_.shapes_readable = false;
@@ -118,7 +117,7 @@ class ModelReader : private SectionReader {
   // --- content ---
 
   bool read_top() {
-    const Fields f = read_section(section_spec("top"), source_.root, "", {1, 1, ""}, source_, findings_);
+    const Fields f = read_section(model_schema().front(), source_.root, "", {1, 1, ""}, source_, findings_);
     model_.title = f.get<std::string>("title");
     model_.folder =
         (std::filesystem::path(model_.file).parent_path() / f.get<std::string>("folder")).string();
@@ -220,9 +219,8 @@ class ModelReader : private SectionReader {
             "damping_time", "restitution", "dilation_angle", "dilation_slip", "residual_friction_angle",
             "residual_cohesion", "residual_tensile_strength"}) {
         if (j.bonded && f.given(key))
-          findings_.error(f.where(key), f.path_of(key),
-                          "has no meaning for a bonded joint, which never breaks",
-                          "leave it out, or make the joint kind = \"frictional\"");
+          error(f, key, "has no meaning for a bonded joint, which never breaks",
+                "leave it out, or make the joint kind = \"frictional\"");
       }
       model_.joints.push_back(j);
     });
@@ -235,11 +233,9 @@ class ModelReader : private SectionReader {
       const bool table = f.given("time") || f.given("value"), formula = f.given("expression");
       const bool file = f.given("file");
       for (const char* key : {"duration", "samples"})
-        if (!formula && f.given(key))
-          findings_.error(f.where(key), f.path_of(key), "belongs to an expression", "leave it out");
+        if (!formula && f.given(key)) error(f, key, "belongs to an expression", "leave it out");
       for (const char* key : {"column", "dt", "unit"})
-        if (!file && f.given(key))
-          findings_.error(f.where(key), f.path_of(key), "belongs to a file", "leave it out, or give file");
+        if (!file && f.given(key)) error(f, key, "belongs to a file", "leave it out, or give file");
       if (table + formula + file != 1) {
         findings_.error(f.where(), f.path(),
                         table + formula + file == 0 ? "is empty" : "is given in more than one way",
@@ -272,12 +268,11 @@ class ModelReader : private SectionReader {
       findings_.error(f.where("value"), f.path(),
                       fmt::format("has {} times and {} values", h.time.size(), h.value.size()));
     } else if (h.time.size() < 2) {
-      findings_.error(f.where("time"), f.path_of("time"), "needs at least two points");
+      error(f, "time", "needs at least two points");
     }
     for (size_t i = 1; i < h.time.size(); ++i) {
       if (h.time[i] > h.time[i - 1]) continue;
-      findings_.error(f.where("time"), f.path_of("time"),
-                      fmt::format("does not rise: {:g} s is followed by {:g} s", h.time[i - 1], h.time[i]));
+      error(f, "time", fmt::format("does not rise: {:g} s is followed by {:g} s", h.time[i - 1], h.time[i]));
       break;
     }
   }
@@ -294,7 +289,7 @@ class ModelReader : private SectionReader {
     for (int64_t i = 0; i <= n; ++i)
       h.time.push_back(duration * static_cast<double>(i) / static_cast<double>(n));
     h.value = evaluate_expression(f.get<std::string>("expression"), h.time, trouble);
-    if (!trouble.empty()) findings_.error(f.where("expression"), f.path_of("expression"), trouble);
+    if (!trouble.empty()) error(f, "expression", trouble);
   }
 
   void read_blocks() {
@@ -315,19 +310,17 @@ class ModelReader : private SectionReader {
       b.motion_rotation = motion(f, "motion_rotation", model_.histories);
       for (const char* key : {"motion_x", "motion_y", "motion_rotation"}) {
         if (f.given(key) && b.kind != BlockKind::kDriven)
-          findings_.error(f.where(key), f.path_of(key), "is only for a block of kind = \"driven\"",
-                          "use a [[support]] to move points of other blocks");
+          error(f, key, "is only for a block of kind = \"driven\"",
+                "use a [[support]] to move points of other blocks");
         if (f.get<MotionText>(key).kind == MotionText::kFree)
-          findings_.error(f.where(key), f.path_of(key), "a driven block has no free axis",
-                          "make the block \"rigid\" and drive it by a [[support]]");
+          error(f, key, "a driven block has no free axis",
+                "make the block \"rigid\" and drive it by a [[support]]");
       }
       if (b.kind == BlockKind::kFixed || b.kind == BlockKind::kDriven) {
         for (const char* key : {"velocity", "spin"}) {
           if (f.given(key))
-            findings_.error(
-                f.where(key), f.path_of(key),
-                fmt::format("has no meaning for a {} block", f.get<std::string>("kind")),
-                "leave it out, or use kind = \"driven\" with motion_x, motion_y, motion_rotation");
+            error(f, key, fmt::format("has no meaning for a {} block", f.get<std::string>("kind")),
+                  "leave it out, or use kind = \"driven\" with motion_x, motion_y, motion_rotation");
         }
       }
       model_.blocks.push_back(std::move(b));
@@ -354,14 +347,13 @@ class ModelReader : private SectionReader {
       g.velocity = f.get<Vec2>("velocity");
       g.where = f.where();
       if (g.kind == BlockKind::kFixed && f.given("velocity"))
-        findings_.error(f.where("velocity"), f.path_of("velocity"), "has no meaning for fixed blocks",
-                        "leave it out");
+        error(f, "velocity", "has no meaning for fixed blocks", "leave it out");
       if (f.has("min") && f.has("max") && !(g.min.x < g.max.x && g.min.y < g.max.y)) {
-        findings_.error(f.where("max"), f.path_of("max"), "must lie above and to the right of min");
+        error(f, "max", "must lie above and to the right of min");
         model_.shapes_readable = false;
       }
       if (static_cast<double>(g.columns) * g.rows > 1e7)
-        findings_.error(f.where("cells"), f.path_of("cells"), "makes more than ten million cells");
+        error(f, "cells", "makes more than ten million cells");
       model_.grids.push_back(g);
     });
   }
@@ -375,9 +367,8 @@ class ModelReader : private SectionReader {
                       ? ContactLaw::kSmoothed
                       : ContactLaw::kExact;
     if (printed && contact.law == ContactLaw::kExact)
-      findings_.error(f.where("law"), f.path_of("law"),
-                      "the contact equations of model.formulation = \"as_printed\" are smoothed",
-                      "leave it out, or use formulation = \"contact_forces\"");
+      error(f, "law", "the contact equations of model.formulation = \"as_printed\" are smoothed",
+            "leave it out, or use formulation = \"contact_forces\"");
     contact.alpha = f.get("alpha", contact.alpha);
     contact.give = f.get<std::string>("stiffness") != "none";
     contact.slop = f.get("slop", contact.slop);
@@ -386,18 +377,15 @@ class ModelReader : private SectionReader {
     // the paper gives a width for friction alone
     if (printed && !f.given("smoothing_force")) contact.smoothing_force = contact.smoothing_slip;
     for (const char* key : {"smoothing_force", "smoothing_slip"})
-      if (f.given(key) && contact.law == ContactLaw::kExact)
-        findings_.error(f.where(key), f.path_of(key), "belongs to law = \"smoothed\"");
+      if (f.given(key) && contact.law == ContactLaw::kExact) error(f, key, "belongs to law = \"smoothed\"");
     for (const JointProperty& j : model_.joints)
       if (contact.law == ContactLaw::kSmoothed && j.dilation_angle > 0)
-        findings_.error(f.where("law"), f.path_of("law"),
-                        fmt::format("never slips by its rules, and joint \"{}\" dilates with slip", j.name),
-                        "use law = \"exact\", or leave dilation_angle out");
+        error(f, "law", fmt::format("never slips by its rules, and joint \"{}\" dilates with slip", j.name),
+              "use law = \"exact\", or leave dilation_angle out");
     for (const JointProperty& j : model_.joints)
       if (contact.law == ContactLaw::kSmoothed && j.restitution >= 0)
-        findings_.error(f.where("law"), f.path_of("law"),
-                        fmt::format("knows no blows, and joint \"{}\" has a restitution", j.name),
-                        "use law = \"exact\", or leave restitution out");
+        error(f, "law", fmt::format("knows no blows, and joint \"{}\" has a restitution", j.name),
+              "use law = \"exact\", or leave restitution out");
     for_list("contact_pair", [this](const Fields& p) {
       ContactPairInput c;
       const auto names = p.get<std::vector<std::string>>("between");
@@ -415,31 +403,27 @@ class ModelReader : private SectionReader {
     if (model_.formulation == Formulation::kAsPrinted) {
       if (!f.given("jacobian")) model_.solver.jacobian = JacobianKind::kDifference;
       if (model_.solver.jacobian != JacobianKind::kDifference)
-        findings_.error(f.where("jacobian"), f.path_of("jacobian"),
-                        "model.formulation = \"as_printed\" solves by difference quotients",
-                        "leave it out, or use formulation = \"contact_forces\"");
+        error(f, "jacobian", "model.formulation = \"as_printed\" solves by difference quotients",
+              "leave it out, or use formulation = \"contact_forces\"");
     }
     model_.solver.method = solver_called(f.get<std::string>("method"));
     model_.solver.second_solver = f.get("second_solver", true);
     model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
     if (model_.formulation == Formulation::kAsPrinted && model_.solver.method != SolverKind::kAuto &&
         model_.solver.method != SolverKind::kNewton) {
-      findings_.error(f.where("method"), f.path_of("method"),
-                      "model.formulation = \"as_printed\" solves by Newton's method",
-                      "leave it out, or use formulation = \"contact_forces\"");
+      error(f, "method", "model.formulation = \"as_printed\" solves by Newton's method",
+            "leave it out, or use formulation = \"contact_forces\"");
       model_.solver.method = SolverKind::kNewton;
     }
     const bool only_exact =
         model_.solver.method != SolverKind::kAuto && model_.solver.method != SolverKind::kNewton;
     if (only_exact && model_.contact.law == ContactLaw::kSmoothed)
-      findings_.error(f.where("method"), f.path_of("method"),
-                      fmt::format("{} solves the exact law only", name_of(model_.solver.method)),
-                      "use method = \"newton\" with contact.law = \"smoothed\"");
+      error(f, "method", fmt::format("{} solves the exact law only", name_of(model_.solver.method)),
+            "use method = \"newton\" with contact.law = \"smoothed\"");
     if (only_exact && model_.solver.jacobian == JacobianKind::kDifference)
-      findings_.error(
-          f.where("jacobian"), f.path_of("jacobian"),
-          fmt::format("difference quotients are of newton; {} takes none", name_of(model_.solver.method)),
-          "leave it out, or use method = \"newton\"");
+      error(f, "jacobian",
+            fmt::format("difference quotients are of newton; {} takes none", name_of(model_.solver.method)),
+            "leave it out, or use method = \"newton\"");
     read_tolerance(f);
     model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
     model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";
@@ -453,16 +437,14 @@ class ModelReader : private SectionReader {
                    : f.given("limit") ? f.get("limit", solver.limit)
                                       : std::max(solver.limit, solver.tolerance);
     if (f.given("limit") && smoothed)
-      findings_.error(f.where("limit"), f.path_of("limit"),
-                      "is of the exact law: steps of the smoothed one are judged by what its solver leaves",
-                      "leave it out, or use contact.law = \"exact\"");
+      error(f, "limit", "is of the exact law: steps of the smoothed one are judged by what its solver leaves",
+            "leave it out, or use contact.law = \"exact\"");
     if (solver.limit < solver.tolerance)
-      findings_.error(
-          f.where("limit"), f.path_of("limit"),
-          fmt::format("{:g} is not allowed; must be at least solver.tolerance, {:g}", solver.limit,
-                      solver.tolerance),
-          "give a larger limit or a smaller tolerance; without limit it is 1e-5, or the tolerance "
-          "where that is larger");
+      error(f, "limit",
+            fmt::format("{:g} is not allowed; must be at least solver.tolerance, {:g}", solver.limit,
+                        solver.tolerance),
+            "give a larger limit or a smaller tolerance; without limit it is 1e-5, or the tolerance "
+            "where that is larger");
   }
 
   void read_monitors() {
@@ -483,15 +465,13 @@ class ModelReader : private SectionReader {
       }
       for (const char* key : {"block", "centroid", "support", "bolt"})
         if (f.given(key) && f.has(key) && f.get<std::string>(key).empty()) {
-          findings_.error(f.where(key), f.path_of(key), "is empty", "name what is to be recorded");
+          error(f, key, "is empty", "name what is to be recorded");
           return;
         }
-      if (f.given("window") && !f.given("contact"))
-        findings_.error(f.where("window"), f.path_of("window"), "is only for contact monitors");
+      if (f.given("window") && !f.given("contact")) error(f, "window", "is only for contact monitors");
       m.spectrum = f.get("spectrum", false);
       if (m.spectrum && !f.given("point") && !f.given("centroid"))
-        findings_.error(f.where("spectrum"), f.path_of("spectrum"),
-                        "is only for point and centroid monitors");
+        error(f, "spectrum", "is only for point and centroid monitors");
       read_reference(f, m);
       if (f.given("convergence") || f.given("crack")) {
         const char* key = f.given("crack") ? "crack" : "convergence";
@@ -522,8 +502,8 @@ class ModelReader : private SectionReader {
         m.kind = MonitorKind::kBolt;
         m.target_a = f.get<std::string>("bolt");
         if (is_left_out("bolt", "name", m.target_a) || is_left_out("bolt_pattern", "name", m.target_a)) {
-          findings_.warning(f.where("bolt"), f.path_of("bolt"),
-                            fmt::format("\"{}\" is left out (use = false): nothing is recorded", m.target_a));
+          warning(f, "bolt",
+                  fmt::format("\"{}\" is left out (use = false): nothing is recorded", m.target_a));
           return;
         }
         check_bolt_name(f, m.target_a);
@@ -595,13 +575,13 @@ class ModelReader : private SectionReader {
     s.load = refer(f, "load", model_.loads, "load");
     for (const char* key : {"joints", "from"})
       if (s.by != SafetyBy::kStrength && f.given(key))
-        findings_.error(f.where(key), f.path_of(key), "belongs to by = \"strength\"", "leave it out");
+        error(f, key, "belongs to by = \"strength\"", "leave it out");
     s.from_start = f.get<std::string>("from") == "start";
     s.at = refer(f, "at", model_.stages, "stage");
     for (int k = 0; k <= s.at; ++k)
       if (model_.stages[k].kind != StageKind::kStatic) {
-        findings_.error(
-            f.where("at"), f.path_of("at"),
+        error(
+            f, "at",
             fmt::format("stage \"{}\" is not static, or one before it is not: there is no rest to go on from",
                         model_.stages[s.at].name),
             "name one of the static stages that the model begins with");
@@ -609,26 +589,22 @@ class ModelReader : private SectionReader {
       }
     const bool turns = s.by == SafetyBy::kTilt || s.by == SafetyBy::kAcceleration;
     if (turns && (norm(model_.gravity) == 0 || model_.in_situ.given))
-      findings_.error(f.where("by"), f.path_of("by"),
-                      model_.in_situ.given
-                          ? "turns gravity, and the stress of the ground is that of the gravity given"
-                          : "turns gravity, and there is none",
-                      model_.in_situ.given ? "leave [in_situ] out" : "give model.gravity");
-    if (s.by == SafetyBy::kTilt && s.highest >= 90)
-      findings_.error(f.where("highest"), f.path_of("highest"), "is a tilt of 90 degrees or more");
+      error(f, "by",
+            model_.in_situ.given ? "turns gravity, and the stress of the ground is that of the gravity given"
+                                 : "turns gravity, and there is none",
+            model_.in_situ.given ? "leave [in_situ] out" : "give model.gravity");
+    if (s.by == SafetyBy::kTilt && s.highest >= 90) error(f, "highest", "is a tilt of 90 degrees or more");
     s.displacement = f.get("displacement_limit", s.displacement);
     s.accept_merged = f.get("accept_merged", false);
     s.where = f.where();
-    if (!(s.lowest < s.highest))
-      findings_.error(f.where("highest"), f.path_of("highest"), "must be larger than lowest");
+    if (!(s.lowest < s.highest)) error(f, "highest", "must be larger than lowest");
     for (const std::string& name : f.get<std::vector<std::string>>("joints")) {
       const int i = refer_name(name, f.where("joints"), f.path_of("joints"), model_.joints, "joint");
       if (i < 0) continue;
       s.joints.push_back(i);
       if (model_.joints[i].bonded)
-        findings_.error(f.where("joints"), f.path_of("joints"),
-                        fmt::format("joint \"{}\" is bonded: it has no strength to reduce", name),
-                        "leave it out");
+        error(f, "joints", fmt::format("joint \"{}\" is bonded: it has no strength to reduce", name),
+              "leave it out");
     }
   }
 
@@ -645,7 +621,6 @@ class ModelReader : private SectionReader {
       findings_.warning(model_.where_gravity, "model.gravity", unusual, "downwards is [0, -9.81]");
   }
 
-  Model& model_;
   std::set<std::string> block_names_, incomplete_;
   std::string files_;  // content of the files of histories and meshes, one behind the other
 };
@@ -658,7 +633,7 @@ Model read_model(const std::string& file, const std::string& text, const std::ve
   model.file = file;
   model.text = with_overrides(text, overrides);
   model.hash = text_hash(model.text);
-  const TomlSource source = read_toml(text, overrides, findings);
+  const TomlSource source = read_toml(text, overrides, findings, model_schema());
   if (findings.has_errors()) {  // after a syntax error every further message would mislead
     model.shapes_readable = false;
     return model;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "talus/model/findings.h"
 #include "talus/model/model.h"
+#include "talus/schema/findings.h"
 
 namespace talus {
 

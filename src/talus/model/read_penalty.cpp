@@ -1,16 +1,15 @@
 #include "talus/model/read_penalty.h"
 
 #include "talus/model/joint_law.h"
-#include "talus/model/section_reader.h"
+#include "talus/model/model_sections.h"
 
 namespace talus {
 
 namespace {
 
-class PenaltyReader : private SectionReader {
+class PenaltyReader : private ModelSections {
  public:
-  PenaltyReader(const TomlSource& source, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model) {}
+  using ModelSections::ModelSections;
 
   void read() {
     const Fields f = read_table("penalty");
@@ -66,8 +65,6 @@ class PenaltyReader : private SectionReader {
                       "\"smoothed\" is a law of contact forces as unknowns; penalty springs have their own",
                       "leave it out");
   }
-
-  Model& model_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 // [penalty], and what cannot be computed by penalty springs.
 
 #include "talus/model/model.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

@@ -7,8 +7,8 @@
 
 #include "talus/base/index.h"
 #include "talus/model/joint_law.h"
-#include "talus/model/section_reader.h"
-#include "talus/model/units.h"
+#include "talus/model/model_sections.h"
+#include "talus/schema/units.h"
 
 namespace talus {
 
@@ -20,10 +20,9 @@ constexpr std::initializer_list<const char*> kOfMotion = {"safety", "moment_clam
 
 constexpr int64_t kIncrements = 20;
 
-class StageReader : private SectionReader {
+class StageReader : private ModelSections {
  public:
-  StageReader(const TomlSource& source, Model& model, Findings& findings)
-      : SectionReader(source, findings), model_(model) {}
+  using ModelSections::ModelSections;
 
   void read() {
     read_in_situ();
@@ -38,10 +37,6 @@ class StageReader : private SectionReader {
   }
 
  private:
-  void error(const Fields& f, std::string_view key, const std::string& text, const std::string& hint) {
-    findings_.error(f.where(key), f.path_of(key), text, hint);
-  }
-
   // --- stages ---
 
   void read_stage(const Fields& f) {
@@ -73,9 +68,9 @@ class StageReader : private SectionReader {
     s.where_relaxation = f.where("relaxation");
     s.where_path = f.where("path");
     if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
-      findings_.error(f.where("unbalanced"), f.path_of("unbalanced"), "is only for static stages");
+      error(f, "unbalanced", "is only for static stages");
     if (s.kind == StageKind::kDynamic && f.given("strict_rest"))
-      findings_.error(f.where("strict_rest"), f.path_of("strict_rest"), "is only for static stages");
+      error(f, "strict_rest", "is only for static stages");
     check_step(f, s);
     check_excavation(f, s);
     model_.stages.push_back(s);
@@ -131,25 +126,20 @@ class StageReader : private SectionReader {
 
   void check_step(const Fields& f, const StageInput& s) {
     if (s.moment_clamp && s.implicit)
-      findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
-                      "has nothing to do where elasticity = \"implicit\": no block limits the step",
-                      "leave one of the two out");
+      error(f, "moment_clamp", "has nothing to do where elasticity = \"implicit\": no block limits the step",
+            "leave one of the two out");
     else if (s.moment_clamp && !model_.masonry.empty())
-      findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"),
-                      "changes how blocks rock, and this model has masonry",
-                      "use elasticity = \"implicit\", or leave time_step to \"auto\"");
+      error(f, "moment_clamp", "changes how blocks rock, and this model has masonry",
+            "use elasticity = \"implicit\", or leave time_step to \"auto\"");
     else if (s.moment_clamp && std::isnan(s.time_step))
-      findings_.error(f.where("moment_clamp"), f.path_of("moment_clamp"), "needs a time_step to clamp for",
-                      "give time_step = \"... s\"");
+      error(f, "moment_clamp", "needs a time_step to clamp for", "give time_step = \"... s\"");
     if (s.implicit && f.given("safety"))
-      findings_.error(f.where("safety"), f.path_of("safety"),
-                      "is a share of the stable limit, which elasticity = \"implicit\" does not have",
-                      "leave it out");
+      error(f, "safety", "is a share of the stable limit, which elasticity = \"implicit\" does not have",
+            "leave it out");
     if (!std::isnan(s.time_step) && f.given("safety"))
-      findings_.error(f.where("safety"), f.path_of("safety"),
-                      "belongs to time_step = \"auto\"; the stage gives its own time_step");
+      error(f, "safety", "belongs to time_step = \"auto\"; the stage gives its own time_step");
     if (!std::isnan(s.time_step) && s.time_step > s.duration)
-      findings_.error(f.where("time_step"), f.path_of("time_step"), "is longer than the stage");
+      error(f, "time_step", "is longer than the stage");
   }
 
   // Shares of earlier excavations go on where they ended; two at a time would need two.
@@ -340,7 +330,6 @@ class StageReader : private SectionReader {
             "give stress_xx, stress_yy, stress_xy, or model.gravity = [0, -9.81]");
   }
 
-  Model& model_;
   std::vector<std::pair<ChangeInput, Fields>> joint_changes_;
   double share_ = 1;      // of the tractions of the last excavation that is gone
   bool pending_ = false;  // whether some stand at the end of the stages read so far

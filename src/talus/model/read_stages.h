@@ -2,7 +2,7 @@
 // The sections that say what happens when: [in_situ], [[stage]], [[change]].
 
 #include "talus/model/model.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

@@ -19,66 +19,35 @@ SectionSpec boundary_section() {
       "An edge of the model behind which the ground goes on: it lets waves out, and in. Taken are block "
       "edges with nothing on their other side; each gives half its length to either end corner. Give `edge` "
       "or `along`.",
-      {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
-       use_key(),
-       {.name = "kind",
-        .type = K::kChoice,
-        .required = true,
-        .choices = names_of_choices(kBoundaries),
-        .doc = boundary_kinds_doc()},
-       {.name = "edge",
-        .type = K::kPoints,
-        .dimension = D::kLength,
-        .doc = "A segment [[x0, y0], [x1, y1]]: all block edges on it."},
-       {.name = "along",
-        .type = K::kName,
-        .refers_to = "side, opening, fault or joint set",
-        .doc = "All block edges along it."},
-       {.name = "block",
-        .type = K::kName,
-        .refers_to = "block, grid or region",
-        .doc = "Only blocks of this name."},
-       {.name = "material",
-        .type = K::kName,
-        .refers_to = "material",
-        .doc =
-            "Of the medium behind the edge; none: that of each block at the edge, without its joints. In rock with joints a viscous edge then "
-            "returns part of a wave that comes straight in: `talus check` tells how much, and a material that takes it. Of `free_field` the rock of "
-            "the column, which is softened by the joints of the rock beside it: give no softened material there."},
-       {.name = "velocity_x",
-        .type = K::kName,
-        .refers_to = "history",
-        .doc = "History of the velocity along x that comes in [m/s], of a viscous base."},
-       {.name = "velocity_y", .type = K::kName, .refers_to = "history", .doc = "The same along y."},
-       {.name = "motion",
-        .type = K::kChoice,
-        .choices = {"upgoing", "outcrop", "within"},
-        .doc =
-            "What the histories of velocity are. `upgoing`: the incoming wave alone. `outcrop`: the motion "
-            "of the bare half-space, twice the upgoing wave, and halved here. `within` is refused with the "
-            "way out: the real motion of the base belongs to a support."},
-       {.name = "static",
-        .type = K::kChoice,
-        .default_text = "\"fixed\"",
-        .choices = {"fixed", "roller", "free"},
-        .doc = "How the edge stands in static stages: `fixed`, `roller` (along its normal only) or `free`. "
-               "At the change to a dynamic stage the reactions stay as constant forces. Not for tied "
-               "sides."},
-       {.name = "to",
-        .type = K::kName,
-        .refers_to = "side, opening, fault or joint set",
-        .doc = "The opposite side of tied sides, by name."},
-       {.name = "to_edge",
-        .type = K::kPoints,
-        .dimension = D::kLength,
-        .doc = "The opposite side of tied sides, as a segment."},
+      {key("name", K::kText, kRequired, "Unique name."), use_key(),
+       key("kind", Choices{names_of_choices(kBoundaries)}, kRequired, boundary_kinds_doc()),
+       key("edge", K::kPoints, D::kLength, "A segment [[x0, y0], [x1, y1]]: all block edges on it."),
+       key("along", K::kName, RefersTo{"side, opening, fault or joint set"}, "All block edges along it."),
+       key("block", K::kName, RefersTo{"block, grid or region"}, "Only blocks of this name."),
+       key("material", K::kName, RefersTo{"material"},
+           "Of the medium behind the edge; none: that of each block at the edge, without its joints. In rock with joints a viscous edge then "
+           "returns part of a wave that comes straight in: `talus check` tells how much, and a material that takes it. Of `free_field` the rock of "
+           "the column, which is softened by the joints of the rock beside it: give no softened material there."),
+       key("velocity_x", K::kName, RefersTo{"history"},
+           "History of the velocity along x that comes in [m/s], of a viscous base."),
+       key("velocity_y", K::kName, RefersTo{"history"}, "The same along y."),
+       key("motion", Choices{{"upgoing", "outcrop", "within"}},
+           "What the histories of velocity are. `upgoing`: the incoming wave alone. `outcrop`: the motion "
+           "of the bare half-space, twice the upgoing wave, and halved here. `within` is refused with the "
+           "way out: the real motion of the base belongs to a support."),
+       key("static", Choices{{"fixed", "roller", "free"}}, Default{"\"fixed\""},
+           "How the edge stands in static stages: `fixed`, `roller` (along its normal only) or `free`. "
+           "At the change to a dynamic stage the reactions stay as constant forces. Not for tied "
+           "sides."),
+       key("to", K::kName, RefersTo{"side, opening, fault or joint set"},
+           "The opposite side of tied sides, by name."),
+       key("to_edge", K::kPoints, D::kLength, "The opposite side of tied sides, as a segment."),
        stages_key()}};
 }
 
 SectionSpec load_section() {
   const auto signal = [](std::string_view name, Dimension dimension, std::string_view doc) {
-    return KeySpec{
-        .name = name, .type = K::kSignal, .dimension = dimension, .refers_to = "history", .doc = doc};
+    return key(name, K::kSignal, dimension, RefersTo{"history"}, doc);
   };
   return {
       "load",
@@ -87,24 +56,17 @@ SectionSpec load_section() {
       "edges (`edge` or `along`, edges with nothing on their other side), or a force at a `point`. Each is a "
       "constant or the name of a history. In static stages a history stands at its value of t = 0 on its "
       "clock.",
-      {{.name = "name", .type = K::kText, .required = true, .doc = "Unique name."},
+      {key("name", K::kText, kRequired, "Unique name."),
        signal("acceleration_x", D::kAcceleration,
               "Acceleration along x. A base that shakes with a(t) is the same as a "
               "load of -a(t) seen from the base."),
        signal("acceleration_y", D::kAcceleration, "The same along y."),
        signal("acceleration", D::kAcceleration, "The same along `direction`."),
-       {.name = "point",
-        .type = K::kVector,
-        .dimension = D::kLength,
-        .doc = "Where a force acts: all corners there in equal parts, else the block around it."},
-       {.name = "edge",
-        .type = K::kPoints,
-        .dimension = D::kLength,
-        .doc = "A segment [[x0, y0], [x1, y1]]: all block edges on it."},
-       {.name = "along",
-        .type = K::kName,
-        .refers_to = "side, opening, fault or joint set",
-        .doc = "All block edges along it, for example the wall of an opening."},
+       key("point", K::kVector, D::kLength,
+           "Where a force acts: all corners there in equal parts, else the block around it."),
+       key("edge", K::kPoints, D::kLength, "A segment [[x0, y0], [x1, y1]]: all block edges on it."),
+       key("along", K::kName, RefersTo{"side, opening, fault or joint set"},
+           "All block edges along it, for example the wall of an opening."),
        signal("pressure", D::kStress,
               "Pressure, > 0 pushes into the block: along the normal of the edge in the "
               "reference shape, turned with the block, on the reference area."),
@@ -114,13 +76,9 @@ SectionSpec load_section() {
        signal("force_x", D::kForce, "Force along x, at a point."),
        signal("force_y", D::kForce, "The same along y."),
        signal("force", D::kForce, "The same along `direction`."),
-       {.name = "direction",
-        .dimension = D::kAngle,
-        .doc = "Of `acceleration`, `traction` or `force`: from +x, counter-clockwise; \"-90 deg\" is down."},
-       {.name = "block",
-        .type = K::kName,
-        .refers_to = "block, grid or region",
-        .doc = "Only blocks of this name; none: all."},
+       key("direction", D::kAngle,
+           "Of `acceleration`, `traction` or `force`: from +x, counter-clockwise; \"-90 deg\" is down."),
+       key("block", K::kName, RefersTo{"block, grid or region"}, "Only blocks of this name; none: all."),
        stages_key()}};
 }
 

@@ -2,7 +2,7 @@
 // The table of the model file (schema.h) in its parts, one file each.
 
 #include "talus/base/angle.h"
-#include "talus/model/schema.h"
+#include "talus/schema/schema.h"
 
 namespace talus {
 
@@ -11,6 +11,9 @@ using D = Dimension;
 using K = KeyType;
 
 inline constexpr Range kUsualDensity{.min = 50, .max = 2.3e4};  // foam to lead and gold
+inline constexpr Range kUsualYoung{.min = 1e5, .max = 1.2e12};  // loose soil to diamond
+inline constexpr Range kUsualDiameter{.min = 5e-4, .max = 1};   // of a model's wire and a pile
+inline constexpr Range kUsualBar{.min = 1e8, .max = 1e12};      // of fibres and steel
 inline constexpr Range kGroundStress{.max = 1e9};               // of the crust
 inline constexpr Range kPositive{.min = 0, .min_open = true};
 inline constexpr Range kNonNegative{.min = 0};
@@ -27,36 +30,24 @@ std::vector<SectionSpec> run_sections();
 
 /// The key `stages` of what acts in some stages only.
 inline KeySpec stages_key() {
-  return {.name = "stages",
-          .type = K::kTexts,
-          .refers_to = "stage",
-          .doc = "Names of the stages in which it acts; none: all."};
+  return key("stages", K::kTexts, RefersTo{"stage"}, "Names of the stages in which it acts; none: all.");
 }
 
 /// The key `use` of what a variant of a model leaves out.
 inline KeySpec use_key() {
-  return {.name = "use",
-          .type = K::kBool,
-          .default_text = "true",
-          .doc = "`false`: left out, as if it were not in the file."};
+  return key("use", K::kBool, Default{"true"}, "`false`: left out, as if it were not in the file.");
 }
 
 /// The keys `rotate`, `rotate_about` and `move` of what has a shape.
 inline KeySpec rotate_key() {
-  return {.name = "rotate",
-          .dimension = D::kAngle,
-          .default_text = "\"0 deg\"",
-          .doc = "Turned by this angle, counter-clockwise; directions in other keys are not."};
+  return key("rotate", D::kAngle, Default{"\"0 deg\""},
+             "Turned by this angle, counter-clockwise; directions in other keys are not.");
 }
 inline KeySpec rotate_about_key(std::string_view doc = "Point it is turned about; none: its centroid.") {
-  return {.name = "rotate_about", .type = K::kVector, .dimension = D::kLength, .doc = doc};
+  return key("rotate_about", K::kVector, D::kLength, doc);
 }
 inline KeySpec move_key() {
-  return {.name = "move",
-          .type = K::kVector,
-          .dimension = D::kLength,
-          .default_text = "[0, 0]",
-          .doc = "Moved by this, after it has been turned."};
+  return key("move", K::kVector, D::kLength, Default{"[0, 0]"}, "Moved by this, after it has been turned.");
 }
 
 /// The choices of a table of { name, doc }.

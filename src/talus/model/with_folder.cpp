@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "talus/base/text.h"
-#include "talus/model/findings.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

@@ -15,10 +15,10 @@
 #include "talus/base/error.h"
 #include "talus/base/text.h"
 #include "talus/model/model_keys.h"
-#include "talus/model/schema.h"
-#include "talus/model/units.h"
+#include "talus/model/model_schema.h"
 #include "talus/output/columns.h"
 #include "talus/output/summary_seal.h"
+#include "talus/schema/units.h"
 
 namespace talus::report {
 

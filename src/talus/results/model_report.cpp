@@ -9,9 +9,9 @@
 #include "talus/base/angle.h"
 #include "talus/base/index.h"
 #include "talus/model/joint_law.h"
-#include "talus/model/units.h"
 #include "talus/output/text_table.h"
 #include "talus/output/vtk.h"
+#include "talus/schema/units.h"
 
 namespace talus {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
 #include "talus/step/scene.h"
 
 namespace talus {

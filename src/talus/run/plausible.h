@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "talus/model/findings.h"
 #include "talus/run/plan.h"
+#include "talus/schema/findings.h"
 
 namespace talus {
 

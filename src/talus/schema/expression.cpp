@@ -1,4 +1,4 @@
-#include "talus/model/expression.h"
+#include "talus/schema/expression.h"
 
 #include <fmt/format.h>
 #include <muParser.h>

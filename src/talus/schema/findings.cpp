@@ -1,4 +1,4 @@
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
 
 #include <fmt/format.h>
 

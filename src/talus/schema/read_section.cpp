@@ -1,4 +1,4 @@
-#include "talus/model/read_section.h"
+#include "talus/schema/read_section.h"
 
 #include <fmt/format.h>
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "talus/base/vec2.h"
-#include "talus/model/cut_input.h"
-#include "talus/model/findings.h"
-#include "talus/model/schema.h"
-#include "talus/model/strength_scatter.h"
-#include "talus/model/toml_source.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/scattered.h"
+#include "talus/schema/schema.h"
+#include "talus/schema/strength_scatter.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 

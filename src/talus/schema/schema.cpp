@@ -1,4 +1,4 @@
-#include "talus/model/schema.h"
+#include "talus/schema/schema.h"
 
 #include <fmt/format.h>
 
@@ -200,15 +200,15 @@ std::string Range::describe(Dimension dimension) const {
   return "";
 }
 
-const SectionSpec& section_spec(std::string_view name) {
-  for (const SectionSpec& s : model_schema())
+const SectionSpec& section_spec(const Schema& schema, std::string_view name) {
+  for (const SectionSpec& s : schema)
     if (s.name == name) return s;
   fail_assertion("the section is in the schema", __FILE__, __LINE__);
 }
 
-std::string sections_markdown(const std::vector<SectionSpec>& sections) {
+std::string schema_markdown(const Schema& schema) {
   std::string out;
-  for (const SectionSpec& s : sections) {
+  for (const SectionSpec& s : schema) {
     if (s.shape == SectionShape::kFree) {
       out += fmt::format("### {}\n\n{}\n\n", heading(s), s.doc);
       continue;
@@ -228,9 +228,8 @@ std::string sections_markdown(const std::vector<SectionSpec>& sections) {
   return out;
 }
 
-std::string schema_markdown() {
-  std::string out = sections_markdown(model_schema());
-  out += "### Units\n\n| quantity | units (SI first) |\n|---|---|\n";
+std::string units_markdown() {
+  std::string out = "### Units\n\n| quantity | units (SI first) |\n|---|---|\n";
   for (int d = static_cast<int>(D::kLength); d <= static_cast<int>(D::kLineForce); ++d) {
     const std::string text = describe(static_cast<D>(d));
     const size_t open = text.find(" (");
@@ -239,11 +238,10 @@ std::string schema_markdown() {
   return out;
 }
 
-std::string schema_json() {
-  const SectionSpec& top = section_spec("top");
-  std::string out = json_properties(top, "    ");
+std::string schema_json(const Schema& schema, std::string_view title) {
+  std::string out = json_properties(schema.front(), "    ");
   out.pop_back();  // the closing brace of the properties: sections follow
-  for (const SectionSpec& s : model_schema()) {
+  for (const SectionSpec& s : schema) {
     if (s.shape == SectionShape::kTop) continue;
     const std::string object = fmt::format("\"type\": \"object\", {}", json_properties(s, "      "));
     std::string body;
@@ -255,10 +253,9 @@ std::string schema_json() {
     out += fmt::format(",\n    {}: {{\"description\": {}, {}}}", in_quotes(s.name), in_quotes(s.doc), body);
   }
   return fmt::format(
-      "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"talus model "
-      "file, format 1\",\n"
+      "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": {},\n"
       "  \"type\": \"object\",\n  {}}}\n}}\n",
-      out);
+      in_quotes(title), out);
 }
 
 }  // namespace talus

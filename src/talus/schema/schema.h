@@ -1,5 +1,5 @@
 #pragma once
-// The model file format: every section and key with type, unit, range, default and meaning, in one table.
+// What a file of sections may hold: every section and key with type, unit, range, default and meaning, in one table.
 // The reader validates with it, the documentation tables and the published JSON schema are printed from it.
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "talus/model/units.h"
+#include "talus/schema/units.h"
 
 namespace talus {
 
@@ -58,6 +58,45 @@ struct KeySpec {
   std::string_view doc = {};
 };
 
+// Parts of a key, in any order: key("window", D::kTime, Range{.min = 0}, Default{"\"0 s\""}, "What it is.")
+struct Usual {
+  Range range;
+};
+struct Default {
+  std::string_view text;
+};
+struct Choices {
+  std::vector<std::string> names;
+};
+struct RefersTo {
+  std::string_view what;
+};
+struct Required {};
+inline constexpr Required kRequired;
+
+namespace schema_detail {
+
+inline void put(KeySpec& k, KeyType type) { k.type = type; }
+inline void put(KeySpec& k, Dimension dimension) { k.dimension = dimension; }
+inline void put(KeySpec& k, const Range& range) { k.range = range; }
+inline void put(KeySpec& k, const Usual& usual) { k.usual = usual.range; }
+inline void put(KeySpec& k, const Default& value) { k.default_text = value.text; }
+inline void put(KeySpec& k, const Choices& choices) { k.type = KeyType::kChoice, k.choices = choices.names; }
+inline void put(KeySpec& k, const RefersTo& to) { k.refers_to = to.what; }
+inline void put(KeySpec& k, Required) { k.required = true; }
+inline void put(KeySpec& k, std::string_view doc) { k.doc = doc; }
+
+}  // namespace schema_detail
+
+/// A quantity, where no part says otherwise.
+template <class... Parts>
+KeySpec key(std::string_view name, const Parts&... parts) {
+  KeySpec k;
+  k.name = name;
+  (schema_detail::put(k, parts), ...);
+  return k;
+}
+
 enum class SectionShape {
   kTop,    // keys at the top of the file
   kFree,   // [section] with keys of the user's own
@@ -73,19 +112,19 @@ struct SectionSpec {
   std::vector<KeySpec> keys;
 };
 
-/// All sections in the order of the documentation.
-const std::vector<SectionSpec>& model_schema();
+/// All sections of a kind of file, in the order of its documentation.
+using Schema = std::vector<SectionSpec>;
 
-/// @pre the section exists
-const SectionSpec& section_spec(std::string_view name);
+/// @pre  the section exists
+const SectionSpec& section_spec(const Schema& schema, std::string_view name);
 
 /// Markdown tables of sections and their keys.
-std::string sections_markdown(const std::vector<SectionSpec>& sections);
+std::string schema_markdown(const Schema& schema);
 
-/// Markdown tables of all sections, keys and units (a generated part of docs/file_format.md).
-std::string schema_markdown();
+/// A markdown table of all units.
+std::string units_markdown();
 
-/// JSON Schema (draft 2020-12) for editors.
-std::string schema_json();
+/// JSON Schema (draft 2020-12) for editors. @pre  the first section is the top of the file
+std::string schema_json(const Schema& schema, std::string_view title);
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 #pragma once
-// What every part of the model reader needs: the sections of the file one by one, names that refer to
-// something defined elsewhere, names that must be unique.
+// What every reader of a file of sections needs: the sections one by one, names that refer to something defined
+// elsewhere, names that must be unique.
 
 #include <fmt/format.h>
 
@@ -10,14 +10,14 @@
 #include "talus/base/index.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
-#include "talus/model/model.h"
-#include "talus/model/read_section.h"
+#include "talus/schema/read_section.h"
 
 namespace talus {
 
 class SectionReader {
  public:
-  SectionReader(const TomlSource& source, Findings& findings) : source_(source), findings_(findings) {}
+  SectionReader(const TomlSource& source, const Schema& schema, Findings& findings)
+      : source_(source), schema_(schema), findings_(findings) {}
 
   // The table of a [section]; empty when the file has none. (Never a copy: copies forget their place in the
   // file.)
@@ -32,7 +32,7 @@ class SectionReader {
 
   Fields read_table(const std::string& name) {
     const toml::table& t = table_of(name, "[" + name + "]");
-    return read_section(section_spec(name), t, name, where_of(t.source()), source_, findings_);
+    return read_section(section_spec(schema_, name), t, name, where_of(t.source()), source_, findings_);
   }
 
   // Calls `use(name, fields)` for every [section.NAME].
@@ -49,7 +49,7 @@ class SectionReader {
       }
       check_name(where_of(key.source()), path, std::string(key.str()));
       use(std::string(key.str()),
-          read_section(section_spec(section), *t, path, where_of(key.source()), source_, findings_));
+          read_section(section_spec(schema_, section), *t, path, where_of(key.source()), source_, findings_));
     }
   }
 
@@ -68,8 +68,8 @@ class SectionReader {
     for (const toml::node& entry : *list) {
       const toml::table& t = *entry.as_table();
       const std::string name = t["name"].value_or(std::to_string(index++));
-      const Fields fields = read_section(section_spec(section), t, section + "." + name, where_of(t.source()),
-                                         source_, findings_);
+      const Fields fields = read_section(section_spec(schema_, section), t, section + "." + name,
+                                         where_of(t.source()), source_, findings_);
       if (fields.get("use", true)) use(fields);
     }
   }
@@ -146,60 +146,16 @@ class SectionReader {
                       fmt::format("a second {} is called \"{}\"", what, name));
   }
 
-  // A motion, with its history found.
-  Motion motion(const Fields& f, std::string_view key, const std::vector<History>& histories) {
-    const MotionText m = f.get<MotionText>(key);
-    Motion out;
-    out.kind = static_cast<Motion::Kind>(m.kind);
-    const int given = index_of(histories, m.history);
-    if (m.kind == MotionText::kDisplacement && given >= 0 && histories[given].value_at(0) != 0)
-      findings_.error(f.where(key), f.path_of(key),
-                      fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
-                                  m.history, histories[given].value_at(0)),
-                      "let it begin at 0");
-    if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
-      out.history = refer_name(m.history, f.where(key), f.path_of(key), histories, "history");
-    check_quantity(f, key, out.history, histories,
-                   m.kind == MotionText::kVelocity ? "velocity" : "displacement");
-    return out;
+  void error(const Fields& f, std::string_view key, const std::string& text, const std::string& hint = "") {
+    findings_.error(f.where(key), f.path_of(key), text, hint);
   }
-
-  // A history whose file says by its unit that it is another quantity of motion.
-  void check_quantity(const Fields& f, std::string_view key, int history,
-                      const std::vector<History>& histories, std::string_view wanted) {
-    if (history < 0) return;
-    const History& h = histories[history];
-    if (h.quantity.empty() || h.quantity == wanted) return;
-    const auto a = [](std::string_view what) {
-      return fmt::format("{} {}", what == "acceleration" ? "an" : "a", what);
-    };
-    findings_.error(
-        f.where(key), f.path_of(key),
-        fmt::format("wants {}; history \"{}\" is {}, by the unit in its file", a(wanted), h.name,
-                    a(h.quantity)),
-        fmt::format(
-            "name a column of the file that is {} in history.{}.column (talus record writes all three)",
-            a(wanted), h.name));
-  }
-
-  Placement placement(const Fields& f) {
-    Placement out{f.get("rotate", 0.0), {}, f.get<Vec2>("move")};
-    if (f.given("rotate_about") && !f.given("rotate"))
-      findings_.error(f.where("rotate_about"), f.path_of("rotate_about"), "has no meaning without rotate",
-                      "give rotate, an angle, or leave it out");
-    if (f.has("rotate_about")) out.about = f.get<Vec2>("rotate_about");
-    return out;
-  }
-
-  static BlockKind block_kind(const std::string& s) {
-    return s == "rigid"    ? BlockKind::kRigid
-           : s == "fixed"  ? BlockKind::kFixed
-           : s == "driven" ? BlockKind::kDriven
-                           : BlockKind::kDeformable;
+  void warning(const Fields& f, std::string_view key, const std::string& text, const std::string& hint = "") {
+    findings_.warning(f.where(key), f.path_of(key), text, hint);
   }
 
  protected:
   const TomlSource& source_;
+  const Schema& schema_;
   Findings& findings_;
 };
 

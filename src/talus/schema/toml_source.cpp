@@ -1,4 +1,4 @@
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "talus/base/text.h"
-#include "talus/model/schema.h"
 
 namespace talus {
 
@@ -117,8 +116,8 @@ std::string names_in(const toml::array& list) {
 
 // Whether `section` has entries of the model's own: one that is not there was mistyped, or is meant to be
 // new.
-bool is_of_entries(const std::string& section) {
-  for (const SectionSpec& s : model_schema())
+bool is_of_entries(const std::string& section, const Schema& schema) {
+  for (const SectionSpec& s : schema)
     if (s.name == section) return s.shape == SectionShape::kNamed || s.shape == SectionShape::kList;
   return false;
 }
@@ -138,7 +137,7 @@ void no_such_table(const std::vector<std::string>& parts, const toml::table& roo
                      fmt::format("to make one on purpose: --set new:{}", item));
 }
 
-void apply_override(const std::string& whole, TomlSource& source, Findings& findings) {
+void apply_override(const std::string& whole, const Schema& schema, TomlSource& source, Findings& findings) {
   const Where where{0, 0, "--set " + whole};
   constexpr std::string_view kNew = "new:";
   const bool is_new = whole.rfind(kNew, 0) == 0;
@@ -166,7 +165,8 @@ void apply_override(const std::string& whole, TomlSource& source, Findings& find
   for (size_t i = 0; i + 1 < parts.size(); ++i) {
     toml::node* next = table->get(parts[i]);
     if (!next) {
-      if (!is_new && is_of_entries(parts[0])) return no_such_table(parts, source.root, where, item, findings);
+      if (!is_new && is_of_entries(parts[0], schema))
+        return no_such_table(parts, source.root, where, item, findings);
       table->insert(parts[i], toml::table{});
       next = table->get(parts[i]);
     }
@@ -207,8 +207,8 @@ Where where_of(const toml::source_region& region) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), ""};
 }
 
-TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides,
-                      Findings& findings) {
+TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings,
+                      const Schema& schema) {
   TomlSource source;
   if (text.size() > kMostModelText) {
     findings.error({}, "", fmt::format("the file is larger than {}", readable_bytes(kMostModelText)));
@@ -238,7 +238,7 @@ TomlSource parse_toml(const std::string& text, const std::vector<std::string>& o
                                : "");
     return source;
   }
-  for (const std::string& item : overrides) apply_override(item, source, findings);
+  for (const std::string& item : overrides) apply_override(item, schema, source, findings);
   return source;
 }
 

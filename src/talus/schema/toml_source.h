@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "talus/base/text_file.h"
-#include "talus/model/findings.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/schema.h"
 
 namespace talus {
 
@@ -24,7 +25,9 @@ struct TomlSource {
 /// Parses `text`; syntax errors and broken encoding become findings. Variables stand as they are (variables.h).
 /// @param overrides  "a.b=c" each; c is TOML, or taken as text. Entries of lists are named by their `name`,
 ///                   or by their number from 0: "block.striker.kind=rigid", "contact_pair.0.joint=glue".
-TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings);
+/// @param schema     what the file may hold: only sections of entries are not made by a mistyped override
+TomlSource parse_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings,
+                      const Schema& schema = {});
 
 /// What stands before each override behind the text of a model.
 inline constexpr const char* kOverride = "# --set ";

@@ -1,4 +1,4 @@
-#include "talus/model/units.h"
+#include "talus/schema/units.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "talus/model/variables.h"
+#include "talus/schema/variables.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <set>
 
 #include "talus/base/text.h"
-#include "talus/model/expression.h"
-#include "talus/model/units.h"
+#include "talus/schema/expression.h"
+#include "talus/schema/units.h"
 
 namespace talus {
 
@@ -230,8 +230,9 @@ class Substitution {
 
 }  // namespace
 
-TomlSource read_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings) {
-  TomlSource source = parse_toml(text, overrides, findings);
+TomlSource read_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings,
+                     const Schema& schema) {
+  TomlSource source = parse_toml(text, overrides, findings, schema);
   if (!findings.has_errors()) put_variables(source, findings);
   return source;
 }

@@ -1,12 +1,13 @@
 #pragma once
 // [variables] of the model file, and what stands for them in its texts: "$name" and "$(expression)".
 
-#include "talus/model/toml_source.h"
+#include "talus/schema/toml_source.h"
 
 namespace talus {
 
 /// parse_toml(), with the values of its variables in their places.
-TomlSource read_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings);
+TomlSource read_toml(const std::string& text, const std::vector<std::string>& overrides, Findings& findings,
+                     const Schema& schema = {});
 
 /// Puts values where texts outside of [variables] hold "$name" or "$(expression)"; "$$" is a dollar sign. A text that is
 /// nothing else becomes the value itself, of any type; within other text its digits are written. In expressions

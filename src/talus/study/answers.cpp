@@ -8,7 +8,7 @@
 #include <set>
 
 #include "talus/base/text.h"
-#include "talus/model/expression.h"
+#include "talus/schema/expression.h"
 
 namespace talus::study {
 

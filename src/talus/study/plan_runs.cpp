@@ -6,10 +6,10 @@
 #include "talus/base/error.h"
 #include "talus/base/index.h"
 #include "talus/base/text_file.h"
-#include "talus/model/units.h"
 #include "talus/record/history_file.h"
 #include "talus/record/measures.h"
 #include "talus/record/response_spectrum.h"
+#include "talus/schema/units.h"
 #include "talus/study/study.h"
 
 namespace talus::study {

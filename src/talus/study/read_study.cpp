@@ -12,8 +12,8 @@
 #include "talus/base/random.h"
 #include "talus/base/text.h"
 #include "talus/base/text_file.h"
-#include "talus/model/read_section.h"
-#include "talus/model/variables.h"
+#include "talus/schema/read_section.h"
+#include "talus/schema/variables.h"
 #include "talus/study/study.h"
 
 namespace talus::study {
@@ -31,89 +31,49 @@ std::vector<SectionSpec> sections() {
       {"top",
        SectionShape::kTop,
        "First lines of the file.",
-       {{.name = "talus_study",
-         .type = K::kInteger,
-         .range = {.min = 1, .max = 1},
-         .required = true,
-         .doc = "Number of the format: 1."},
-        {.name = "title", .type = K::kText, .default_text = "\"\"", .doc = "Free text, shown in the report."},
-        {.name = "model",
-         .type = K::kText,
-         .required = true,
-         .doc = "Model file that is run; the path counts from the folder of the study file."},
-        {.name = "set", .type = K::kTexts, .doc = "Overrides for all runs, \"KEY=VALUE\" as behind --set."},
-        {.name = "keep",
-         .type = K::kChoice,
-         .default_text = "\"all\"",
-         .choices = {"all", "answers"},
-         .doc =
-             "What stays of a run: its whole result folder, or summary.json and monitors.csv alone (thousands of runs)."},
-        {.name = "report",
-         .type = K::kBool,
-         .default_text = "false",
-         .doc = "Make report.html of every run; the table of the study opens it. Needs keep = \"all\"."},
-        {.name = "share_static",
-         .type = K::kBool,
-         .default_text = "true",
-         .doc =
-             "Run the static stages that come first once for all runs whose keys differ only in what begins later, and branch off (Branches, in docs/file_format.md). Keys of `[solver]` and `[[stage]]` are not shared over: they tell in the stages before."}}},
+       {key("talus_study", K::kInteger, Range{.min = 1, .max = 1}, kRequired, "Number of the format: 1."),
+        key("title", K::kText, Default{"\"\""}, "Free text, shown in the report."),
+        key("model", K::kText, kRequired,
+            "Model file that is run; the path counts from the folder of the study file."),
+        key("set", K::kTexts, "Overrides for all runs, \"KEY=VALUE\" as behind --set."),
+        key("keep", Choices{{"all", "answers"}}, Default{"\"all\""},
+            "What stays of a run: its whole result folder, or summary.json and monitors.csv alone (thousands of runs)."),
+        key("report", K::kBool, Default{"false"},
+            "Make report.html of every run; the table of the study opens it. Needs keep = \"all\"."),
+        key("share_static", K::kBool, Default{"true"},
+            "Run the static stages that come first once for all runs whose keys differ only in what begins later, and branch off (Branches, in docs/file_format.md). Keys of `[solver]` and `[[stage]]` are not shared over: they tell in the stages before.")}},
       {"vary",
        SectionShape::kList,
        "A key of the model that varies. Give one of `values` (a list), `range` `{ from, to, count }`, `files`, `distribution` `{ mean, normal }`, `{ mean, lognormal }` or `{ from, to }` (with `least`, `most` where it is cut off). Listed keys make every combination; sampled ones are drawn together, `sampling.runs` times for each combination.",
-       {{.name = "key",
-         .type = K::kText,
-         .required = true,
-         .doc =
-             "Key of the model file, as behind --set: `variables.phi`, `joint.bed.friction_angle.seed`, `history.base.file`."},
-        {.name = "name",
-         .type = K::kText,
-         .doc = "Name in tables and figures; none: the last part of the key."},
-        {.name = "files",
-         .type = K::kText,
-         .doc =
-             "Pattern of file names (`*`, `?`, `[abc]`), `motions/*.csv`, from the folder of the study: each file is a value."},
-        {.name = "measure",
-         .type = K::kText,
-         .doc =
-             "With `values` or `range`: these are what a motion is scaled to, and the key is a factor (`history.base.scale`): \"PGA\", \"PGV\" or \"Sa(0.5 s)\" (5 % damping)."},
-        {.name = "motion",
-         .type = K::kText,
-         .doc =
-             "With `measure`: name of the [[vary]] whose files are scaled; none: the only one with `files`."}}},
+       {key("key", K::kText, kRequired,
+            "Key of the model file, as behind --set: `variables.phi`, `joint.bed.friction_angle.seed`, `history.base.file`."),
+        key("name", K::kText, "Name in tables and figures; none: the last part of the key."),
+        key("files", K::kText,
+            "Pattern of file names (`*`, `?`, `[abc]`), `motions/*.csv`, from the folder of the study: each file is a value."),
+        key("measure", K::kText,
+            "With `values` or `range`: these are what a motion is scaled to, and the key is a factor (`history.base.scale`): \"PGA\", \"PGV\" or \"Sa(0.5 s)\" (5 % damping)."),
+        key("motion", K::kText,
+            "With `measure`: name of the [[vary]] whose files are scaled; none: the only one with `files`.")}},
       {"sampling",
        SectionShape::kTable,
        "How keys with a `distribution` are drawn.",
-       {{.name = "runs", .type = K::kInteger, .range = {.min = 1, .max = 1e6}, .doc = "Number of samples."},
-        {.name = "seed",
-         .type = K::kInteger,
-         .range = {.min = 0, .max = 9e15},
-         .default_text = "0",
-         .doc = "Seed; the same seed draws the same samples."},
-        {.name = "method",
-         .type = K::kChoice,
-         .default_text = "\"latin_hypercube\"",
-         .choices = {"latin_hypercube", "random"},
-         .doc =
-             "`latin_hypercube`: each key takes one value of each of as many equally likely parts of its distribution as there are samples."}}},
+       {key("runs", K::kInteger, Range{.min = 1, .max = 1e6}, "Number of samples."),
+        key("seed", K::kInteger, Range{.min = 0, .max = 9e15}, Default{"0"},
+            "Seed; the same seed draws the same samples."),
+        key("method", Choices{{"latin_hypercube", "random"}}, Default{"\"latin_hypercube\""},
+            "`latin_hypercube`: each key takes one value of each of as many equally likely parts of its distribution as there are samples.")}},
       {"failure",
        SectionShape::kNamed,
        "A state of damage. One alone may be written `[failure]`.",
-       {{.name = "when",
-         .type = K::kText,
-         .required = true,
-         .doc = "Formula in answers; the run is in this state when it is true: \"drift > 0.02\"."},
-        {.name = "invalid",
-         .type = K::kChoice,
-         .default_text = "\"left out\"",
-         .choices = {"left out", "failed"},
-         .doc =
-             "What a run counts as in results.csv that is not valid (by its audit, or ended by failure of numbers): as neither, or as failed. Curves are drawn for both, and with it as sound."}}},
+       {key("when", K::kText, kRequired,
+            "Formula in answers; the run is in this state when it is true: \"drift > 0.02\"."),
+        key("invalid", Choices{{"left out", "failed"}}, Default{"\"left out\""},
+            "What a run counts as in results.csv that is not valid (by its audit, or ended by failure of numbers): as neither, or as failed. Curves are drawn for both, and with it as sound.")}},
       {"fragility",
        SectionShape::kTable,
        "Probability of the states of damage, and answers, over one key that varies.",
-       {{.name = "over",
-         .type = K::kText,
-         .doc = "Name of a [[vary]] with numbers; none: the one with `measure`, if there is one."}}}};
+       {key("over", K::kText,
+            "Name of a [[vary]] with numbers; none: the one with `measure`, if there is one.")}}};
 }
 
 std::optional<AnyQuantity> quantity_of(const toml::node& node) {
@@ -602,7 +562,7 @@ const std::vector<SectionSpec>& study_schema() {
   return all;
 }
 
-std::string study_markdown() { return sections_markdown(study_schema()); }
+std::string study_markdown() { return schema_markdown(study_schema()); }
 
 Study read_study(const std::string& file, const std::string& text, Findings& findings) {
   Study study;

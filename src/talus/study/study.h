@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "talus/model/findings.h"
-#include "talus/model/schema.h"
+#include "talus/schema/findings.h"
+#include "talus/schema/schema.h"
 
 namespace talus::study {
 

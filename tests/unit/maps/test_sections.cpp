@@ -9,8 +9,8 @@
 #include "talus/maps/expand.h"
 #include "talus/maps/import.h"
 #include "talus/model/read_model.h"
-#include "talus/model/toml_source.h"
 #include "talus/model/with_folder.h"
+#include "talus/schema/toml_source.h"
 
 namespace test_sections {
 

@@ -8,8 +8,8 @@
 
 #include "support/relative.h"
 #include "talus/base/text_file.h"
+#include "talus/model/model_schema.h"
 #include "talus/model/read_model.h"
-#include "talus/model/schema.h"
 
 namespace test_model_file {
 
@@ -80,11 +80,11 @@ TEST_CASE("defaults are those the schema publishes") {
 
 TEST_CASE("docs/file_format.md holds the tables of the program") {
   const std::string page = read_text_file(std::string(TALUS_SOURCE_DIR) + "/docs/file_format.md");
-  CHECK(page.find(schema_markdown()) != std::string::npos);  // else: talus schema, and paste
+  CHECK(page.find(model_markdown()) != std::string::npos);  // else: talus schema, and paste
 }
 
 TEST_CASE("docs/talus.schema.json is the program's schema, and is JSON") {
-  const std::string text = schema_json();
+  const std::string text = model_json();
   CHECK(read_text_file(std::string(TALUS_SOURCE_DIR) + "/docs/talus.schema.json") == text);
   const auto json = nlohmann::json::parse(text);
   CHECK(json["properties"]["material"]["additionalProperties"]["properties"]["density"]["exclusiveMinimum"] ==

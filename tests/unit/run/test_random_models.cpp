@@ -38,7 +38,7 @@ struct Count {
 };
 
 void try_model(uint64_t seed, Count& count) {
-  const std::string text = RandomModel(Choices::from_seed(seed)).text();
+  const std::string text = RandomModel(test::Choices::from_seed(seed)).text();
   INFO("seed ", seed, "\n", text);
   try {
     Findings findings("m.toml", text);

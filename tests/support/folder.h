@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
 namespace talus::test {
@@ -14,9 +16,11 @@ namespace talus::test {
 /// A folder of its own for each test, removed at its end.
 class Folder {
  public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() / fmt::format("talus_test_{}_{}", getpid(), count_++)) {
-    std::filesystem::create_directories(path_);
+  // a name of its own: one by number of process may be left over from a run that was killed
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "talus_test_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder for a test");
+    path_ = name;
   }
   ~Folder() {
     std::error_code ignored;
@@ -29,7 +33,6 @@ class Folder {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
  private:
-  static inline int count_ = 0;
   std::filesystem::path path_;
 };
 

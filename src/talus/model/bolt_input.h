@@ -15,16 +15,16 @@ struct BoltType {
   std::string name;
   BoltKind kind = BoltKind::kGrouted;
   double diameter = 0;                                              // [m]
-  double young = 0;                                                 // [Pa]
+  double young = 200e9;                                             // [Pa]
   double yield_force = std::numeric_limits<double>::infinity();     // [N]
   double rupture_strain = std::numeric_limits<double>::infinity();  // elongation at rupture / length
   double spacing = 1;                                               // out of the plane [m]
   double pretension = 0;                                            // [N]
-  double grout_stiffness = 0;                                       // [N/m per m]
-  double bond_strength = 0;                                         // [N/m]
+  double grout_stiffness = 1e9;                                     // [N/m per m]
+  double bond_strength = 200e3;                                     // [N/m]
   double dowel_stiffness = 0;                                       // [N/m]
   double dowel_yield = 0;                                           // [N]
-  double segment_length = 0;                                        // [m]
+  double segment_length = 0.25;                                     // [m]
   bool plate = false;                                               // the end `from` is fixed to its block
   Where where;
 

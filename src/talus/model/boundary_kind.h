@@ -35,11 +35,4 @@ inline constexpr std::array kBoundaries{
 
 inline constexpr const BoundaryEntry& entry(BoundaryKind kind) { return kBoundaries[place_of(kind)]; }
 
-/// The kind called `name`; the first when there is none.
-inline constexpr BoundaryKind boundary_called(std::string_view name) {
-  for (const BoundaryEntry& e : kBoundaries)
-    if (e.name == name) return e.kind;
-  return BoundaryKind::kViscous;
-}
-
 }  // namespace talus

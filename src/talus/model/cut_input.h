@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,10 @@ struct RegionInput {
 /// A ring of voussoirs: a region that brings its own joints.
 struct ArchInput {
   std::string name;
-  Vec2 center;           // [m]
-  double radius = 0;     // of the intrados [m]
-  double thickness = 0;  // [m]
-  double from = 0, to = 0;
+  Vec2 center;                             // [m]
+  double radius = 0;                       // of the intrados [m]
+  double thickness = 0;                    // [m]
+  double from = 0, to = std::numbers::pi;  // [rad]
   int voussoirs = 0;
   int material = -1;
   int joint = -1;
@@ -90,8 +91,8 @@ struct TessellationInput {
   std::string name;
   int region = -1;
   bool triangles = false;
-  double size = 0;          // [m]
-  double irregularity = 0;  // 0 to 1
+  double size = 0;            // [m]
+  double irregularity = 0.5;  // 0 to 1
   int joint = -1;
   Where where;
 };
@@ -115,8 +116,8 @@ struct CutInput {
   SliverPolicy slivers = SliverPolicy::kKeep;
   std::vector<std::string> merge_along;      // joint sets whose lines that reach a free face may be parted
   double sliver_area = 0, sliver_width = 0;  // [m2], [m]
-  double sliver_area_share = 0, sliver_width_share = 0;  // of the median block of the region
-  std::string blocks_file;                               // cut before; "" cut now
+  double sliver_area_share = 0.02, sliver_width_share = 0.3;  // of the median block of the region
+  std::string blocks_file;                                    // cut before; "" cut now
   Where where, where_file, where_grid, where_slivers;
 };
 

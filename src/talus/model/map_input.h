@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/angle.h"
 #include "talus/base/vec2.h"
 #include "talus/schema/findings.h"
 
@@ -37,9 +38,9 @@ struct MapInput {
 
 /// [maps]: what holds for all of them.
 struct MapsInput {
-  double snap = 0;        // [m] ends this near to another line are joined to it
-  double shortest = 0;    // [m] shorter lines and segments are left out
-  double curve_step = 0;  // [rad] of arcs between two points
+  double snap = 0;                   // [m] ends this near to another line are joined to it
+  double shortest = 0;               // [m] shorter lines and segments are left out
+  double curve_step = 10 * kDegree;  // [rad] of arcs between two points
   bool has_origin = false;
   Vec2 origin;  // [m] of the map, becomes (0, 0)
   std::vector<MapInput> list;

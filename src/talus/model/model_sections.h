@@ -58,13 +58,6 @@ class ModelSections : protected SectionReader {
     return out;
   }
 
-  static BlockKind block_kind(const std::string& s) {
-    return s == "rigid"    ? BlockKind::kRigid
-           : s == "fixed"  ? BlockKind::kFixed
-           : s == "driven" ? BlockKind::kDriven
-                           : BlockKind::kDeformable;
-  }
-
   Model& model_;
 };
 

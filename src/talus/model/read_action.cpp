@@ -61,9 +61,7 @@ class ActionReader : private ModelSections {
 
   void read_support(const Fields& f) {
     claim_name(f, supports_, "support");
-    SupportInput s;
-    s.name = f.get<std::string>("name");
-    s.where = f.where();
+    auto s = f.filled<SupportInput>();
     read_place(f, true, s);
     read_block_name(f, s);
     s.x = motion(f, "x", model_.histories);
@@ -78,13 +76,10 @@ class ActionReader : private ModelSections {
 
   void read_boundary(const Fields& f) {
     claim_name(f, boundaries_, "boundary");
-    BoundaryInput b;
-    b.name = f.get<std::string>("name");
-    b.where = f.where();
+    auto b = f.filled<BoundaryInput>();
     b.where_material = f.where("material");
     b.stages = stages(f, model_.stages);
     const auto kind = f.get<std::string>("kind");
-    b.kind = boundary_called(kind);
     const BoundaryEntry& of_kind = entry(b.kind);
     read_place(f, false, b);
     read_block_name(f, b);
@@ -94,8 +89,6 @@ class ActionReader : private ModelSections {
     check_quantity(f, "velocity_x", b.history_x, model_.histories, "velocity");
     check_quantity(f, "velocity_y", b.history_y, model_.histories, "velocity");
     b.outcrop = f.get<std::string>("motion") == "outcrop";
-    const auto hold = f.get<std::string>("static");
-    b.hold = hold == "roller" ? StaticHold::kRoller : hold == "free" ? StaticHold::kFree : StaticHold::kFixed;
     if (!kind.empty() && of_kind.no_motion.empty()) {
       check_input_motion(f);
       warn_still_moving(f, "velocity_x", b.history_x);
@@ -198,8 +191,7 @@ class ActionReader : private ModelSections {
 
   void read_load(const Fields& f) {
     claim_name(f, loads_, "load");
-    LoadInput l;
-    l.name = f.get<std::string>("name");
+    auto l = f.filled<LoadInput>();
     l.where = f.given("block") ? f.where("block") : f.where();
     l.stages = stages(f, model_.stages);
     read_block_name(f, l);

@@ -54,23 +54,11 @@ class BoltReader : private ModelSections {
   // --- types ---
 
   void read_type(const std::string& name, const Fields& f) {
-    BoltType t;
-    t.name = name, t.where = f.where();
+    auto t = f.filled<BoltType>();
+    t.name = name;
     const auto kind = f.get<std::string>("kind");
-    t.kind = kind == "anchored"     ? BoltKind::kAnchored
-             : kind == "superposed" ? BoltKind::kSuperposed
-                                    : BoltKind::kGrouted;
-    t.diameter = f.get("diameter", 0.025);
-    t.young = f.get("young", 200e9);
-    t.spacing = f.get("spacing", 1.0);
     t.yield_force = f.get("yield_force",
                           f.given("yield_stress") ? f.get<double>("yield_stress") * t.area() : t.yield_force);
-    t.rupture_strain = f.get("rupture_strain", t.rupture_strain);
-    t.pretension = f.get("pretension", 0.0);
-    t.grout_stiffness = f.get("grout_stiffness", 1e9);
-    t.bond_strength = f.get("bond_strength", 2e5);
-    t.segment_length = f.get("segment_length", 0.25);
-    t.plate = f.get("plate", false);
     t.dowel_stiffness = f.get("dowel_stiffness", dowel_of_beam(t));
     t.dowel_yield = f.get("dowel_yield", t.yield_force / std::sqrt(3.0));
     if (f.given("yield_stress") && f.given("yield_force"))

@@ -88,27 +88,13 @@ class CutReader : private ModelSections {
   void read_cut() {
     const Fields f = read_table("cut");
     CutInput& c = model_.cut;
+    f.fill(c);
     c.where = f.where();
-    c.section_azimuth = f.get("section_azimuth", c.section_azimuth);
     azimuth_given_ = f.given("section_azimuth");
-    c.where_grid = f.where("grid");
-    c.seed = static_cast<uint64_t>(f.get<int64_t>("seed", 1));
-    c.grid = f.get("grid", c.grid);
-    const auto policy = f.get<std::string>("slivers");
-    c.where_slivers = f.where("slivers");
-    c.slivers = policy == "delete"  ? SliverPolicy::kDelete
-                : policy == "merge" ? SliverPolicy::kMerge
-                                    : SliverPolicy::kKeep;
-    c.merge_along = f.get<std::vector<std::string>>("merge_along");
     where_merge_along_ = f.where("merge_along");
     if (f.given("merge_along") && c.slivers != SliverPolicy::kMerge)
       findings_.warning(where_merge_along_, f.path_of("merge_along"), "has no effect: nothing is merged",
                         "it counts with slivers = \"merge\"");
-    c.sliver_area = f.get("sliver_area", 0.0);
-    c.sliver_width = f.get("sliver_width", 0.0);
-    c.sliver_area_share = f.get("sliver_area_share", 0.0);
-    c.sliver_width_share = f.get("sliver_width_share", 0.0);
-    c.blocks_file = f.get<std::string>("blocks");
     c.where_file = f.where("blocks");
     if (f.given("blocks") && c.blocks_file.empty())
       error(f, "blocks", "is empty", "name a file that talus cut has written");
@@ -117,13 +103,9 @@ class CutReader : private ModelSections {
   void read_regions() {
     for_list("region", [this](const Fields& f) {
       claim_name(f, block_names_, "block, grid or region");
-      RegionInput r;
-      r.name = f.get<std::string>("name");
-      r.where = f.where();
-      r.polygon = f.get<std::vector<Vec2>>("polygon");
+      auto r = f.filled<RegionInput>();
       const bool sound = f.has("polygon") && check_polygon(f, "polygon", r.polygon);
       if (!sound) incomplete();
-      r.sides = f.get<std::vector<std::string>>("sides");
       if (sound && f.has("sides") && r.sides.size() != r.polygon.size()) {
         error(f, "sides", fmt::format("has {} names for {} edges", r.sides.size(), r.polygon.size()),
               "give one name per edge, the first for the edge from the first to the second corner");
@@ -137,10 +119,7 @@ class CutReader : private ModelSections {
       }
       r.material = material(f);
       r.joint = joint(f);
-      r.kind = block_kind(f.get<std::string>("kind"));
       if (sound) placement(f).apply(r.polygon);
-      r.sliver_area = f.get("sliver_area", r.sliver_area);
-      r.sliver_width = f.get("sliver_width", r.sliver_width);
       model_.regions.push_back(std::move(r));
     });
   }
@@ -148,15 +127,7 @@ class CutReader : private ModelSections {
   void read_arches() {
     for_list("arch", [this](const Fields& f) {
       claim_both(f, "block, grid or region");
-      ArchInput a;
-      a.name = f.get<std::string>("name");
-      a.where = f.where();
-      a.center = f.get<Vec2>("center");
-      a.radius = f.get("radius", 1.0);
-      a.thickness = f.get("thickness", 1.0);
-      a.from = f.get("from", 0.0);
-      a.to = f.get("to", 1.0);
-      a.voussoirs = static_cast<int>(f.get<int64_t>("voussoirs", 1));
+      auto a = f.filled<ArchInput>();
       for (const char* key : {"name", "center", "radius", "thickness", "voussoirs"})
         if (!f.has(key)) incomplete();
       if (!(a.to > a.from) || a.to - a.from > kTurn * (1 - 1e-9)) {
@@ -169,7 +140,6 @@ class CutReader : private ModelSections {
       }
       a.material = material(f);
       a.joint = joint(f);
-      a.kind = block_kind(f.get<std::string>("kind"));
       const Placement place = placement(f);
       a.center = place.apply(a.center, a.center), a.from += place.angle, a.to += place.angle;
       for (const char* side : {"intrados", "extrados", "start", "end"})
@@ -181,14 +151,9 @@ class CutReader : private ModelSections {
   void read_openings() {
     for_list("opening", [this](const Fields& f) {
       claim_both(f, "block, grid, region or opening");
-      OpeningInput o;
-      o.name = f.get<std::string>("name");
-      o.where = f.where();
+      auto o = f.filled<OpeningInput>();
       const auto shape = f.get<std::string>("shape");
       const auto segments = static_cast<int>(f.get<int64_t>("segments", 32));
-      o.shape = shape == "circle"      ? OpeningShape::kCircle
-                : shape == "horseshoe" ? OpeningShape::kHorseshoe
-                                       : OpeningShape::kPolygon;
       if (f.has("shape") && has_only(f, shape)) {
         if (o.shape == OpeningShape::kPolygon) {
           o.polygon = f.get<std::vector<Vec2>>("polygon");
@@ -205,7 +170,6 @@ class CutReader : private ModelSections {
           o.sagitta = sagitta(0.5 * f.get("width", 1.0), std::numbers::pi / segments);
         }
       }
-      o.kept = f.get<std::string>("rock") == "kept";
       o.joint = joint(f);
       if (!o.kept && f.has("rock") && f.given("joint"))
         warning(f, "joint", "has no effect: removed rock has no joint", "it counts with rock = \"kept\"");
@@ -242,10 +206,7 @@ class CutReader : private ModelSections {
   void read_faults() {
     for_list("fault", [this](const Fields& f) {
       claim_trace_name(f, "source of joints");
-      FaultInput fault;
-      fault.name = f.get<std::string>("name");
-      fault.where = f.where();
-      fault.points = f.get<std::vector<Vec2>>("points");
+      auto fault = f.filled<FaultInput>();
       if (f.has("points") && fault.points.size() < 2)
         error(f, "points", "needs two points or more", "give [[x0, y0], [x1, y1], ...] from end to end");
       fault.joint = joint(f);
@@ -257,10 +218,7 @@ class CutReader : private ModelSections {
   void read_traces() {
     for_list("traces", [this](const Fields& f) {
       claim_trace_name(f, "source of joints");
-      TracesInput t;
-      t.name = f.get<std::string>("name");
-      t.where = f.where();
-      t.lines = f.get<std::vector<Polyline>>("lines");
+      auto t = f.filled<TracesInput>();
       if (f.has("lines") && t.lines.empty())
         error(f, "lines", "is empty", "give lines [[[x, y], [x, y], ...], ...], or leave the section out");
       t.joint = joint(f);
@@ -272,14 +230,8 @@ class CutReader : private ModelSections {
   void read_masonry() {
     for_list("masonry", [this](const Fields& f) {
       claim_trace_name(f, "source of joints");
-      MasonryInput m;
-      m.name = f.get<std::string>("name");
-      m.where = f.where();
+      auto m = f.filled<MasonryInput>();
       m.region = region(f);
-      m.length = f.get("length", 1.0);
-      m.height = f.get("height", 1.0);
-      m.overlap = f.get("overlap", m.overlap);
-      m.origin = f.get<Vec2>("origin");
       m.bed_joint = joint(f, "bed_joint");
       m.head_joint = joint(f, "head_joint");
       for (const char* part : {"bed", "head"})
@@ -292,13 +244,8 @@ class CutReader : private ModelSections {
   void read_tessellations() {
     for_list("tessellation", [this](const Fields& f) {
       claim_trace_name(f, "source of joints");
-      TessellationInput t;
-      t.name = f.get<std::string>("name");
-      t.where = f.where();
+      auto t = f.filled<TessellationInput>();
       t.region = region(f);
-      t.triangles = f.get<std::string>("cells") == "triangles";
-      t.size = f.get("size", 1.0);
-      t.irregularity = f.get("irregularity", 0.0);
       t.joint = joint(f);
       check_cells(f, "size", t.region, t.size, t.size);
       check_divides(f, t);
@@ -338,19 +285,13 @@ class CutReader : private ModelSections {
   void read_joint_sets() {
     for_list("joint_set", [this](const Fields& f) {
       claim_trace_name(f, "source of joints");
-      JointSetInput s;
-      s.name = f.get<std::string>("name");
-      s.where = f.where();
+      auto s = f.filled<JointSetInput>();
       s.where_spacing = f.where("spacing");
       s.where_length = f.where("trace_length");
       s.in_space = f.given("dip") || f.given("dip_direction");
       if (f.given("angle") == s.in_space)
         findings_.error(f.where(), f.path(), s.in_space ? "has both angle and dip" : "has no direction",
                         "give angle, or dip and dip_direction");
-      s.angle = f.get<Scattered>("angle");
-      s.dip = f.get("dip", 0.0);
-      s.dip_direction = f.get("dip_direction", 0.0);
-      s.fisher = f.get("fisher", 0.0);
       if (s.in_space && !f.given("angle") && !(f.given("dip") && f.given("dip_direction")))
         findings_.error(f.where(), f.path(), f.given("dip") ? "has no dip_direction" : "has no dip",
                         "an orientation in space needs both");
@@ -359,15 +300,9 @@ class CutReader : private ModelSections {
       if (!s.in_space && f.given("fisher"))
         error(f, "fisher", "belongs to dip and dip_direction",
               "an angle scatters by itself: angle = { mean = ..., normal = ... }");
-      s.spacing = f.get<Scattered>("spacing", {Scattered::kConstant, 1, 0});
-      s.trace_length = f.get<Scattered>("trace_length");
-      s.gap = f.get<Scattered>("gap");
       for (const char* key : {"gap", "start"})
         if (f.given(key) && !f.given("trace_length"))
           error(f, key, "has no meaning for a through-going set", "give trace_length");
-      s.origin = f.get<Vec2>("origin");
-      s.offset = f.get<Scattered>("offset");
-      s.start = f.get<Scattered>("start");
       s.region = region(f);
       s.joint = joint(f);
       if (!f.has("spacing") || (s.in_space && !std::isfinite(model_.cut.section_azimuth)) ||

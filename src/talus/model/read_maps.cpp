@@ -18,11 +18,8 @@ class MapsReader : private SectionReader {
 
   MapsInput read() {
     const Fields f = read_table("maps");
-    out_.snap = f.get("snap", 0.0);
-    out_.shortest = f.get("shortest", 0.0);
-    out_.curve_step = f.get("curve_step", 0.0);
+    f.fill(out_);
     out_.has_origin = f.has("origin");
-    out_.origin = f.get<Vec2>("origin");
     std::set<std::string> names;
     for_list("map", [&](const Fields& m) { read_map(m, names); });
     return std::move(out_);
@@ -31,22 +28,10 @@ class MapsReader : private SectionReader {
  private:
   void read_map(const Fields& f, std::set<std::string>& names) {
     claim_name(f, names, "map");
-    MapInput m;
-    m.name = f.get<std::string>("name");
-    m.file = f.get<std::string>("file");
-    m.layer = f.get<std::string>("layer");
-    m.attribute = f.get<std::string>("attribute");
-    m.values = f.get<std::vector<std::string>>("values");
+    auto m = f.filled<MapInput>();
     m.unit = drawing_unit(f.get<std::string>("unit"));
-    const auto& uses = map_use_names();
-    const auto use = std::find(uses.begin(), uses.end(), f.get<std::string>("becomes"));
-    if (use != uses.end()) m.use = static_cast<MapUse>(use - uses.begin());
-    m.joint = f.get<std::string>("joint");
-    m.material = f.get<std::string>("material");
-    m.type = f.get<std::string>("type");
     if (f.given("kind")) m.kind = f.get<std::string>("kind");
-    m.rock_kept = f.get<std::string>("rock") == "kept";
-    m.where = f.where(), m.where_file = f.where("file"), m.where_layer = f.where("layer");
+    m.where_layer = f.where("layer");
     m.where_attribute = f.where("attribute"), m.where_unit = f.where("unit");
     if (f.given("file") && m.file.empty()) error(f, "file", "is empty", "name a drawing");
     if (f.given("attribute") != f.given("values"))

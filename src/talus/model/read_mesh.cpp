@@ -26,10 +26,7 @@ class MeshReader : private ModelSections {
  private:
   void read_mesh(const Fields& f) {
     claim_name(f, block_names_, "block, grid or mesh");
-    MeshInput m;
-    m.name = f.get<std::string>("name");
-    m.where = f.where();
-    m.kind = block_kind(f.get<std::string>("kind"));
+    auto m = f.filled<MeshInput>();
     m.material = refer(f, "material", model_.materials, "material");
     m.joint = refer(f, "joint", model_.joints, "joint");
     if (!f.has("file") || !f.has("name") || !read_file(f, m.mesh)) {

@@ -118,7 +118,7 @@ class ModelReader : private ModelSections {
 
   bool read_top() {
     const Fields f = read_section(model_schema().front(), source_.root, "", {1, 1, ""}, source_, findings_);
-    model_.title = f.get<std::string>("title");
+    f.fill(model_);
     model_.folder =
         (std::filesystem::path(model_.file).parent_path() / f.get<std::string>("folder")).string();
     const auto format = f.get<int64_t>("talus", kModelFormat);
@@ -135,23 +135,14 @@ class ModelReader : private ModelSections {
 
   void read_general() {
     const Fields f = read_table("model");
-    model_.thickness = f.get("thickness", 1.0);
-    model_.plane = f.get<std::string>("plane") == "stress" ? Plane::kStress : Plane::kStrain;
-    model_.inertia = f.get<std::string>("inertia") == "lumped" ? Inertia::kLumped : Inertia::kConsistent;
-    const auto formulation = f.get<std::string>("formulation");
-    model_.formulation = formulation == "penalty"      ? Formulation::kPenalty
-                         : formulation == "as_printed" ? Formulation::kAsPrinted
-                                                       : Formulation::kContactForces;
-    model_.gravity = f.get<Vec2>("gravity");
-    model_.where_gravity = f.where("gravity");
+    f.fill(model_);
     check_gravity();
   }
 
   void read_materials() {
     for_named("material", [this](const std::string& name, const Fields& f) {
-      Material m;
-      m.name = name, m.where = f.where();
-      m.density = f.get("density", 1.0);
+      auto m = f.filled<Material>();
+      m.name = name;
       // a value that was given but refused has its message already: 0 keeps it from being called missing
       m.young = f.get("young", f.given("young") ? 0 : m.young);
       m.poisson = f.get("poisson", f.given("poisson") ? 0 : m.poisson);
@@ -189,7 +180,7 @@ class ModelReader : private ModelSections {
 
   void read_joints() {
     for_named("joint", [this](const std::string& name, const Fields& f) {
-      JointProperty j;
+      auto j = f.filled<JointProperty>();
       j.name = name;
       read_kind(f, j);
       const auto strength = [&](const char* key, double& mean, StrengthScatter& scatter) {
@@ -200,18 +191,10 @@ class ModelReader : private ModelSections {
       strength("friction_angle", j.friction_angle, j.friction_scatter);
       strength("cohesion", j.cohesion, j.cohesion_scatter);
       strength("tensile_strength", j.tensile_strength, j.tension_scatter);
-      j.where = f.where();
-      j.normal_stiffness = f.get("normal_stiffness", 0.0);
-      j.shear_stiffness = f.get("shear_stiffness", 0.0);
       const bool may = model_.formulation == Formulation::kContactForces && JointLaw(j).is_soft();
       j.damping_time =
           may || f.given("damping_time") ? f.get("damping_time", 0.0) : 0;  // its default is one of stiffness
       j.restitution = f.get("restitution", -1.0);
-      j.dilation_angle = f.get("dilation_angle", 0.0);
-      j.dilation_slip = f.get("dilation_slip", j.dilation_slip);
-      j.residual_friction_angle = f.get("residual_friction_angle", j.residual_friction_angle);
-      j.residual_cohesion = f.get("residual_cohesion", 0.0);
-      j.residual_tensile_strength = f.get("residual_tensile_strength", 0.0);
       for (const JointDefect& d : JointLaw::defects(j))
         findings_.error(f.where(d.key), f.path_of(d.key), d.text, d.hint);
       for (const char* key :
@@ -295,16 +278,11 @@ class ModelReader : private ModelSections {
   void read_blocks() {
     for_list("block", [this](const Fields& f) {
       claim_name(f, block_names_, "block or grid");
-      BlockInput b;
-      b.name = f.get<std::string>("name");
-      b.polygon = f.get<std::vector<Vec2>>("polygon");
+      auto b = f.filled<BlockInput>();
       if (!f.has("polygon") || !f.has("name")) model_.shapes_readable = false;
       b.where = f.given("polygon") ? f.where("polygon") : f.where();
       b.material = refer(f, "material", model_.materials, "material");
-      b.kind = block_kind(f.get<std::string>("kind"));
       placement(f).apply(b.polygon);
-      b.velocity = f.get<Vec2>("velocity");
-      b.spin = f.get("spin", 0.0);
       b.motion_x = motion(f, "motion_x", model_.histories);
       b.motion_y = motion(f, "motion_y", model_.histories);
       b.motion_rotation = motion(f, "motion_rotation", model_.histories);
@@ -330,22 +308,14 @@ class ModelReader : private ModelSections {
   void read_grids() {
     for_list("grid", [this](const Fields& f) {
       claim_name(f, block_names_, "block or grid");
-      GridInput g;
-      g.name = f.get<std::string>("name");
-      g.min = f.get<Vec2>("min");
-      g.max = f.get<Vec2>("max", {1, 1});
+      auto g = f.filled<GridInput>();
       for (const char* key : {"name", "min", "max", "cells"})
         if (!f.has(key)) model_.shapes_readable = false;
       const auto cells = f.get<std::array<int, 2>>("cells", {1, 1});
       g.columns = cells[0], g.rows = cells[1];
-      g.pattern = f.get<std::string>("pattern") == "crossed_triangles" ? GridPattern::kCrossedTriangles
-                                                                       : GridPattern::kRectangles;
       g.material = refer(f, "material", model_.materials, "material");
       g.joint = refer(f, "joint", model_.joints, "joint");
-      g.kind = block_kind(f.get<std::string>("kind"));
       g.place = placement(f);
-      g.velocity = f.get<Vec2>("velocity");
-      g.where = f.where();
       if (g.kind == BlockKind::kFixed && f.given("velocity"))
         error(f, "velocity", "has no meaning for fixed blocks", "leave it out");
       if (f.has("min") && f.has("max") && !(g.min.x < g.max.x && g.min.y < g.max.y)) {
@@ -362,6 +332,7 @@ class ModelReader : private ModelSections {
     const Fields f = read_table("contact");
     model_.default_joint = refer(f, "joint", model_.joints, "joint");
     ContactInput& contact = model_.contact;
+    f.fill(contact);
     const bool printed = model_.formulation == Formulation::kAsPrinted;
     contact.law = f.get<std::string>("law") == "smoothed" || (printed && !f.given("law"))
                       ? ContactLaw::kSmoothed
@@ -369,11 +340,7 @@ class ModelReader : private ModelSections {
     if (printed && contact.law == ContactLaw::kExact)
       error(f, "law", "the contact equations of model.formulation = \"as_printed\" are smoothed",
             "leave it out, or use formulation = \"contact_forces\"");
-    contact.alpha = f.get("alpha", contact.alpha);
     contact.give = f.get<std::string>("stiffness") != "none";
-    contact.slop = f.get("slop", contact.slop);
-    contact.smoothing_force = f.get("smoothing_force", contact.smoothing_force);
-    contact.smoothing_slip = f.get("smoothing_slip", contact.smoothing_slip);
     // the paper gives a width for friction alone
     if (printed && !f.given("smoothing_force")) contact.smoothing_force = contact.smoothing_slip;
     for (const char* key : {"smoothing_force", "smoothing_slip"})
@@ -398,17 +365,13 @@ class ModelReader : private ModelSections {
 
   void read_solver() {
     const Fields f = read_table("solver");
-    model_.solver.jacobian =
-        f.get<std::string>("jacobian") == "difference" ? JacobianKind::kDifference : JacobianKind::kAnalytic;
+    f.fill(model_.solver);
     if (model_.formulation == Formulation::kAsPrinted) {
       if (!f.given("jacobian")) model_.solver.jacobian = JacobianKind::kDifference;
       if (model_.solver.jacobian != JacobianKind::kDifference)
         error(f, "jacobian", "model.formulation = \"as_printed\" solves by difference quotients",
               "leave it out, or use formulation = \"contact_forces\"");
     }
-    model_.solver.method = solver_called(f.get<std::string>("method"));
-    model_.solver.second_solver = f.get("second_solver", true);
-    model_.solver.max_sweeps = static_cast<int>(f.get<int64_t>("max_sweeps", 20000));
     if (model_.formulation == Formulation::kAsPrinted && model_.solver.method != SolverKind::kAuto &&
         model_.solver.method != SolverKind::kNewton) {
       error(f, "method", "model.formulation = \"as_printed\" solves by Newton's method",
@@ -425,13 +388,11 @@ class ModelReader : private ModelSections {
             fmt::format("difference quotients are of newton; {} takes none", name_of(model_.solver.method)),
             "leave it out, or use method = \"newton\"");
     read_tolerance(f);
-    model_.solver.max_iterations = static_cast<int>(f.get<int64_t>("max_iterations", 60));
     model_.solver.stop_on_failure = f.get<std::string>("on_failure") != "continue";
   }
 
   void read_tolerance(const Fields& f) {
     SolverInput& solver = model_.solver;
-    solver.tolerance = f.get("tolerance", solver.tolerance);
     const bool smoothed = model_.contact.law == ContactLaw::kSmoothed;
     solver.limit = smoothed           ? solver.tolerance
                    : f.given("limit") ? f.get("limit", solver.limit)
@@ -451,10 +412,7 @@ class ModelReader : private ModelSections {
     std::set<std::string> used;
     for_list("monitor", [this, &used](const Fields& f) {
       claim_name(f, used, "monitor");
-      MonitorInput m;
-      m.name = f.get<std::string>("name");
-      m.window = f.get("window", 0.0);
-      m.where = f.where();
+      auto m = f.filled<MonitorInput>();
       const int kinds = f.given("point") + f.given("block") + f.given("support") + f.given("contact") +
                         f.given("bolt") + f.given("convergence") + f.given("centroid") + f.given("crack");
       if (kinds != 1) {
@@ -469,7 +427,6 @@ class ModelReader : private ModelSections {
           return;
         }
       if (f.given("window") && !f.given("contact")) error(f, "window", "is only for contact monitors");
-      m.spectrum = f.get("spectrum", false);
       if (m.spectrum && !f.given("point") && !f.given("centroid"))
         error(f, "spectrum", "is only for point and centroid monitors");
       read_reference(f, m);
@@ -528,8 +485,6 @@ class ModelReader : private ModelSections {
     int given = 0;
     for (const char* key : {"relative_to", "relative_to_point", "relative_to_points"})
       if (f.given(key)) m.where_relative = f.where(key), ++given;
-    m.relative_to = f.get<std::string>("relative_to");
-    m.relative_to_points = f.get<std::vector<Vec2>>("relative_to_points");
     if (f.given("relative_to_point")) m.relative_to_points = {f.get<Vec2>("relative_to_point")};
     if (given > 1)
       findings_.error(m.where_relative, f.path(), "is relative to two things",
@@ -544,25 +499,15 @@ class ModelReader : private ModelSections {
 
   void read_output() {
     const Fields f = read_table("output");
-    model_.output.history_interval = f.get("history_interval", 0.0);
-    model_.output.steps_interval = f.get("steps_interval", 0.0);
-    model_.output.field_interval = f.get("field_interval", 0.0);
-    model_.output.save_interval = f.get("save_interval", model_.output.save_interval);
-    model_.output.audit = f.get("audit", true);
-    model_.output.pictures = f.get("pictures", true);
+    f.fill(model_.output);
     model_.output.where_history = f.where("history_interval");
     model_.output.where_field = f.where("field_interval");
-    model_.output.audit_interval = f.get("audit_interval", 0.0);
   }
 
   void read_safety() {
     const Fields f = read_table("safety");
     SafetyInput& s = model_.safety;
-    const std::string by = f.get<std::string>("by");
-    s.by = by == "load"           ? SafetyBy::kLoad
-           : by == "tilt"         ? SafetyBy::kTilt
-           : by == "acceleration" ? SafetyBy::kAcceleration
-                                  : SafetyBy::kStrength;
+    f.fill(s);
     // strength and loads by factors, a tilt in degrees, an acceleration in shares of gravity
     const double usual[4][3] = {{0.5, 4, 0.01}, {0.5, 4, 0.01}, {1, 60, 0.05}, {0.01, 1, 0.001}};
     const auto& [lowest, highest, tolerance] = usual[place_of(s.by)];
@@ -576,7 +521,6 @@ class ModelReader : private ModelSections {
     for (const char* key : {"joints", "from"})
       if (s.by != SafetyBy::kStrength && f.given(key))
         error(f, key, "belongs to by = \"strength\"", "leave it out");
-    s.from_start = f.get<std::string>("from") == "start";
     s.at = refer(f, "at", model_.stages, "stage");
     for (int k = 0; k <= s.at; ++k)
       if (model_.stages[k].kind != StageKind::kStatic) {
@@ -594,8 +538,6 @@ class ModelReader : private ModelSections {
                                  : "turns gravity, and there is none",
             model_.in_situ.given ? "leave [in_situ] out" : "give model.gravity");
     if (s.by == SafetyBy::kTilt && s.highest >= 90) error(f, "highest", "is a tilt of 90 degrees or more");
-    s.displacement = f.get("displacement_limit", s.displacement);
-    s.accept_merged = f.get("accept_merged", false);
     s.where = f.where();
     if (!(s.lowest < s.highest)) error(f, "highest", "must be larger than lowest");
     for (const std::string& name : f.get<std::vector<std::string>>("joints")) {

@@ -14,14 +14,7 @@ class PenaltyReader : private ModelSections {
   void read() {
     const Fields f = read_table("penalty");
     PenaltyInput& p = model_.penalty;
-    p.normal_stiffness = f.get("normal_stiffness", p.normal_stiffness);
-    p.shear_share = f.get("shear_share", p.shear_share);
-    p.support_stiffness = f.get("support_stiffness", p.support_stiffness);
-    p.exact_rotation = f.get<std::string>("rotation") == "exact";
-    p.mean_acceleration = f.get<std::string>("scheme") == "mean_acceleration";
-    p.dynamic_factor = f.get("dynamic_factor", p.dynamic_factor);
-    p.most_iterations = static_cast<int>(f.get<int64_t>("max_iterations", p.most_iterations));
-    p.largest_displacement = f.get("largest_displacement", p.largest_displacement);
+    f.fill(p);
     if (model_.formulation != Formulation::kPenalty) return;
     refuse();
   }

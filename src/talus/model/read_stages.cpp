@@ -40,32 +40,14 @@ class StageReader : private ModelSections {
   // --- stages ---
 
   void read_stage(const Fields& f) {
-    StageInput s;
-    s.name = f.get<std::string>("name");
-    s.kind = f.get<std::string>("kind") == "static" ? StageKind::kStatic : StageKind::kDynamic;
-    s.duration = f.get("duration", 1.0);
-    s.time_step = f.get("time_step", s.time_step);
-    s.safety = f.get("safety", s.safety);
-    s.moment_clamp = f.get("moment_clamp", false);
+    auto s = f.filled<StageInput>();
     s.implicit = f.get<std::string>("elasticity") == "implicit";
     // a share of the stable step, or a clamp for it, asks for the explicit way
     s.elasticity_auto = f.get<std::string>("elasticity") == "auto" && !f.given("safety") && !s.moment_clamp;
-    s.damping_mass = f.get("damping_mass", 0.0);
-    s.damping_stiffness = f.get("damping_stiffness", 0.0);
     s.damping_auto = !f.given("damping_stiffness");
     s.damping_local = f.get("damping_local", s.kind == StageKind::kStatic ? kStaticDamping : 0.0);
-    s.unbalanced = f.get("unbalanced", s.unbalanced);
-    s.strict_rest = f.get("strict_rest", false);
-    s.excavate = f.get<std::vector<std::string>>("excavate");
-    s.relaxation = f.get<std::vector<Vec2>>("relaxation");
     read_integration(f, s);
     read_path(f, s);
-    s.reset_displacements = f.get("reset_displacements", false);
-    s.where = f.where();
-    s.where_step = f.where("time_step");
-    s.where_clamp = f.where("moment_clamp");
-    s.where_excavate = f.where("excavate");
-    s.where_relaxation = f.where("relaxation");
     s.where_path = f.where("path");
     if (s.kind == StageKind::kDynamic && f.given("unbalanced"))
       error(f, "unbalanced", "is only for static stages");
@@ -197,12 +179,10 @@ class StageReader : private ModelSections {
   // --- changes ---
 
   void read_change(const Fields& f) {
-    ChangeInput c;
-    c.where = f.where();
+    auto c = f.filled<ChangeInput>();
     c.stage = refer(f, "stage", model_.stages, "stage");
     c.joint = refer(f, "joint", model_.joints, "joint");
     c.material = refer(f, "material", model_.materials, "material");
-    c.block = f.get<std::string>("block");
     const auto kind = f.get<std::string>("kind");
     c.kind = kind == "fixed" ? ChangeInput::kFixed : kind == "free" ? ChangeInput::kFree : ChangeInput::kSame;
     const auto value = [&](const char* key, double& to) { to = f.get(key, to); };
@@ -290,14 +270,10 @@ class StageReader : private ModelSections {
     if (!source_.root.contains("in_situ")) return;
     const Fields f = read_table("in_situ");
     InSituInput& s = model_.in_situ;
+    f.fill(s);
     s.given = true;
-    s.where = f.where();
     s.where_level = f.where("level");
     s.with_depth = f.given("level");
-    s.level = f.get("level", 0.0), s.pressure = f.get("pressure", 0.0), s.density = f.get("density", 0.0);
-    s.k0 = f.get("k0", s.k0);
-    s.horizontal_pressure = f.get("horizontal_pressure", 0.0);
-    s.horizontal_gradient = f.get("horizontal_gradient", 0.0);
     const double xy = f.get("stress_xy", 0.0);
     s.stress = {f.get("stress_xx", 0.0), xy, xy, f.get("stress_yy", 0.0)};
 

@@ -12,36 +12,39 @@ SectionSpec type_section() {
       SectionShape::kNamed,
       "A kind of rock bolt. All forces and stiffnesses are those of one bolt; the model takes them over "
       "`spacing`.",
-      {key("kind", Choices{{"anchored", "grouted", "superposed"}}, kRequired,
+      {key("kind", Choices{{"anchored", "grouted", "superposed"}}, kRequired, to(&BoltType::kind),
            "`anchored`: a spring between its two ends, which carries tension only. `grouted`: a bar held "
            "along its length by grout that slips at its bond strength, with dowel stiffness where it "
            "crosses a joint. `superposed`: only stiffens the blocks that it passes, for comparison with "
            "the paper."),
-       key("diameter", D::kLength, kPositive, Usual{kUsualDiameter}, kRequired, "Of the bar."),
-       key("young", D::kStress, kPositive, Usual{kUsualBar}, Default{"\"200 GPa\""},
+       key("diameter", D::kLength, kPositive, Usual{kUsualDiameter}, kRequired, to(&BoltType::diameter),
+           "Of the bar."),
+       key("young", D::kStress, kPositive, Usual{kUsualBar}, to(&BoltType::young), Default{"\"200 GPa\""},
            "Young's modulus of the bar (default: steel)."),
        key("yield_stress", D::kStress, kPositive, Usual{Range{.min = 1e6, .max = 1e10}},
            "Stress at which the bar yields; or give `yield_force`; none: it never does."),
        key("yield_force", D::kForce, kPositive, "Force at which the bar yields."),
-       key("rupture_strain", Range{.min = 0, .max = 1, .min_open = true},
+       key("rupture_strain", Range{.min = 0, .max = 1, .min_open = true}, kNoDefault,
+           to(&BoltType::rupture_strain),
            "Elongation over length, that of the pretension included, at which the bar breaks for good; "
            "none: it never does."),
-       key("spacing", D::kLength, kPositive, kRequired, "Distance between bolts out of the plane."),
-       key("pretension", D::kForce, kNonNegative, Default{"\"0 N\""},
+       key("spacing", D::kLength, kPositive, kRequired, to(&BoltType::spacing),
+           "Distance between bolts out of the plane."),
+       key("pretension", D::kForce, kNonNegative, to(&BoltType::pretension),
            "Tension at installation. A grouted bolt with pretension is fixed to the rock at both ends, as "
            "if it had been anchored, tensioned and then grouted."),
-       key("grout_stiffness", D::kStress, kPositive, Default{"\"1 GPa\""},
+       key("grout_stiffness", D::kStress, kPositive, to(&BoltType::grout_stiffness), Default{"\"1 GPa\""},
            "Grouted: force per length and slip between bar and rock (theory 4.21 has a formula)."),
-       key("bond_strength", D::kLineForce, kPositive, Default{"\"200 kN/m\""},
+       key("bond_strength", D::kLineForce, kPositive, to(&BoltType::bond_strength), Default{"\"200 kN/m\""},
            "Grouted: force per length at which it slips; pi x hole diameter x strength of the grout."),
        key("dowel_stiffness", D::kLineForce, kNonNegative,
            "Grouted: force across the bar per displacement of a joint along itself; default (theory "
            "4.21): bar as a beam in the grout. 0: none."),
        key("dowel_yield", D::kForce, kPositive,
            "Grouted: largest force across the bar; default: yield force / sqrt(3)."),
-       key("segment_length", D::kLength, kPositive, Default{"\"0.25 m\""},
+       key("segment_length", D::kLength, kPositive, to(&BoltType::segment_length),
            "Grouted: longest piece of bar between two springs of grout; at most 10,000 to a bolt."),
-       key("plate", K::kBool, Default{"false"},
+       key("plate", K::kBool, to(&BoltType::plate),
            "Grouted: the end `from` has a face plate, which moves with the rock.")}};
 }
 

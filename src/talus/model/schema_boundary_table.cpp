@@ -19,8 +19,9 @@ SectionSpec boundary_section() {
       "An edge of the model behind which the ground goes on: it lets waves out, and in. Taken are block "
       "edges with nothing on their other side; each gives half its length to either end corner. Give `edge` "
       "or `along`.",
-      {key("name", K::kText, kRequired, "Unique name."), use_key(),
-       key("kind", Choices{names_of_choices(kBoundaries)}, kRequired, boundary_kinds_doc()),
+      {key("name", K::kText, kRequired, to(&BoundaryInput::name), "Unique name."), use_key(),
+       key("kind", Choices{names_of_choices(kBoundaries)}, kRequired, to(&BoundaryInput::kind),
+           boundary_kinds_doc()),
        key("edge", K::kPoints, D::kLength, "A segment [[x0, y0], [x1, y1]]: all block edges on it."),
        key("along", K::kName, RefersTo{"side, opening, fault or joint set"}, "All block edges along it."),
        key("block", K::kName, RefersTo{"block, grid or region"}, "Only blocks of this name."),
@@ -35,7 +36,7 @@ SectionSpec boundary_section() {
            "What the histories of velocity are. `upgoing`: the incoming wave alone. `outcrop`: the motion "
            "of the bare half-space, twice the upgoing wave, and halved here. `within` is refused with the "
            "way out: the real motion of the base belongs to a support."),
-       key("static", Choices{{"fixed", "roller", "free"}}, Default{"\"fixed\""},
+       key("static", Choices{{"fixed", "roller", "free"}}, to(&BoundaryInput::hold),
            "How the edge stands in static stages: `fixed`, `roller` (along its normal only) or `free`. "
            "At the change to a dynamic stage the reactions stay as constant forces. Not for tied "
            "sides."),
@@ -56,7 +57,7 @@ SectionSpec load_section() {
       "edges (`edge` or `along`, edges with nothing on their other side), or a force at a `point`. Each is a "
       "constant or the name of a history. In static stages a history stands at its value of t = 0 on its "
       "clock.",
-      {key("name", K::kText, kRequired, "Unique name."),
+      {key("name", K::kText, kRequired, to(&LoadInput::name), "Unique name."),
        signal("acceleration_x", D::kAcceleration,
               "Acceleration along x. A base that shakes with a(t) is the same as a "
               "load of -a(t) seen from the base."),

@@ -12,17 +12,18 @@ SectionSpec in_situ_section() {
       SectionShape::kTable,
       "Stress of the ground at the start, in every deformable block as at its centroid. Either with depth "
       "(`level`, `density`, `k0` or a horizontal gradient) or the same everywhere (`stress_xx` ...).",
-      {key("level", D::kLength,
+      {key("level", D::kLength, kNoDefault, to(&InSituInput::level),
            "Height y at which depth begins; no deformable block may have its centroid above."),
-       key("pressure", D::kStress, kNonNegative, Usual{kGroundStress}, Default{"\"0 Pa\""},
+       key("pressure", D::kStress, kNonNegative, Usual{kGroundStress}, to(&InSituInput::pressure),
            "Vertical pressure at that level, of the ground above the model."),
-       key("density", D::kDensity, kPositive, Usual{kUsualDensity},
+       key("density", D::kDensity, kPositive, Usual{kUsualDensity}, kNoDefault, to(&InSituInput::density),
            "Of the ground below the level: the vertical pressure is `pressure` + density x gravity x "
            "depth."),
-       key("k0", kNonNegative, "Horizontal / vertical pressure."),
-       key("horizontal_pressure", D::kStress, kNonNegative, Usual{kGroundStress},
-           "Instead of `k0`: horizontal pressure at the level."),
-       key("horizontal_gradient", D::kStiffness, kNonNegative,
+       key("k0", kNonNegative, kNoDefault, to(&InSituInput::k0), "Horizontal / vertical pressure."),
+       key("horizontal_pressure", D::kStress, kNonNegative, Usual{kGroundStress}, kNoDefault,
+           to(&InSituInput::horizontal_pressure), "Instead of `k0`: horizontal pressure at the level."),
+       key("horizontal_gradient", D::kStiffness, kNonNegative, kNoDefault,
+           to(&InSituInput::horizontal_gradient),
            "Instead of `k0`: growth of the horizontal pressure with depth."),
        key("stress_xx", D::kStress, Usual{kGroundStress}, "Stress everywhere, tension > 0."),
        key("stress_yy", D::kStress, Usual{kGroundStress}, "The same."),
@@ -34,14 +35,14 @@ SectionSpec stage_section() {
       "stage",
       SectionShape::kList,
       "Stages in the order they run.",
-      {key("name", K::kText, kRequired, "Unique name."),
-       key("kind", Choices{{"static", "dynamic"}}, kRequired,
+      {key("name", K::kText, kRequired, to(&StageInput::name), "Unique name."),
+       key("kind", Choices{{"static", "dynamic"}}, kRequired, to(&StageInput::kind),
            "`dynamic`: in true time for `duration`. `static`: until at rest, at most for "
            "`duration`; with `path` from balance to balance."),
-       key("duration", D::kTime, kPositive, Usual{Range{.max = 1e5}}, kRequired,
+       key("duration", D::kTime, kPositive, Usual{Range{.max = 1e5}}, kRequired, to(&StageInput::duration),
            "Length; for a static stage the limit after which the run stops with an error."),
        key("time_step", K::kQuantityAuto, D::kTime, kPositive, Usual{Range{.min = 1e-9, .max = 0.1}},
-           Default{"\"auto\""},
+           to(&StageInput::time_step, &StageInput::where_step),
            "Time step, rounded down so that the stage ends on a step. \"auto\": `safety` times the "
            "stable limit of the stiffest block; with implicit elasticity the time in which a wave crosses two "
            "blocks, in dynamic stages at most a tenth of the shortest period of the histories; where no block "
@@ -68,7 +69,7 @@ SectionSpec stage_section() {
        key("increments", K::kInteger, Range{.min = 1, .max = 1e5}, Default{"20"},
            "With `path`: number of equal parts of it. Friction and what breaks depend on the way there: twice as many "
            "tell whether these were enough. Friction of joints without stiffness is known to a per cent at the solver's usual tolerance (theory 14.7)."),
-       key("safety", Range{.min = 0, .max = 1, .min_open = true, .max_open = true}, Default{"0.8"},
+       key("safety", Range{.min = 0, .max = 1, .min_open = true, .max_open = true}, to(&StageInput::safety),
            "With \"auto\": share of the stable limit."),
        key("elasticity", Choices{{"auto", "explicit", "implicit"}}, Default{"\"auto\""},
            "`auto`: implicit where a deformable block can slide on a hard contact with friction; in static "
@@ -80,14 +81,15 @@ SectionSpec stage_section() {
            "(theory 4.9), so that no block limits the time step; \"auto\" is then the time in which a wave "
            "crosses two blocks of median size, and at most twice (with local damping, once) the inverse "
            "angular frequency of all but a tenth of the blocks on their elastic joints."),
-       key("moment_clamp", K::kBool, Default{"false"},
+       key("moment_clamp", K::kBool, to(&StageInput::moment_clamp, &StageInput::where_clamp),
            "With a given `time_step`: raise the moment of inertia of blocks too thin for it (counted and "
            "reported; refused where a block of median size would need it, and on masonry, whose bricks "
            "rock)."),
-       key("damping_mass", D::kRate, kNonNegative, Default{"\"0 1/s\""},
+       key("damping_mass", D::kRate, kNonNegative, to(&StageInput::damping_mass),
            "Mass-proportional damping: force = -damping_mass x mass x velocity. An oscillation of angular "
            "frequency w gets the damping ratio damping_mass / (2 w)."),
-       key("damping_stiffness", D::kTime, kNonNegative, Usual{Range{.min = 1e-6, .max = 0.1}},
+       key("damping_stiffness", D::kTime, kNonNegative, Usual{Range{.min = 1e-6, .max = 0.1}}, kNoDefault,
+           to(&StageInput::damping_stiffness),
            "Stiffness-proportional damping: stress = damping_stiffness x elastic stiffness x strain "
            "rate, in blocks, not in joints. An oscillation of angular frequency w gets the damping "
            "ratio damping_stiffness x w / 2. With implicit `elasticity` what contact.alpha damps is a part of "
@@ -97,23 +99,25 @@ SectionSpec stage_section() {
        key("damping_local", Range{.min = 0, .max = 1, .max_open = true},
            "Local damping: share of a block's unbalanced force that opposes its motion. Default 0.8 in "
            "static, 0 in dynamic stages."),
-       key("unbalanced", Range{.min = 0, .max = 0.1, .min_open = true}, Default{"1e-5"},
+       key("unbalanced", Range{.min = 0, .max = 0.1, .min_open = true}, to(&StageInput::unbalanced),
            "Static stages: at rest when the largest unbalanced force of a block, as share of the mean "
            "force on blocks, and the velocity left, as share of its peak or of what the forces give in "
            "half a step, are below this."),
-       key("strict_rest", K::kBool, Default{"false"},
+       key("strict_rest", K::kBool, to(&StageInput::strict_rest),
            "Static stages in steps from rest: true: all blocks have to rest. false: blocks that fall or slide on without an "
            "end, less than a hundredth of the area in all, are named, and the stage ends when the others rest; "
            "they weigh nothing from then on, what moves pushes them aside, and they go on in the stages after it."),
-       key("excavate", K::kTexts, RefersTo{"block, grid, region or kept opening"},
+       key("excavate", K::kTexts, RefersTo{"block, grid, region or kept opening"}, kNoDefault,
+           to(&StageInput::excavate, &StageInput::where_excavate),
            "Blocks taken out at the start of the stage: names of groups or of single blocks. They leave "
            "no mass and no contact."),
-       key("relaxation", K::kCurve, Range{.min = 0, .max = 1},
+       key("relaxation", K::kCurve, Range{.min = 0, .max = 1}, kNoDefault,
+           to(&StageInput::relaxation, &StageInput::where_relaxation),
            "List of [time since the start of the stage, share]: what the excavated blocks pushed on the "
            "others stays as forces, of which this share is gone. Linear between points and held; begins "
            "at 0 with the excavation (none: all gone at once) and where the stage before ended in a "
            "later stage."),
-       key("reset_displacements", K::kBool, Default{"false"},
+       key("reset_displacements", K::kBool, to(&StageInput::reset_displacements),
            "Displacements in histories and frames count from the start of this stage on.")}};
 }
 
@@ -131,7 +135,8 @@ SectionSpec change_section() {
        key("material", K::kName, RefersTo{"material"},
            "Material whose values change; with `block`: what those blocks are made of from now on. The "
            "stress stays as it was; boundaries keep the medium behind them."),
-       key("block", K::kText, RefersTo{"block, grid, region or kept opening"}, "Blocks that change."),
+       key("block", K::kText, RefersTo{"block, grid, region or kept opening"}, kNoDefault,
+           to(&ChangeInput::block), "Blocks that change."),
        key("kind", Choices{{"fixed", "free"}},
            "With `block`: `fixed`: they stay where they are; `free`: they move again."),
        value("friction_angle", D::kAngle, {.min = 0, .max = 1.5707, .max_open = true},

@@ -2,6 +2,8 @@
 // The table of the model file (schema.h) in its parts, one file each.
 
 #include "talus/base/angle.h"
+#include "talus/model/map_input.h"
+#include "talus/model/model.h"
 #include "talus/schema/schema.h"
 
 namespace talus {

@@ -347,13 +347,14 @@ std::string default_toml(const KeySpec& key) { return "v = " + std::string(key.d
 }  // namespace
 
 Where Fields::where(std::string_view key) const {
-  const auto it = places_.find(std::string(key));
+  const auto it = places_.find(key);
   return it == places_.end() ? place_ : it->second;
 }
 
 Fields read_section(const SectionSpec& spec, const toml::table& table, const std::string& path,
                     const Where& place, const TomlSource& source, Findings& findings) {
   Fields fields;
+  fields.keys_ = &spec.keys;
   fields.path_ = path;
   fields.place_ = place;
   std::vector<std::string> known;

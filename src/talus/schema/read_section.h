@@ -1,48 +1,49 @@
 #pragma once
 // One section of the file, checked against the schema: unknown keys, types, units, ranges, missing keys.
 
-#include <array>
 #include <map>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "talus/base/vec2.h"
 #include "talus/schema/findings.h"
-#include "talus/schema/scattered.h"
 #include "talus/schema/schema.h"
-#include "talus/schema/strength_scatter.h"
 #include "talus/schema/toml_source.h"
 
 namespace talus {
-
-struct MotionText {
-  enum Kind { kFree, kFixed, kVelocity, kDisplacement } kind = kFixed;
-  std::string history;
-};
-
-using Value = std::variant<bool, int64_t, double, std::string, Vec2, std::array<int, 2>, std::vector<Vec2>,
-                           std::vector<std::vector<Vec2>>, std::vector<double>, std::vector<std::string>,
-                           MotionText, Scattered, StrengthScatter>;
 
 /// The values of one section, in SI, defaults filled in. A key that was wrong is absent, and a finding tells
 /// why.
 class Fields {
  public:
-  bool has(std::string_view key) const { return values_.count(std::string(key)) > 0; }
+  bool has(std::string_view key) const { return values_.count(key) > 0; }
   /// Whether the file itself (or --set) gives the key.
-  bool given(std::string_view key) const { return places_.count(std::string(key)) > 0; }
+  bool given(std::string_view key) const { return places_.count(key) > 0; }
 
   /// The value, or `fallback` when absent.
   template <class T>
   T get(std::string_view key, T fallback = T{}) const {
-    const auto it = values_.find(std::string(key));
+    const auto it = values_.find(key);
     return it == values_.end() ? fallback : std::get<T>(it->second);
   }
   /// Whether the value is of this kind, of a key that may be of several. @pre has(key)
   template <class T>
   bool holds(std::string_view key) const {
-    return std::holds_alternative<T>(values_.at(std::string(key)));
+    return std::holds_alternative<T>(values_.find(key)->second);
+  }
+  /// Gives the members of `s` that keys go to (to() in schema.h) what the section says, and `s.where` its place. Of a
+  /// key that is wrong, or not given and without a default, the member stays as it is.
+  template <class S>
+  void fill(S& s) const {
+    for (const KeySpec& k : *keys_)
+      if (const auto it = values_.find(k.name); it != values_.end())
+        k.member.put(k, it->second, where(k.name), s);
+    if constexpr (requires { s.where = place_; }) s.where = place_;
+  }
+  template <class S>
+  S filled() const {
+    S s;
+    fill(s);
+    return s;
   }
   Where where(std::string_view key) const;
   Where where() const { return place_; }
@@ -53,8 +54,9 @@ class Fields {
  private:
   friend Fields read_section(const SectionSpec&, const toml::table&, const std::string&, const Where&,
                              const TomlSource&, Findings&);
-  std::map<std::string, Value> values_;
-  std::map<std::string, Where> places_;
+  const std::vector<KeySpec>* keys_ = nullptr;
+  std::map<std::string, Value, std::less<>> values_;
+  std::map<std::string, Where, std::less<>> places_;
   Where place_;
   std::string path_;
 };

@@ -189,17 +189,6 @@ std::string json_properties(const SectionSpec& s, const std::string& indent) {
 
 }  // namespace
 
-std::string Range::describe(Dimension dimension) const {
-  const double infinity = std::numeric_limits<double>::infinity();
-  const bool low = min > -infinity, high = max < infinity;
-  const auto show = [dimension](double v) { return with_unit(v, dimension); };
-  if (low && high)
-    return fmt::format("{} {} and {} {}", min_open ? ">" : ">=", show(min), max_open ? "<" : "<=", show(max));
-  if (low) return fmt::format("{} {}", min_open ? ">" : ">=", show(min));
-  if (high) return fmt::format("{} {}", max_open ? "<" : "<=", show(max));
-  return "";
-}
-
 const SectionSpec& section_spec(const Schema& schema, std::string_view name) {
   for (const SectionSpec& s : schema)
     if (s.name == name) return s;

@@ -14,43 +14,18 @@
 #include "talus/base/memory_reserve.h"
 #include "talus/base/rank.h"
 #include "talus/contact/pairs.h"
-#include "talus/penalty/penalty_settings.h"
-#include "talus/penalty/penalty_step.h"
 #include "talus/run/mechanism.h"
 #include "talus/run/path.h"
-#include "talus/run/resolution.h"
+#include "talus/run/rest_judge.h"
+#include "talus/run/step_notes.h"
+#include "talus/run/stepper.h"
 #include "talus/run/steps_from_rest.h"
 #include "talus/run/unrest.h"
 #include "talus/step/change.h"
 
 namespace talus {
 
-RunResult::RunResult() = default;
-RunResult::RunResult(const RunResult&) = default;
-RunResult::RunResult(RunResult&&) noexcept = default;
-RunResult& RunResult::operator=(const RunResult&) = default;
-RunResult& RunResult::operator=(RunResult&&) noexcept = default;
-RunResult::~RunResult() = default;
-
 namespace {
-
-// Into how many parts a dynamic step may be cut that no solver solves.
-constexpr int kMostParts = 64;
-
-// Overlap of a contact, as share of the thinner block, at which a run ends.
-constexpr double kMostClosed = 0.25;
-
-// Steps of a static stage between looks at its progress; what is left, as share of the look before, above
-// which it stalls, and above which there is no progress at all; sharpest tolerance, as share of the solver's;
-// looks in a row that stall before the solver is asked for more the first time, and without progress before
-// it is told.
-constexpr int64_t kRestLook = 250;
-constexpr double kStalled = 0.9, kNoProgress = 0.98, kSharpest = 1e-4;
-constexpr int kStalls = 2, kMostStuck = 4;
-
-// What the solver leaves, as share of the unbalanced force, below which it is not what keeps a stage from
-// rest.
-constexpr double kSolverShare = 0.02;
 
 // Steps from rest within which a stage finds its balance, if there is one near: those of 51,000 blocks took 89.
 constexpr int64_t kMostFromRest = 300;
@@ -72,15 +47,16 @@ class StagedRun::Runner {
     for (const StagePlan& plan : plans)
       scene_.give.shortest_step = std::min(scene_.give.shortest_step, plan.dt);
     work_.workers = workers;
-    if (scene.model.formulation == Formulation::kPenalty) penalty_.emplace(scene_, work_);
-    shakes_ = largest_input(scene.model) > 0 && joints_give(scene.laws);
+    if (scene.model.formulation == Formulation::kPenalty)
+      motion_ = make_penalty_stepper(scene_, work_, state_, result_);
+    else
+      motion_ = std::make_unique<ExplicitSteps>(scene_, work_, state_);
   }
 
   // Makes the state ready. Trouble is told by the first go().
   void begin(const Standing* from) {
     attempt([&] {
-      if (penalty_ && state_.carried_stress.empty())
-        begin_penalty(scene_, penalty_settings(scene_, scene_.model.stages[0]).scheme, state_);
+      motion_->begin();
       if (from) go_on(*from);
       return true;
     });
@@ -159,9 +135,9 @@ class StagedRun::Runner {
     enter_stage(scene_.boundaries, index > 0 && is_static(index - 1), is_static(index), state_);
     install_bolts(scene_.model, scene_.blocks, index, state_);
     state_.largest_kinetic = 0;
-    state_.rest = StepsFromRest::begin(plan.dt), state_.left_out.clear();
+    state_.rest = StepsFromRest::first_look(plan.dt), state_.left_out.clear();
     state_.rest.begin = state_.time;
-    look_ = latest_look_ = {};
+    judge_.begin();
     if (stage.from_rest) stop_motion(scene_, state_);
     state_.relaxed = stage.relaxed_at(0, state_.relaxed);
     if (stage.reset_displacements) {
@@ -184,7 +160,7 @@ class StagedRun::Runner {
                  .implicit = stage.implicit,
                  .from_rest = stage.from_rest,
                  .keep_guess = true};
-    if (penalty_) penalty_settings_ = penalty_settings(scene_, stage);
+    motion_->settle(stage);
     work_.mobility.clear();  // of other inertias
   }
 
@@ -213,8 +189,8 @@ class StagedRun::Runner {
     in_stage_ = true;
     advance_ = plans_[index].dt;
     observer_.stage_begins(scene_, index, plans_[index]);
-    if (penalty_) penalty_->stand(penalty_settings_, advance_, state_);
-    from_rest_.emplace(scene_, work_, state_);
+    motion_->stand(advance_);
+    from_rest_ = std::make_unique<StepsFromRest>(scene_, work_, state_);
     goals_ = path_goals(scene_, index);
   }
 
@@ -261,7 +237,7 @@ class StagedRun::Runner {
     StageResult& out = result_.stages.back();
     out.steps_from_rest = out.steps, out.followed_from = state_.time, out.followed_because = because;
     state_.rest = {}, state_.left_out.clear();
-    look_ = latest_look_ = {};
+    judge_.begin();
     state_.largest_kinetic = 0;
     std::fill(state_.rate.begin(), state_.rate.end(), BlockRate{});
     go_by_motion();
@@ -302,7 +278,7 @@ class StagedRun::Runner {
   bool slides_on(const StageInput& stage, const Mechanism& m) const {
     const StageResult& out = result_.stages.back();
     const double moved_for = out.end - (out.followed() ? out.followed_from : out.begin);
-    return !stage.from_rest && !penalty_ && m.slides && m.share >= kMechanismShare &&
+    return steps(stage).has_inertia() && m.slides && m.share >= kMechanismShare &&
            last_.energy.moving >= state_.largest_kinetic &&
            0.5 * moved_for * pace_of_many(scene_.blocks, state_) > kFarFromRest;
   }
@@ -356,20 +332,15 @@ class StagedRun::Runner {
     }
     if (stage.from_rest && state_.time >= state_.rest.begin + stage.duration) return false;
     settings_.sharper = state_.rest.sharper;
-    StepReport report;
     double part = plan.dt;
-    if (penalty_) {
-      report = penalty_->report(state_);
-    } else if (stage.from_rest) {
-      const auto kicked = from_rest_->kick(stage, out.begin, plan.dt, history_goal(), settings_, advance_);
-      if (!kicked) return follow_motion(from_rest_->why_not()), true;
-      report = *kicked;
-    } else {
-      report = kick_part(stage, part);
-    }
-    if (stage.kind == StageKind::kStatic) report.speed_left = speed_left(report, advance_ / plan.dt_bound);
+    const auto kicked = kick(index, part);
+    if (!kicked) return follow_motion(steps(stage).why_not()), true;
+    StepReport report = *kicked;
+    if (stage.kind == StageKind::kStatic)
+      report.speed_left = judge_.speed_left(report, advance_ / plan.dt_bound);
     // faces that break in the drift are told in the balance after them
-    const bool rests = stage.kind == StageKind::kStatic && is_at_rest(stage, report, n) &&
+    const bool rests = stage.kind == StageKind::kStatic && n >= 1 && is_relaxed(stage, n) &&
+                       judge_.is_at_rest(stage, report) &&
                        (!stage.from_rest || from_rest_->stands(!goals_.empty()));
     show({scene_, state_, work_, report, plan, advance_, index, out.steps == 0, false, n,
           !goals_.empty() && !rests && out.steps > 0});
@@ -391,31 +362,28 @@ class StagedRun::Runner {
       out.at_rest = !next_balance();
       return !out.at_rest;
     }
-    return !watch_rest(stage, report, plan, n);
+    return !judge_.stalls(stage, report, is_relaxed(stage, n), plan.dt * static_cast<double>(plan.steps - n));
   }
 
-  // A step, or of one that no solver solves the longest of its halves, quarters and so on that one does; the shortest
-  // as it is.
-  StepReport kick_part(const StageInput& stage, double& part) {
-    const double shortest = plans_[result_.stages.size() - 1].dt / kMostParts;
-    for (;; part *= 0.5) {
-      settings_.may_shorten = stage.kind == StageKind::kDynamic && scene_.by_patches() && part > shortest;
-      StepReport report = kick(scene_, settings_, part, work_, state_);
-      settings_.may_shorten = false;  // nobody else could go on with less
-      if (report.taken) return report;
-    }
+  Stepper& steps(const StageInput& stage) const {
+    return stage.from_rest ? static_cast<Stepper&>(*from_rest_) : *motion_;
+  }
+
+  std::optional<StepReport> kick(int index, double& dt) {
+    const StageInput& stage = scene_.model.stages[index];
+    return steps(stage).kick({stage, plans_[index], result_.stages[index].begin, history_goal()}, settings_,
+                             dt, advance_);
   }
 
   // The rest of a step of which a part is over.
   void go_on_in_parts(int index, int64_t n, double part, double end, StepReport& report) {
-    const StageInput& stage = scene_.model.stages[index];
     ++result_.cut_steps, ++result_.parts;
     while (state_.time < end) {
       const double left = end - state_.time;
       const bool last = part > (1 - 1e-6) * left;
       if (last) part = left;
       double taken = part;
-      report = kick_part(stage, taken);
+      report = kick(index, taken).value();
       go_on_or_fail(index, n, last && taken == part ? end : state_.time + taken, report);
       part = taken;
       ++result_.parts;
@@ -447,25 +415,14 @@ class StagedRun::Runner {
     displacement_ = state_.displacement;
     strain_part_ = state_.strain_part;
     try {
-      note(report, state_);
-      if (penalty_)
-        step_by_penalty(end);
-      else
-        drift(scene_, end, work_, state_, report);
+      notes_.note(report, settings_, state_);
+      steps(scene_.model.stages[index]).move(end, settings_, report);
     } catch (const NumericalError&) {
       state_.displacement = displacement_;
       state_.strain_part = strain_part_;
       observer_.fails({scene_, state_, work_, report, plan, advance_, index, n == 0, true, n});
       throw;
     }
-  }
-
-  void step_by_penalty(double end) {
-    const PenaltyReport p = penalty_->step(penalty_settings_, end, settings_.dynamic, state_);
-    result_.penalty = penalty_settings_.stiffness[0];
-    result_.cut_steps += p.parts > 1, result_.parts += p.parts;
-    result_.penetration = std::max(result_.penetration, p.penetration);
-    result_.condition = std::max(result_.condition, p.condition);
   }
 
   // From the scene of the stage before to this one. What changes the energy of blocks here is no work, so not
@@ -492,49 +449,12 @@ class StagedRun::Runner {
     // before the first stage nothing has pushed yet
     if (index == 0 || scene_.model.stages[index].relaxation.empty()) return;
     State copy = state_;
-    kick(scene_, settings_, plans_[index - 1].dt, work_, copy);
+    talus::kick(scene_, settings_, plans_[index - 1].dt, work_, copy);
     state_.kept_force = forces_of_blocks(work_, out);
   }
 
   Unrest unrest() const {
-    return {scene_,
-            state_,
-            last_,
-            look_,
-            plans_[result_.stages.size() - 1].dt,
-            work_.clock.dt,
-            penalty_.has_value()};
-  }
-
-  // Where a static stage makes no progress its steps are solved more sharply: errors that the solver leaves
-  // are forces. Whether that has not helped either, and nothing is on its way anywhere.
-  bool watch_rest(const StageInput& stage, const StepReport& report, const StagePlan& plan, int64_t n) {
-    RestWatch& rest = state_.rest;
-    // both together: while one of them falls, as the forces do while a large mass still swings slowly, the
-    // solver is not what keeps the other
-    const double now = std::sqrt(report.unbalanced * report.speed_left) / stage.unbalanced;
-    // while forces are let go of, balance says nothing
-    rest.best = !is_relaxed(stage, n) ? 0 : rest.best > 0 ? std::min(rest.best, now) : now;
-    if (++rest.steps % kRestLook != 0) return false;
-    look_ = std::move(latest_look_);
-    latest_look_ = {state_.time, state_.displacement};
-    const double progress = rest.before > 0 ? rest.best / rest.before : 0;
-    const bool at_sharpest = rest.sharper <= kSharpest;
-    rest.stuck = progress > (at_sharpest ? kNoProgress : kStalled) ? rest.stuck + 1 : 0;
-    // one look is enough the second time: that the solver is what keeps it was found the first
-    const bool by_solver =
-        solver_leaves(scene_.blocks, report, work_.clock.dt) > kSolverShare * report.worst_force;
-    if (!at_sharpest && by_solver && rest.stuck >= (rest.sharper < 1 ? 1 : kStalls)) {
-      rest.sharper = std::max(kSharpest, 0.01 * rest.sharper);
-      rest.stuck = 0;
-    }
-    rest.before = rest.best;
-    rest.best = 0;
-    if (!at_sharpest || rest.stuck < kMostStuck) return false;
-    const double left = plan.dt * static_cast<double>(plan.steps - n);
-    for (size_t k = 0; k < state_.rate.size(); ++k)
-      if (norm(state_.rate[k].a) * left > StepsFromRest::kFarToGo * scene_.blocks.size[k]) return false;
-    return true;
+    return {scene_, state_, last_, judge_.look(), plans_[result_.stages.size() - 1].dt, work_.clock.dt};
   }
 
   // Whether the run is to stop here; hands over states that are wanted.
@@ -549,21 +469,6 @@ class StagedRun::Runner {
   void show(const Instant& instant) {
     const InPart part(work_.profile, Profile::kObservers);
     observer_.at(instant);
-  }
-
-  // Velocity left, as share of its peak in the stage or, where nothing ever moved that fast, of what the
-  // forces on blocks would give them in half a step that is stable without implicit elasticity.
-  double speed_left(const StepReport& report, double steps_of_bound) const {
-    const double longer = std::max(1.0, steps_of_bound);
-    const double peak =
-        std::max({state_.largest_kinetic, report.energy.moving, report.nudge / (longer * longer)});
-    return peak > 0 ? std::sqrt(report.energy.moving / peak) : 0;
-  }
-
-  // Forces in balance is not enough: a block that swings through its rest position is in balance there.
-  bool is_at_rest(const StageInput& stage, const StepReport& report, int64_t n) const {
-    return n >= 1 && is_relaxed(stage, n) && report.unbalanced <= stage.unbalanced &&
-           (report.speed_left <= stage.unbalanced || !state_.left_out.empty());  // its energy is theirs too
   }
 
   bool is_relaxed(const StageInput& stage, int64_t n) const {
@@ -584,121 +489,15 @@ class StagedRun::Runner {
     if (result_.stages.empty()) return;
     const int index = count_of(result_.stages) - 1;
     const StagePlan& plan = plans_[index];
-    // a run that goes on behind its last stage has shown nothing yet
-    if (penalty_ && work_.rate_before.size() != state_.rate.size())
-      penalty_->stand(penalty_settings_, plan.dt, state_);
     State copy = state_;
-    const StepReport report =
-        penalty_ ? penalty_->report(copy) : kick(scene_, settings_, plan.dt, work_, copy);
-    note(report, copy);
+    const StepReport report = motion_->look(settings_, plan.dt, copy);
+    notes_.note(report, settings_, copy);
     // a run that is stopped between two stages has not shown the begin of the second
     const bool at_start = result_.stages.back().steps == 0;
     show({scene_, copy, work_, report, plan, plan.dt, index, at_start, true, 0, !goals_.empty()});
   }
 
-  // @param state  that of the step: its contacts are those of the rows
-  void note(const StepReport& r, const State& state) {
-    ++result_.steps;
-    result_.iterations += r.solve.iterations;
-    result_.most_contacts = std::max(result_.most_contacts, r.contacts);
-    result_.most_iterations = std::max(result_.most_iterations, r.solve.iterations);
-    if (std::isnan(r.error.worst) || r.error.worst > result_.worst_error) {
-      result_.worst_error = r.error.worst;
-      result_.worst_error_time = state.time;
-      result_.worst_error_row = r.worst;
-    }
-    result_.second_solver_steps += r.attempts.several();
-    ++result_.steps_by[place_of(r.method)];
-    result_.deepest_drift = std::max(result_.deepest_drift, r.drift);
-    result_.energy = r.energy;
-    result_.largest_left_over = std::max(result_.largest_left_over, std::abs(r.energy.left_over));
-    result_.largest_energy = std::max(result_.largest_energy, r.energy.largest());
-    if (r.closed_share > result_.closed_share) {
-      result_.closed_share = r.closed_share, result_.closed_time = state.time;
-      result_.closed_row = closed_text(r, state);
-    }
-    if (r.closed_share > kMostClosed)
-      throw NumericalError(
-          fmt::format("step {} at t = {:.9g} s: {}", state.step, state.time, result_.closed_row));
-    if (settings_.dynamic && shakes_ && r.jolt > result_.jolt) note_jolt(r, state);
-    result_.loose_steps += r.loose;
-    result_.ringing_steps += r.rings && !(settings_.damping_stiffness > 0);
-    if (!r.failed) return;
-    ++result_.failed_steps;
-    if (scene_.model.solver.stop_on_failure) {
-      throw NumericalError(fmt::format(
-          "step {} at t = {:.9g} s: the contact equations were not solved; error {:.3g} m after {}, "
-          "allowed {:.3g} m; worst at {}. A smaller time step, more solver.max_iterations or a "
-          "wider solver.{} may help; solver.on_failure = \"continue\" counts such steps instead of "
-          "stopping",
-          state.step, state.time, r.error.worst, attempts_text(r.attempts), settings_.limit, r.worst,
-          scene_.model.contact.law == ContactLaw::kExact ? "limit" : "tolerance"));
-    }
-  }
-
-  // Hard contacts push by a speed over the step: their accelerations say nothing (theory 7.2).
-  void note_jolt(const StepReport& r, const State& state) {
-    size_t most = work_.rows.size();
-    double largest = 0;
-    for (size_t k = 0; k < work_.rows.size(); ++k) {
-      const PointRows& p = work_.rows.points[k];
-      if (p.block_a != r.jolted && p.block_b != r.jolted) continue;
-      if (const double push = std::hypot(work_.rows.impulse[k][0], work_.rows.impulse[k][1]); push > largest)
-        largest = push, most = k;
-    }
-    if (most == work_.rows.size() || !is_joint(work_.rows.owner[most].family) ||
-        !work_.rows.points[most].is_soft(0))
-      return;
-    result_.jolt = r.jolt, result_.jolt_time = state.time;
-    result_.jolt_row =
-        fmt::format("{} ({})", scene_.blocks.name[r.jolted], row_name(scene_, state, work_, most));
-  }
-
-  // "80 iterations of gauss_seidel, 6 of primal_newton".
-  static std::string attempts_text(const Attempts& attempts) {
-    std::string text;
-    for (size_t i = 0; i < attempts.count; ++i)
-      text += fmt::format("{}{} {}of {}", i == 0 ? "" : ", ", attempts.list[i].iterations,
-                          i > 0                              ? ""
-                          : attempts.list[i].iterations == 1 ? "iteration "
-                                                             : "iterations ",
-                          name_of(attempts.list[i].solver));
-    return text;
-  }
-
-  // How deep a contact has gone, where, and what would keep it from it.
-  std::string closed_text(const StepReport& r, const State& state) const {
-    const int row = r.closed_row;
-    const size_t owner = work_.rows.owner[row].at();
-    int of_joint = -1;
-    Vec2 at;
-    if (scene_.by_patches()) {
-      const Patch& c = state.patches[owner / 2];
-      const int a = c.block_a;
-      of_joint = c.joint, at = scene_.blocks.centroid[a] + offset_now(state, a, c.arm_a[owner % 2]);
-    } else {
-      const Contact& c = state.contacts[owner];
-      const int a = c.key.block_a;
-      of_joint = c.joint;
-      at = scene_.blocks.centroid[a] + offset_now(state, a, scene_.blocks.corner(c.key.corner()));
-    }
-    const JointProperty* joint = of_joint < 0 ? nullptr : &scene_.model.joints[of_joint];
-    const std::string cure =
-        joint && joint->normal_stiffness > 0
-            ? fmt::format("normal_stiffness = {:.2g} Pa/m of joint \"{}\" would keep it at 1 %",
-                          joint->normal_stiffness * r.closed_share / 0.01, joint->name)
-        : penalty_ ? "a larger penalty.normal_stiffness keeps blocks apart"
-                   : "a smaller time step keeps hard contacts apart";
-    return fmt::format("{} at ({:.4g}, {:.4g}) has closed by {:.2g} % of the thinner block{}; {}",
-                       row_name(scene_, state, work_, row), at.x, at.y, 100 * r.closed_share,
-                       r.closed_share > kMostClosed
-                           ? ", more than a quarter: the geometry is no longer that of the model"
-                           : "",
-                       cure);
-  }
-
   Scene& scene_;
-  bool shakes_ = false;  // something given moves the model
   std::vector<StagePlan> plans_;
   State& state_;
   Observer& observer_;
@@ -707,17 +506,17 @@ class StagedRun::Runner {
   std::vector<Mat2> strain_part_;
   StepReport last_;
   StepSettings settings_;
-  PenaltySettings penalty_settings_;  // where steps are of conventional DDA
   StepWork work_;
-  RestLook look_, latest_look_;          // the look before the latest, and that
-  std::optional<PenaltySteps> penalty_;  // of formulation = "penalty"
-  std::vector<double> goals_;            // of the path of the stage that goes on; empty: none
+  std::unique_ptr<Stepper> motion_;  // in which blocks have speed
+  std::vector<double> goals_;        // of the path of the stage that goes on; empty: none
   // of that stage
   bool in_stage_ = false, over_ = false;
   double advance_ = 0;
-  std::optional<StepsFromRest> from_rest_;
+  std::unique_ptr<StepsFromRest> from_rest_;
   double wall_ = 0, shared_ = 0;  // [s] of Profile
   RunResult result_;
+  StepNotes notes_{scene_, work_, result_};
+  RestJudge judge_{scene_, work_, state_};
 };
 
 StagedRun::StagedRun(Scene& scene, const std::vector<StagePlan>& plans, State& state, Observer& observer,

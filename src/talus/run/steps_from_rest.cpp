@@ -37,7 +37,7 @@ constexpr double kSettled = 1e-3;
 
 }  // namespace
 
-RestWatch StepsFromRest::begin(double length) {
+RestWatch StepsFromRest::first_look(double length) {
   RestWatch rest;
   rest.length = length, rest.whole = kWhole;
   return rest;
@@ -45,7 +45,7 @@ RestWatch StepsFromRest::begin(double length) {
 
 void StepsFromRest::go_on(double goal, double first, int64_t steps) {
   const RestWatch before = state_.rest;
-  RestWatch& rest = state_.rest = begin(before.length);
+  RestWatch& rest = state_.rest = first_look(before.length);
   rest.whole = before.whole, rest.balances = before.balances;
   rest.begin = state_.time, rest.begin_steps = steps;
   rest.pace = (goal - state_.history_time) / std::max(rest.length, first);
@@ -55,8 +55,10 @@ void StepsFromRest::go_on(double goal, double first, int64_t steps) {
 // Where blocks come together by more than their contact points were sought ahead the step is taken again, looking as far as
 // they went; where that does not help, it was not solved to the tolerance or they go too far it is taken with half the length
 // (theory 14.2). The shortest may be loose: by then all solvers have tried.
-std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double begin, double first,
-                                              double goal, StepSettings& settings, double& advance) {
+std::optional<StepReport> StepsFromRest::kick(const StageStand& at, StepSettings& settings, double& /*dt*/,
+                                              double& advance) {
+  const StageInput& stage = at.stage;
+  const double first = at.plan.dt;
   const double shortest = first / kMostShortened;
   const State before = state_;
   double length = state_.rest.length;
@@ -65,11 +67,11 @@ std::optional<StepReport> StepsFromRest::kick(const StageInput& stage, double be
   for (;;) {
     advance = std::min(length, first);
     // what acts at the end of the step; sums of lengths are round-off short of the times meant
-    const double end = (state_.time - begin + advance) * (1 + 1e-12);
+    const double end = (state_.time - at.begin + advance) * (1 + 1e-12);
     state_.relaxed = stage.relaxed_at(end, state_.relaxed);
     settings.by_all = length <= shortest;
     StepSettings with_path = settings;
-    with_path.history_dt = history_dt(goal, length);
+    with_path.history_dt = history_dt(at.goal, length);
     StepReport report = talus::kick(scene_, with_path, length, work_, state_);
     const Approach approach =
         approach_of(scene_.bonds, scene_.blocks, state_, state_.rate, length, work_.workers);

@@ -5,19 +5,17 @@
 #include <string>
 
 #include "talus/contact/pairs.h"
-#include "talus/model/model.h"
-#include "talus/step/step.h"
+#include "talus/run/stepper.h"
 
 namespace talus {
 
 /// Takes the kicks of a stage from rest: chooses their lengths, and takes a step again where blocks went too far.
-class StepsFromRest {
+class StepsFromRest : public Stepper {
  public:
-  StepsFromRest(const Scene& scene, StepWork& work, State& state)
-      : scene_(scene), work_(work), state_(state) {}
+  using Stepper::Stepper;
 
   /// What the search for a balance begins with: steps of this length [s].
-  static RestWatch begin(double length);
+  static RestWatch first_look(double length);
 
   /// The next balance of a path is looked for, with steps as long as they are by now: in the first the histories reach the
   /// goal, unless it is shorter than the first of the stage.
@@ -28,17 +26,13 @@ class StepsFromRest {
   /// A step of backward Euler, of state.rest.length or of as much of it as can be taken. Where blocks go too far in the
   /// shortest one, or it is not solved: nothing, with the state as before, if the stage may follow them (why_not() tells);
   /// else NumericalError, or a report that has failed.
-  /// @param begin, first  of the stage: its time, and the length of its first step [s]
-  /// @param goal          to which the histories go on, at the pace of the path, or where they stand [s]
-  /// @param advance       out: by how much its clock goes on [s]
-  std::optional<StepReport> kick(const StageInput& stage, double begin, double first, double goal,
-                                 StepSettings& settings, double& advance);
+  std::optional<StepReport> kick(const StageStand& at, StepSettings& settings, double& dt,
+                                 double& advance) override;
 
   /// Sets the clock of histories that are there but for round-off to their goal.
   void arrive(double goal);
 
-  /// Of a kick that was none.
-  const std::string& why_not() const { return why_not_; }
+  std::string why_not() const override { return why_not_; }
 
   /// Sets state.rest.length for the step after: longer, but not soon after one that had to be shortened.
   /// @param relaxed  nothing is left to be let go of
@@ -61,9 +55,6 @@ class StepsFromRest {
   std::string way_text(const Approach& approach) const;
   std::string too_far(const StageInput& stage, const Approach& approach, double length) const;
 
-  const Scene& scene_;
-  StepWork& work_;
-  State& state_;
   double way_ = 0;  // the longest of a block, as share of its size
   std::string why_not_;
 };

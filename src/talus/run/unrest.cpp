@@ -37,7 +37,7 @@ std::string Unrest::text(const StageInput& stage, double elapsed, int64_t steps,
 
 // What keeps a stage from resting, and the key to change.
 std::string Unrest::why_no_rest(const StageInput& stage, double elapsed) const {
-  if (conventional)
+  if (scene.model.formulation == Formulation::kPenalty)
     return fmt::format(
         "By conventional DDA a static stage forgets its velocities at every step: a longer stage.{}.duration or time_step "
         "brings it further; what slides or falls never rests (blocks_end.svg)",

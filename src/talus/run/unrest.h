@@ -23,9 +23,8 @@ struct Unrest {
   const Scene& scene;
   const State& state;
   const StepReport& last;
-  const RestLook& look;       // the look before the latest
-  double dt = 0, step = 0;    // length of the steps of the plan, of the last one [s]
-  bool conventional = false;  // steps of conventional DDA
+  const RestLook& look;     // the look before the latest
+  double dt = 0, step = 0;  // length of the steps of the plan, of the last one [s]
 
   /// That it ended without coming to rest, where, what keeps it from it, and the key to change.
   /// @param elapsed  since it began [s]

@@ -23,11 +23,17 @@ talus_report=no
 # What its tests drive.
 add_browser() { command -v chromium >/dev/null || talus_packages="$talus_packages chromium"; }
 
-# What the Python package is built with, and its tests look with; a build without it is configured anew.
+# What the Python package is built with; a build without it is configured anew.
 talus_python=no
-add_python() {
-  talus_packages="$talus_packages pybind11-dev python3-dev python3-numpy python3-matplotlib mypy"
+add_python_package() {
+  talus_packages="$talus_packages pybind11-dev python3-dev python3-numpy"
   talus_python=yes
+}
+
+# And what its tests look with.
+add_python() {
+  add_python_package
+  talus_packages="$talus_packages python3-matplotlib mypy python3-venv python3-pip python3-setuptools python3-wheel"
 }
 
 install_missing_packages() {

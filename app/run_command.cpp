@@ -10,6 +10,7 @@
 #include "signals.h"
 #include "talus/base/name.h"
 #include "talus/base/text.h"
+#include "talus/results/opened_run.h"
 #include "talus/results/progress.h"
 #include "talus/run/base_report.h"
 #include "talus/run/resolution.h"
@@ -117,16 +118,11 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   if (!args.until.empty()) end_after(prepared, known_stages_until(prepared.scene.model, args.until));
   std::FILE* out = args.quiet ? std::fopen("/dev/null", "w") : stdout;
   if (!out) throw FileError("/dev/null: cannot be opened");
-  std::optional<ResultFolder> folder;
-  std::optional<SavedRun> saved;
-  std::optional<BranchOrigin> origin;
-  if (branches) {
-    saved.emplace(read_branch(args.from, prepared, origin.emplace()));
-  } else if (!args.from.empty()) {
-    // taken before the state is read: who is about to write into the folder must not do so meanwhile
-    folder.emplace(ResultFolder::go_on(folder_of_saved(args.from)));
-    saved.emplace(read_saved_run(args.from, prepared));
-  }
+  std::function<StateBytes()> from;
+  if (!args.from.empty()) from = [&args] { return StateBytes::read(args.from); };
+  OpenedRun opened =
+      open_run(prepared, branches || !from ? args.folder : folder_of_saved(args.from), from, !branches);
+  std::optional<SavedRun>& saved = opened.saved;
   if (saved && saved->standing.result.stages.size() > prepared.plans.size())
     throw Error(kExitUsage,
                 fmt::format("--until: stage \"{}\" had ended when that state was saved", args.until));
@@ -134,25 +130,12 @@ int run_command(const ModelArguments& model, const RunArguments& args) {
   // touched, since the system may refuse them
   const Workers workers(args.threads > 0 ? args.threads : threads_for(prepared.scene.blocks.count));
   StopSignals signals;
-  if (!folder) folder.emplace(args.folder, args.force);
-  if (const std::string stale = folder->stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
-  const std::string name = folder->path().string();
-  RunNotes notes = notes_of(model.overrides, findings);
-  notes.branch = origin;
-  if (saved && !branches) Recorder::check(*folder, prepared.scene, saved->archive);
-  std::unique_ptr<Recorder> recorder;
+  if (!opened.folder) opened.folder.emplace(args.folder, args.force);
+  if (const std::string stale = opened.folder->stale_lock(); !stale.empty()) tell("talus: note: {}\n", stale);
+  const std::string name = opened.folder->path().string();
   signals.begin();
-  try {
-    if (branches)
-      recorder = Recorder::branch_off(prepared.scene, std::move(*folder), saved->archive, notes);
-    else if (saved)
-      recorder = std::make_unique<Recorder>(prepared.scene, std::move(*folder), saved->archive, notes);
-    else
-      recorder = std::make_unique<Recorder>(prepared.scene, std::move(*folder), notes);
-  } catch (const std::exception& e) {
-    Recorder::abandon_begun(name, e.what());
-    throw;
-  }
+  const std::unique_ptr<Recorder> recorder =
+      opened.record(prepared.scene, notes_of(model.overrides, findings));
   recorder->dump_step(args.dump_step);
   std::optional<LivePage> live;
   if (args.watch) {

@@ -12,7 +12,7 @@
 #include "model.h"
 #include "observer.h"
 #include "talus/base/text_file.h"
-#include "talus/run/branch.h"
+#include "talus/results/opened_run.h"
 
 namespace talus::python {
 
@@ -41,18 +41,12 @@ struct PyResult : Views {
   }
 };
 
-// A saved state: the bytes of its file.
-struct PyState {
-  std::string name, bytes;
-
+struct PyState : StateBytes {
   void write(const std::string& path) const {
     guarded([&] { write_file(path, bytes, Reach::kDisk); });
   }
   static PyState read(const std::string& path) {
-    return guarded([&] {
-      constexpr size_t kMost = size_t{1} << 40;
-      return PyState{path, read_text_file(path, kMost)};
-    });
+    return guarded([&] { return PyState{StateBytes::read(path)}; });
   }
 };
 
@@ -127,9 +121,9 @@ class PyRun : public Views {
     return guarded([&] {
       py::gil_scoped_release free;
       const Standing standing = run_->standing();
-      return PyState{scene().model.file + ", a state in memory",
-                     archive_bytes(recorder_ ? recorder_->archive_of(standing, state())
-                                             : run_archive(scene(), standing, state()))};
+      return PyState{{scene().model.file + ", a state in memory",
+                      archive_bytes(recorder_ ? recorder_->archive_of(standing, state())
+                                              : run_archive(scene(), standing, state()))}};
     });
   }
 
@@ -153,34 +147,20 @@ class PyRun : public Views {
   void begin(RunNotes notes, const std::string& folder, const py::object& function, int64_t every,
              int threads, bool force, const std::optional<PyState>& from) {
     PreparedRun& prepared = memory->prepared;
-    std::optional<SavedRun> saved;
-    std::optional<ResultFolder> results;
     const bool goes_on = from && !folder.empty() && lies_in(from->name, folder);
-    {
+    std::function<StateBytes()> state;
+    if (from) state = [&from] { return *from; };
+    OpenedRun opened = [&] {
       py::gil_scoped_release free;
-      if (goes_on) {
-        // taken before the state is read: who is about to write into the folder must not do so meanwhile
-        results.emplace(ResultFolder::go_on(folder));
-        saved.emplace(saved_run_of(from->name, parse_archive(from->name, from->bytes), prepared));
-        Recorder::check(*results, prepared.scene, saved->archive);
-      } else if (from) {
-        saved.emplace(branch_of(from->name, from->bytes, prepared, notes.branch.emplace()));
-      }
-    }
+      return open_run(prepared, folder, state, goes_on);
+    }();
+    std::optional<SavedRun>& saved = opened.saved;
     if (saved && saved->standing.result.stages.size() > prepared.plans.size())
       throw py::value_error("until: that stage had ended when the state was saved");
-    if (!folder.empty() && !results) results.emplace(folder, force);
-    if (results) {
-      folder_ = results->path().string();
-      try {
-        recorder_ =
-            goes_on ? std::make_unique<Recorder>(prepared.scene, std::move(*results), saved->archive, notes)
-            : saved ? Recorder::branch_off(prepared.scene, std::move(*results), saved->archive, notes)
-                    : std::make_unique<Recorder>(prepared.scene, std::move(*results), notes);
-      } catch (const std::exception& e) {
-        Recorder::abandon_begun(folder_, e.what());
-        throw;
-      }
+    if (!folder.empty()) {
+      if (!opened.folder) opened.folder.emplace(folder, force);
+      folder_ = opened.folder->path().string();
+      recorder_ = opened.record(prepared.scene, notes);
     }
     memory->state = saved ? std::move(saved->state) : start_state(prepared.scene);
     observer_ = std::make_unique<PyObserver>(memory, function, every, recorder_.get());

@@ -256,13 +256,15 @@ void check_length(const fs::path& path) {
   if (!ec && header.size() == kHeader) check_header(path.string(), header, length - kHeader);
 }
 
-Archive read_archive(const fs::path& path) {
+std::string read_archive_bytes(const fs::path& path) {
   std::error_code ec;
   if (fs::is_regular_file(path, ec)) check_length(path);
   // as long as the memory that wrote it allowed
   constexpr size_t kMost = size_t{1} << 40;
-  return parse_archive(path.string(), read_text_file(path, kMost));
+  return read_text_file(path, kMost);
 }
+
+Archive read_archive(const fs::path& path) { return parse_archive(path.string(), read_archive_bytes(path)); }
 
 namespace archive_detail {
 

@@ -28,6 +28,8 @@ void write_archive(const std::filesystem::path& path, const Archive& archive);
 /// Throws FileError when the file is no archive, one of another format, cut short or damaged (the header holds
 /// size and digest of the rest), or holds anything but plain arrays. A crash of the library on a crafted one is told.
 Archive read_archive(const std::filesystem::path& path);
+/// The bytes of such a file, for parse_archive(). Throws FileError where its header says that it is none, or not whole.
+std::string read_archive_bytes(const std::filesystem::path& path);
 
 /// The bytes of an archive file, and an archive from them; `name` is for messages.
 std::string archive_bytes(const Archive& archive);

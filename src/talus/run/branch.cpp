@@ -136,10 +136,6 @@ BranchKeys branch_keys(const ModelKeys& now, const ModelKeys& before, const std:
   return keys;
 }
 
-SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, BranchOrigin& origin) {
-  return branch_of(path.string(), read_text_file(path), prepared, origin);
-}
-
 SavedRun branch_of(const std::string& name, const std::string& bytes, PreparedRun& prepared,
                    BranchOrigin& origin) {
   Scene& scene = prepared.scene;

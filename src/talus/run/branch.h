@@ -30,10 +30,9 @@ struct BranchKeys {
 BranchKeys branch_keys(const ModelKeys& now, const ModelKeys& before, const std::vector<std::string>& begun,
                        bool moved, bool bolted);
 
-/// Reads a saved state for a branch of it. The contacts of `prepared` get the give of the parent's.
+/// A saved state for a branch of it. The contacts of `prepared` get the give of the parent's.
+/// @param name  of its file, for messages and for origin.state
 /// Throws FileError as read_saved_run(), InputError naming every key that may not differ.
-SavedRun read_branch(const std::filesystem::path& path, PreparedRun& prepared, BranchOrigin& origin);
-/// The same of the bytes of a saved state; `name` is for messages and for origin.state.
 SavedRun branch_of(const std::string& name, const std::string& bytes, PreparedRun& prepared,
                    BranchOrigin& origin);
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "talus/base/index.h"
+
 namespace talus {
 
 namespace {

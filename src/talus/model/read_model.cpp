@@ -1,5 +1,4 @@
 #include "talus/model/read_model.h"
-#include "talus/base/index.h"
 #include "talus/model/read_as_printed.h"
 
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/base/version.h"
 #include "talus/model/joint_law.h"

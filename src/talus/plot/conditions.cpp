@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "talus/base/index.h"
 #include "talus/cut/selection.h"
 
 namespace talus::plot {

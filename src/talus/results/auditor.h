@@ -3,6 +3,7 @@
 // at the end of each stage and, for what steps show, in every step. Theory: docs/theory.md section 12.
 
 #include "talus/audit/watch.h"
+#include "talus/base/index.h"
 #include "talus/run/instant.h"
 
 namespace talus {

@@ -1,5 +1,4 @@
 #include "talus/run/plan.h"
-#include "talus/base/index.h"
 #include "talus/run/path.h"
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "talus/base/index.h"
 #include "talus/base/rank.h"
 #include "talus/model/joint_law.h"
 #include "talus/run/resolution.h"

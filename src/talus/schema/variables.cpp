@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "talus/base/index.h"
 #include "talus/base/text.h"
 #include "talus/schema/expression.h"
 #include "talus/schema/units.h"

@@ -58,17 +58,16 @@ double integral(const Polygon& polygon, const Line& line) {
 
 double depth_integral(const Polygon& region, std::vector<Line> lines) {
   // sides that are nearest nowhere: always deeper than another one is at most
-  const auto [low, high] = std::pair(
-      [&region](const Line& l) {
-        double least = std::numeric_limits<double>::infinity();
-        for (const Vec2 p : region) least = std::min(least, l.depth(p));
-        return least;
-      },
-      [&region](const Line& l) {
-        double most = 0;
-        for (const Vec2 p : region) most = std::max(most, l.depth(p));
-        return most;
-      });
+  const auto low = [&region](const Line& l) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec2 p : region) least = std::min(least, l.depth(p));
+    return least;
+  };
+  const auto high = [&region](const Line& l) {
+    double most = 0;
+    for (const Vec2 p : region) most = std::max(most, l.depth(p));
+    return most;
+  };
   double bound = std::numeric_limits<double>::infinity();
   for (const Line& l : lines) bound = std::min(bound, high(l));
   lines.erase(std::remove_if(lines.begin(), lines.end(),

@@ -14,7 +14,7 @@ enum class BoltKind { kAnchored, kGrouted, kSuperposed };
 struct BoltType {
   std::string name;
   BoltKind kind = BoltKind::kGrouted;
-  double diameter = 0;                                              // [m]
+  double diameter = 0.025;                                          // [m]
   double young = 200e9;                                             // [Pa]
   double yield_force = std::numeric_limits<double>::infinity();     // [N]
   double rupture_strain = std::numeric_limits<double>::infinity();  // elongation at rupture / length

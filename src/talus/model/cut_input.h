@@ -1,6 +1,7 @@
 #pragma once
 // What the user asked the cutter for: regions of rock or masonry and the traces that divide them. Plain data
-// in SI units; angles counter-clockwise from +x.
+// in SI units; angles counter-clockwise from +x. Lengths that have to be given are 1 until they are: where one is wrong
+// that is told, and nothing that would follow from 0.
 
 #include <cstdint>
 #include <limits>
@@ -33,10 +34,10 @@ struct RegionInput {
 struct ArchInput {
   std::string name;
   Vec2 center;                             // [m]
-  double radius = 0;                       // of the intrados [m]
-  double thickness = 0;                    // [m]
+  double radius = 1;                       // of the intrados [m]
+  double thickness = 1;                    // [m]
   double from = 0, to = std::numbers::pi;  // [rad]
-  int voussoirs = 0;
+  int voussoirs = 1;
   int material = -1;
   int joint = -1;
   BlockKind kind = BlockKind::kDeformable;
@@ -91,7 +92,7 @@ struct TessellationInput {
   std::string name;
   int region = -1;
   bool triangles = false;
-  double size = 0;            // [m]
+  double size = 1;            // [m]
   double irregularity = 0.5;  // 0 to 1
   int joint = -1;
   Where where;
@@ -100,7 +101,7 @@ struct TessellationInput {
 struct MasonryInput {
   std::string name;
   int region = -1;
-  double length = 0, height = 0;  // of a block [m]
+  double length = 1, height = 1;  // of a block [m]
   double overlap = 0.5;           // share of the length by which every second course is shifted
   Vec2 origin;                    // [m]
   int bed_joint = -1, head_joint = -1;

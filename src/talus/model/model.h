@@ -25,7 +25,7 @@ enum class Inertia { kConsistent, kLumped };
 
 struct Material {
   std::string name;
-  double density = 0;                                         // [kg/m3]
+  double density = 1;                                         // [kg/m3]
   double young = std::numeric_limits<double>::quiet_NaN();    // [Pa], NaN when not given
   double poisson = std::numeric_limits<double>::quiet_NaN();  // [-]
   Where where = {};
@@ -114,8 +114,8 @@ enum class GridPattern { kRectangles, kCrossedTriangles };
 
 struct GridInput {
   std::string name;
-  Vec2 min, max;    // before it is placed
-  Placement place;  // about its middle
+  Vec2 min, max = {1, 1};  // before it is placed
+  Placement place;         // about its middle
   int columns = 1, rows = 1;
   GridPattern pattern = GridPattern::kRectangles;
   int material = -1;
@@ -211,7 +211,7 @@ inline constexpr double kStaticDamping = 0.8;
 struct StageInput {
   std::string name;
   StageKind kind = StageKind::kDynamic;
-  double duration = 0;                                          // [s]
+  double duration = 1;                                          // [s]
   double time_step = std::numeric_limits<double>::quiet_NaN();  // [s], NaN = automatic
   double safety = 0.8;
   bool moment_clamp = false;

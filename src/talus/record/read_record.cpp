@@ -9,6 +9,7 @@
 
 #include "talus/base/error.h"
 #include "talus/base/index.h"
+#include "talus/base/text.h"
 #include "talus/base/text_file.h"
 #include "talus/record/formats.h"
 

@@ -445,9 +445,10 @@ Tolerance Tolerances::of(const Difference& d) const {
 
 std::vector<std::string> Tolerances::unused(const std::vector<Difference>& list) const {
   std::vector<std::string> out;
-  for (const auto& [name, tolerance] : by_name_)
-    if (std::none_of(list.begin(), list.end(), [&](const Difference& d) { return fits(name, d); }))
-      out.push_back(name);
+  for (const auto& entry : by_name_) {
+    const auto fits_it = [&entry](const Difference& d) { return fits(entry.first, d); };
+    if (std::none_of(list.begin(), list.end(), fits_it)) out.push_back(entry.first);
+  }
   return out;
 }
 

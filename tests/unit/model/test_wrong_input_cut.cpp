@@ -313,6 +313,12 @@ region = "wall" => region = "walls"
 "1 m"\nheight = "0.5 m" => "0.4 mm"\nheight = "0.2 mm"
   79:1: error: masonry.bond.length: makes about 1.5e+08 cells, more than 1e+07
   = is a unit missing?
+length = "1 m"\nheight => length = 0\nheight
+  79:10: error: masonry.bond.length: 0 m is not allowed; must be > 0 m
+size = "1 m" => size = 0
+  88:8: error: tessellation.grains.size: 0 m is not allowed; must be > 0 m
+to = "180 deg" => to = 180
+  35:6: error: arch.ring.to: an angle needs its unit: write "180 deg" or "180 rad"
 size = "1 m" => size = "0.3 mm"
   88:1: error: tessellation.grains.size: makes about 1.3e+08 cells, more than 1e+07
   = is a unit missing?

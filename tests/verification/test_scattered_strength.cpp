@@ -6,7 +6,7 @@
 #include "support/run_case.h"
 #include "support/tolerance.h"
 #include "talus/base/angle.h"
-#include "talus/schema/strength_scatter.h"
+#include "talus/model/strength_scatter.h"
 
 namespace test_scattered_strength {
 

@@ -15,8 +15,8 @@
 #include "talus/model/mesh_input.h"
 #include "talus/model/placement.h"
 #include "talus/model/solver_kind.h"
+#include "talus/model/strength_scatter.h"
 #include "talus/schema/findings.h"
-#include "talus/schema/strength_scatter.h"
 
 namespace talus {
 

@@ -20,10 +20,10 @@ class ModelSections : protected SectionReader {
     out.kind = static_cast<Motion::Kind>(m.kind);
     const int given = index_of(histories, m.history);
     if (m.kind == MotionText::kDisplacement && given >= 0 && histories[given].value_at(0) != 0)
-      findings_.error(f.where(key), f.path_of(key),
-                      fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
-                                  m.history, histories[given].value_at(0)),
-                      "let it begin at 0");
+      error(f, key,
+            fmt::format("displacement history \"{}\" is {:g} m at t = 0: the start would be a jump",
+                        m.history, histories[given].value_at(0)),
+            "let it begin at 0");
     if (m.kind == MotionText::kVelocity || m.kind == MotionText::kDisplacement)
       out.history = refer_name(m.history, f.where(key), f.path_of(key), histories, "history");
     check_quantity(f, key, out.history, histories,
@@ -40,20 +40,18 @@ class ModelSections : protected SectionReader {
     const auto a = [](std::string_view what) {
       return fmt::format("{} {}", what == "acceleration" ? "an" : "a", what);
     };
-    findings_.error(
-        f.where(key), f.path_of(key),
-        fmt::format("wants {}; history \"{}\" is {}, by the unit in its file", a(wanted), h.name,
-                    a(h.quantity)),
-        fmt::format(
-            "name a column of the file that is {} in history.{}.column (talus record writes all three)",
-            a(wanted), h.name));
+    error(f, key,
+          fmt::format("wants {}; history \"{}\" is {}, by the unit in its file", a(wanted), h.name,
+                      a(h.quantity)),
+          fmt::format(
+              "name a column of the file that is {} in history.{}.column (talus record writes all three)",
+              a(wanted), h.name));
   }
 
   Placement placement(const Fields& f) {
     Placement out{f.get("rotate", 0.0), {}, f.get<Vec2>("move")};
     if (f.given("rotate_about") && !f.given("rotate"))
-      findings_.error(f.where("rotate_about"), f.path_of("rotate_about"), "has no meaning without rotate",
-                      "give rotate, an angle, or leave it out");
+      error(f, "rotate_about", "has no meaning without rotate", "give rotate, an angle, or leave it out");
     if (f.has("rotate_about")) out.about = f.get<Vec2>("rotate_about");
     return out;
   }

@@ -184,9 +184,14 @@ class ModelReader : private ModelSections {
       j.name = name;
       read_kind(f, j);
       const auto strength = [&](const char* key, double& mean, StrengthScatter& scatter) {
-        scatter = f.get<StrengthScatter>(key);
-        mean = scatter.mean;
-        scatter.seed = strength_seed(static_cast<int64_t>(scatter.seed), name, key);
+        const Strewn given = f.get<Strewn>(key);
+        mean = given.mean;
+        scatter = {static_cast<StrengthScatter::Kind>(given.kind),
+                   given.mean,
+                   given.deviation,
+                   given.least,
+                   given.most,
+                   strength_seed(given.seed, name, key)};
       };
       strength("friction_angle", j.friction_angle, j.friction_scatter);
       strength("cohesion", j.cohesion, j.cohesion_scatter);

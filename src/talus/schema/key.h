@@ -11,6 +11,7 @@
 #include <typeindex>
 #include <vector>
 
+#include "talus/base/error.h"
 #include "talus/schema/findings.h"
 #include "talus/schema/units.h"
 #include "talus/schema/value.h"
@@ -105,10 +106,12 @@ class Member {
         }),
         standard_([member](const KeySpec& key) { return key_detail::text_of_any(key, S{}.*member); }) {}
 
-  /// Does nothing where the member is of another struct than `s`.
+  /// Nothing, where the key has no member. @pre  else it is one of S
   template <class S>
   void put(const KeySpec& key, const Value& v, const Where& where, S& s) const {
-    if (put_ && of_ == typeid(S)) put_(key, v, where, &s);
+    if (!put_) return;
+    if (of_ != typeid(S)) fail_assertion("a section fills the struct that its keys name", __FILE__, __LINE__);
+    put_(key, v, where, &s);
   }
   std::string standard(const KeySpec& key) const { return standard_ ? standard_(key) : ""; }
 

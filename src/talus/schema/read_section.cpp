@@ -275,8 +275,8 @@ class ValueReader {
   }
 
   // A quantity, or a table that says how it scatters from face to face.
-  std::optional<StrengthScatter> strength(const toml::node& node) const {
-    StrengthScatter s;
+  std::optional<Strewn> strength(const toml::node& node) const {
+    Strewn s;
     s.least = spec_.range.min, s.most = spec_.range.max;
     const toml::table* t = node.as_table();
     if (!t) {
@@ -304,8 +304,8 @@ class ValueReader {
       if (!v || *v < 0) return tell(*given, "a seed is a whole number, 0 or more");
       seed = *v;
     }
-    s.mean = *mean, s.deviation = *spread, s.seed = static_cast<uint64_t>(seed);
-    s.kind = normal ? StrengthScatter::kNormal : StrengthScatter::kLognormal;
+    s.mean = *mean, s.deviation = *spread, s.seed = seed;
+    s.kind = normal ? Strewn::kNormal : Strewn::kLognormal;
     return s;
   }
 

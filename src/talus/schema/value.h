@@ -9,7 +9,6 @@
 
 #include "talus/base/vec2.h"
 #include "talus/schema/scattered.h"
-#include "talus/schema/strength_scatter.h"
 
 namespace talus {
 
@@ -20,6 +19,6 @@ struct MotionText {
 
 using Value = std::variant<bool, int64_t, double, std::string, Vec2, std::array<int, 2>, std::vector<Vec2>,
                            std::vector<std::vector<Vec2>>, std::vector<double>, std::vector<std::string>,
-                           MotionText, Scattered, StrengthScatter>;
+                           MotionText, Scattered, Strewn>;
 
 }  // namespace talus

@@ -3,8 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "talus/model/map_input.h"
+#include "talus/model/model.h"
 #include "talus/model/model_schema.h"
 #include "talus/schema/section_reader.h"
 #include "talus/schema/units.h"
@@ -111,6 +114,92 @@ TEST_CASE("members: what the model file calls the default of a key is what its s
       ++both;
     }
   CHECK(both == 3);  // written in another unit: GPa, kN/m
+}
+
+// Choices are read by their order: what each word of the file means, said once more.
+template <class S, class E>
+void means(std::string_view section, std::string_view name, E S::*member,
+           const std::vector<std::pair<const char*, E>>& words) {
+  INFO(section << "." << name);
+  size_t found = 0;
+  for (const KeySpec& k : section_spec(model_schema(), section).keys) {
+    if (k.name != name) continue;
+    CHECK(k.choices.size() == words.size());
+    for (const auto& [word, value] : words) {
+      INFO(word);
+      CHECK(std::count(k.choices.begin(), k.choices.end(), word) == 1);
+      S s;
+      k.member.put(k, std::string(word), {}, s);
+      CHECK(s.*member == value);
+      ++found;
+    }
+  }
+  CHECK(found == words.size());
+}
+
+TEST_CASE("members: words of the model file are the enumerators of that name") {
+  means("model", "plane", &Model::plane, {{"strain", Plane::kStrain}, {"stress", Plane::kStress}});
+  means("model", "inertia", &Model::inertia,
+        {{"consistent", Inertia::kConsistent}, {"lumped", Inertia::kLumped}});
+  means("model", "formulation", &Model::formulation,
+        {{"contact_forces", Formulation::kContactForces},
+         {"penalty", Formulation::kPenalty},
+         {"as_printed", Formulation::kAsPrinted}});
+  means("block", "kind", &BlockInput::kind,
+        {{"deformable", BlockKind::kDeformable},
+         {"rigid", BlockKind::kRigid},
+         {"fixed", BlockKind::kFixed},
+         {"driven", BlockKind::kDriven}});
+  means("region", "kind", &RegionInput::kind,
+        {{"deformable", BlockKind::kDeformable}, {"rigid", BlockKind::kRigid}, {"fixed", BlockKind::kFixed}});
+  means("grid", "pattern", &GridInput::pattern,
+        {{"rectangles", GridPattern::kRectangles}, {"crossed_triangles", GridPattern::kCrossedTriangles}});
+  means("bolt_type", "kind", &BoltType::kind,
+        {{"anchored", BoltKind::kAnchored},
+         {"grouted", BoltKind::kGrouted},
+         {"superposed", BoltKind::kSuperposed}});
+  means("boundary", "kind", &BoundaryInput::kind,
+        {{"viscous", BoundaryKind::kViscous},
+         {"free_field", BoundaryKind::kFreeField},
+         {"tied", BoundaryKind::kTied}});
+  means("boundary", "static", &BoundaryInput::hold,
+        {{"fixed", StaticHold::kFixed}, {"roller", StaticHold::kRoller}, {"free", StaticHold::kFree}});
+  means("opening", "shape", &OpeningInput::shape,
+        {{"circle", OpeningShape::kCircle},
+         {"horseshoe", OpeningShape::kHorseshoe},
+         {"polygon", OpeningShape::kPolygon}});
+  means("opening", "rock", &OpeningInput::kept, {{"removed", false}, {"kept", true}});
+  means("cut", "slivers", &CutInput::slivers,
+        {{"keep", SliverPolicy::kKeep}, {"merge", SliverPolicy::kMerge}, {"delete", SliverPolicy::kDelete}});
+  means("solver", "method", &SolverInput::method,
+        {{"auto", SolverKind::kAuto},
+         {"newton", SolverKind::kNewton},
+         {"gauss_seidel", SolverKind::kGaussSeidel},
+         {"primal_newton", SolverKind::kPrimalNewton},
+         {"pivoting", SolverKind::kPivoting}});
+  means("solver", "jacobian", &SolverInput::jacobian,
+        {{"analytic", JacobianKind::kAnalytic}, {"difference", JacobianKind::kDifference}});
+  means("stage", "kind", &StageInput::kind,
+        {{"static", StageKind::kStatic}, {"dynamic", StageKind::kDynamic}});
+  means("safety", "by", &SafetyInput::by,
+        {{"strength", SafetyBy::kStrength},
+         {"load", SafetyBy::kLoad},
+         {"tilt", SafetyBy::kTilt},
+         {"acceleration", SafetyBy::kAcceleration}});
+  means("safety", "from", &SafetyInput::from_start, {{"rest", false}, {"start", true}});
+  means("penalty", "rotation", &PenaltyInput::exact_rotation, {{"linear", false}, {"exact", true}});
+  means("penalty", "scheme", &PenaltyInput::mean_acceleration,
+        {{"constant_acceleration", false}, {"mean_acceleration", true}});
+  means("tessellation", "cells", &TessellationInput::triangles, {{"voronoi", false}, {"triangles", true}});
+  means("map", "becomes", &MapInput::use,
+        {{"joints", MapUse::kJoints},
+         {"fault", MapUse::kFault},
+         {"outline", MapUse::kOutline},
+         {"opening", MapUse::kOpening},
+         {"stone", MapUse::kStone},
+         {"bolt", MapUse::kBolt},
+         {"monitor", MapUse::kMonitor},
+         {"ignored", MapUse::kIgnored}});
 }
 
 }  // namespace test_key

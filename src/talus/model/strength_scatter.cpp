@@ -1,4 +1,4 @@
-#include "talus/schema/strength_scatter.h"
+#include "talus/model/strength_scatter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@ namespace talus {
 
 /// How one strength scatters. Drawn by the two blocks that meet, so that a face keeps its own for good.
 struct StrengthScatter {
-  enum Kind { kNone, kNormal, kLognormal };
+  enum Kind { kNone, kNormal, kLognormal };  // as Strewn::Kind
   Kind kind = kNone;
   double mean = 0, deviation = 0;                                    // of the strength itself [SI]
   double least = 0, most = std::numeric_limits<double>::infinity();  // what a draw has to lie in [SI]
